@@ -132,6 +132,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
             base,
             unknowns,
             conditions,
+            instrument: None,
             is_finer: false,
         },
         time,

@@ -5,7 +5,7 @@ use slipfront_regression::{Prediction, Regression};
 
 use crate::intervals::Distribution;
 use crate::misfit::{Check, Misfit};
-use crate::normals::{Stream, noisy, normals};
+use crate::normals::{Stream, normals};
 use crate::sample_points::SamplePoints;
 use crate::scaling::{Scaling, summaries_of, units_of_friction};
 use crate::training::Training;
@@ -63,16 +63,15 @@ impl Calibration {
     /// Learns from a training the relation between records and unknowns, for records with white noise whose
     /// standard deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
     pub fn new(training: &Training, grids: &[SamplePoints], noise: f64) -> Self {
-        let shares: Vec<f64> = grids.iter().map(|grid| noise * grid.noise_share()).collect();
         let units = units_of_friction(training, grids);
         let rows: Vec<Vec<f64>> = training
             .curves
             .par_iter()
             .enumerate()
             .map(|(run, curves)| {
-                let records = curves.iter().zip(&shares).enumerate();
-                let noisy = records.map(|(record, (curve, &noise))| {
-                    noisy(curve, noise, normals(Stream::Noise, run, record))
+                let records = curves.iter().zip(grids).enumerate();
+                let noisy = records.map(|(record, (curve, grid))| {
+                    grid.noisy(curve, noise, normals(Stream::Noise, run, record))
                 });
                 summaries_of(&noisy.collect::<Vec<_>>(), &units)
             })
@@ -90,7 +89,7 @@ impl Calibration {
                 .map(|truth| Regression::learn(&table, truth))
                 .collect()
         };
-        let check = || Check::learn(training, [&shares, &units], &scaling, &table);
+        let check = || Check::learn(training, grids, noise, &units, &scaling, &table);
         let (regressions, check) = rayon::join(learn, check);
         Self {
             units,
@@ -281,7 +280,7 @@ mod tests {
     fn what_a_curve_shows_is_found_and_what_it_does_not_is_told() {
         let calibration = calibration();
         let point = [0.3, 0.6, 0.5];
-        let record = |number| noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, number));
+        let record = |number| grid().noisy(&curve(&point), 0.01, normals(Stream::Noise, 1000, number));
         let fit = calibration.estimate(&[record(0)]);
         assert_eq!(fit.undetermined, [2]);
         for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
@@ -309,14 +308,18 @@ mod tests {
             .zip(0..)
             .map(|(y, i)| y * (1.0 + 0.1 * f64::from(i) / 99.0))
             .collect();
-        let drift = calibration.estimate(&[noisy(&drifting, 0.01, noise())]).misfit;
+        let drift = calibration
+            .estimate(&[grid().noisy(&drifting, 0.01, noise())])
+            .misfit;
         assert!(drift.has_drift && drift.drift[0] > 0.0, "{drift:?}");
         let swings: Vec<f64> = plain
             .iter()
             .zip(0..)
             .map(|(y, i)| y * (1.0 + 0.3 * f64::from(i % 7 - 3) / 3.0))
             .collect();
-        let foreign = calibration.estimate(&[noisy(&swings, 0.01, noise())]).misfit;
+        let foreign = calibration
+            .estimate(&[grid().noisy(&swings, 0.01, noise())])
+            .misfit;
         assert!(foreign.distance > 1.0, "{foreign:?}");
     }
 
@@ -327,10 +330,10 @@ mod tests {
         for factor in [0.1, 5.0] {
             let plain = curve(&[0.3, 0.6, 0.5]);
             let other: Vec<f64> = plain.iter().map(|y| factor * y).collect();
-            let found = calibration.estimate(&[noisy(&other, 0.01, normals(Stream::Noise, 1000, 0))]);
+            let found = calibration.estimate(&[grid().noisy(&other, 0.01, normals(Stream::Noise, 1000, 0))]);
             assert!(found.misfit.is_outside(), "{factor}: {:?}", found.misfit);
         }
-        let own = calibration.estimate(&[noisy(
+        let own = calibration.estimate(&[grid().noisy(
             &curve(&[0.0, 1.0, 0.0]),
             0.01,
             normals(Stream::Noise, 1000, 0),
@@ -346,7 +349,7 @@ mod tests {
         let calibration = Calibration::new(&training, &[grid()], 0.01);
         for number in 0..20 {
             let noise = normals(Stream::Noise, 1000, number);
-            let found = calibration.estimate(&[noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, noise)]);
+            let found = calibration.estimate(&[grid().noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, noise)]);
             assert!(!found.misfit.is_outside(), "{:?}", found.misfit);
         }
     }
@@ -359,7 +362,7 @@ mod tests {
             let scale = |curve: &mut Vec<f64>| curve.iter_mut().for_each(|y| *y *= newtons);
             let mut training = training(300);
             training.curves.iter_mut().flatten().for_each(scale);
-            let mut record = noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, normals(Stream::Noise, 1000, 0));
+            let mut record = grid().noisy(&curve(&[0.3, 0.6, 0.5]), 0.01, normals(Stream::Noise, 1000, 0));
             scale(&mut record);
             Calibration::new(&training, &[grid_of(Measure::Force)], 0.01).estimate(&[record])
         };

@@ -10,6 +10,7 @@ use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, who
 use slipfront_case::key_rows;
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::instrument::Instrument;
 use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
@@ -33,6 +34,9 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
     file: "calibration.toml",
     journal: "training.jsonl",
 };
+
+/// Table of the file that describes the measuring chain.
+const INSTRUMENT: &str = "instrument";
 
 /// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of
 /// four, more are a system of equations that memory is too small for.
@@ -204,8 +208,15 @@ impl CalibrationFile {
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let (project, keys) =
-            ProjectFile::parse(&CALIBRATION, CalibrationKeys::KEYS, text, file, name, folder)?;
+        let (project, keys) = ProjectFile::parse(
+            &CALIBRATION,
+            CalibrationKeys::KEYS,
+            &[INSTRUMENT],
+            text,
+            file,
+            name,
+            folder,
+        )?;
         let file = Self { keys, project };
         file.check()?;
         Ok(file)
@@ -372,18 +383,36 @@ impl CalibrationFile {
             overrides: self.overrides_of(number),
             grid: record.grid.clone(),
         });
-        let set_up = SetUp {
+        let mut set_up = SetUp {
             base: self.project.base.clone(),
             unknowns: self.unknowns()?,
             conditions: conditions.collect(),
+            instrument: self.project.table(INSTRUMENT)?.cloned(),
             is_finer: false,
         };
         let middle = set_up.middle();
+        let in_instrument = |why: String| self.project.error_in_table(INSTRUMENT, why);
+        for number in 0..set_up.conditions.len() {
+            let instrument = set_up.instrument(&middle, &set_up.conditions[number]);
+            let instrument = instrument.map_err(|error| in_instrument(error.to_string()))?;
+            let conditions = &mut set_up.conditions[number];
+            let range = instrument.as_ref().and_then(Instrument::range);
+            conditions.grid = conditions.grid.clone().bounded_by(range);
+            let case = set_up.case(&middle, 0, &set_up.conditions[number]);
+            let case = case.map_err(|error| self.project.found_in("unknowns", error))?;
+            if case.model.drive.is_held() && instrument.is_some_and(|instrument| instrument.has_memory()) {
+                let sentence = "a held drive has no time while blocks slide, and load cells, filters and samplings need one: remove \
+                                `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone";
+                return Err(in_instrument(sentence.to_owned()).into());
+            }
+        }
         for conditions in &set_up.conditions {
             for unknown in 0..middle.len() {
                 for end in [0.0, 1.0] {
                     let mut shares = middle.clone();
                     shares[unknown] = end;
+                    let instrument = set_up.instrument(&shares, conditions);
+                    instrument.map_err(|error| in_instrument(error.to_string()))?;
                     let case = set_up.case(&shares, 0, conditions);
                     let case = case.map_err(|error| self.project.found_in("unknowns", error))?;
                     let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());

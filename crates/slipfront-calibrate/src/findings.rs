@@ -3,8 +3,10 @@
 use serde::Serialize;
 
 use crate::calibration::Estimate;
+use crate::closest::Closest;
 use crate::intervals::Distribution;
 use crate::misfit::Misfit;
+use crate::predicted::Comparison;
 use crate::unknowns::Unknown;
 
 /// Probability of the intervals.
@@ -23,6 +25,12 @@ pub(crate) struct Findings {
     pub(crate) pairs: Vec<CoupledUnknowns>,
     /// Tests of whether the model can have made the records.
     pub(crate) misfit: Misfit,
+    /// The records beside runs of the calibrated model.
+    pub(crate) comparison: Comparison,
+    /// The closest curve, where the unknowns determine it.
+    pub(crate) closest: Option<Closest>,
+    /// The instrument and the records.
+    pub(crate) instrument: InstrumentFindings,
     /// Whether the model cannot have made the records.
     pub(crate) is_refused: bool,
     /// Share of the values of each record that lie within the band of the calibrated model, %.
@@ -32,6 +40,18 @@ pub(crate) struct Findings {
     /// Narrowing of the intervals by further experiments.
     pub(crate) next: Vec<Further>,
     pub(crate) version: &'static str,
+}
+
+/// What the instrument passes, and what of it the records need.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct InstrumentFindings {
+    /// Frequency up to which the instrument passes friction; none without filter, load cell and sampling.
+    pub(crate) bandwidth_hz: Option<f64>,
+    /// Frequency of a swing over the range of the record that changes as fast as the record does at most; none
+    /// of records over displacement, or of noise alone.
+    pub(crate) fastest_swing_hz: Option<f64>,
+    /// Noise of every record, by how its values scatter about their neighbours, % of mean friction.
+    pub(crate) noise_percent: Vec<f64>,
 }
 
 /// An unknown, as estimated from the records, in its own unit.

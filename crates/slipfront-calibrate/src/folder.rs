@@ -8,19 +8,24 @@ use std::sync::atomic::AtomicBool;
 use serde::{Deserialize, Serialize};
 use slipfront_base::disk::is_same;
 use slipfront_run::manifest::ManifestFile;
+use slipfront_run::measured::Measure;
 
+use crate::bandwidth::{fastest_swing, noise_share};
 use crate::calibration::{Calibration, Estimate};
+use crate::closest::closest;
 use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
-use crate::findings::{CoupledUnknowns, Findings, Further, OnFinerBlocks, UnknownEstimate};
-use crate::predicted::{PREDICTED, bands};
+use crate::findings::{
+    CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
+};
+use crate::predicted::{PREDICTED, Predicted};
 use crate::report::{FOUND, Report};
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Curves, SetUp};
 use crate::training::{Training, TrainingRun};
-use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
     Checksums, Derivation, Given, Journal, JournalEntry, Others, ResultFiles, notes_of_use, read_numbers,
 };
+use slipfront_study::{StudyError, TrainingError};
 
 /// Beginning of the names of copies of records.
 const RECORD: &str = "record-";
@@ -278,15 +283,22 @@ impl CalibrationFolder {
         };
         let next = self.weigh(&mut work, further, &training, &told)?;
         let sample = |points| told.calibration.sample(estimate, points);
-        let bands = bands(&set_up, &sample(PREDICTED), keys.noise, stop)?;
+        let predicted = Predicted::run(&set_up, sample(PREDICTED), keys.noise, stop)?;
+        let (bands, comparison) = (predicted.bands(), predicted.compare(&told.curves));
+        let closest = closest(&set_up, predicted.points(), &told.curves, keys.noise, stop)?;
         let within = bands.iter().zip(&told.curves);
         let findings = Findings {
             runs: keys.runs as usize,
             noise: keys.noise,
             pairs: pairs(&set_up, estimate),
-            is_refused: estimate.misfit.is_refused(),
+            is_refused: estimate.misfit.is_refused()
+                || comparison.is_refused()
+                || closest.is_some_and(|closest| closest.is_refused()),
             within_band_percent: within.map(|(band, curve)| band.holds_percent(curve)).collect(),
             misfit: estimate.misfit.clone(),
+            comparison,
+            closest,
+            instrument: self.instrument(&set_up)?,
             unknowns,
             finer,
             next,
@@ -301,6 +313,29 @@ impl CalibrationFolder {
         let text = report.write(&told.curves, &bands, &sample(SAMPLE))?;
         batch.place(Others::Go)?;
         Ok(text)
+    }
+
+    /// What the instrument passes, and what of it the records need.
+    fn instrument(&self, set_up: &SetUp) -> Result<InstrumentFindings, StudyError> {
+        let middle = set_up.middle();
+        let instrument = set_up.instrument(&middle, &set_up.conditions[0]);
+        let instrument = instrument.map_err(|source| TrainingError::Instrument {
+            point: set_up.point(&middle),
+            source,
+        })?;
+        let records = self.records.iter();
+        let of_times = records.filter(|record| record.measured.along == Measure::Time);
+        Ok(InstrumentFindings {
+            bandwidth_hz: instrument.and_then(|instrument| instrument.bandwidth()),
+            fastest_swing_hz: of_times
+                .filter_map(|record| fastest_swing(&record.measured))
+                .max_by(f64::total_cmp),
+            noise_percent: self
+                .records
+                .iter()
+                .map(|record| 100.0 * noise_share(&record.measured))
+                .collect(),
+        })
     }
 
     /// Trains with each of the further experiments beside the records, and returns how much narrower the

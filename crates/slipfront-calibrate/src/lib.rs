@@ -8,7 +8,9 @@
 //! Here every curve becomes `summaries`, every unknown is predicted from them by `regression`, and
 //! `intervals` are those that hold the truth for runs that the prediction has not seen.
 
+mod bandwidth;
 mod calibration;
+mod closest;
 mod doubts;
 mod file;
 mod findings;
@@ -26,10 +28,12 @@ mod training;
 mod unknowns;
 
 pub use calibration::{Calibration, Estimate, Pair};
+pub use closest::{Closest, closest};
 pub use file::{CalibrationFile, CalibrationKeys, SampledRecord};
 pub use folder::{CALIBRATIONS, CalibrationFolder, CalibrationProgress, CalibrationStage};
 pub use intervals::Distribution;
 pub use misfit::Misfit;
+pub use predicted::{Comparison, Predicted};
 pub use sample_points::SamplePoints;
 pub use set_up::{Conditions, Curves, SetUp};
 pub use training::{KeepRuns, Training, TrainingRun};

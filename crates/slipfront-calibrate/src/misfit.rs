@@ -5,7 +5,8 @@ use serde::Serialize;
 use slipfront_regression::{Regression, squared_distances};
 
 use crate::intervals::Distribution;
-use crate::normals::{Stream, draws, noisy, normals};
+use crate::normals::{Stream, draws, normals};
+use crate::sample_points::SamplePoints;
 use crate::scaling::{Scaling, summaries_of};
 use crate::summaries::level;
 use crate::training::Training;
@@ -14,8 +15,8 @@ use crate::training::Training;
 const MAX_DRIFT: f64 = 0.12;
 
 /// Share of good records that each of the two checks refuses.
-const REFUSED_BY_DRIFT: f64 = 0.02;
-const REFUSED_AS_FOREIGN: f64 = 0.01;
+const REFUSED_BY_DRIFT: f64 = 0.01;
+const REFUSED_AS_FOREIGN: f64 = 0.005;
 
 /// Number of the nearest runs over which the distance of a record is averaged.
 const NEAREST: usize = 5;
@@ -39,11 +40,11 @@ pub(crate) struct Check {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
     /// Drift of friction over the record, as a share of friction: an interval that holds it for all records
-    /// but 20 in 1000.
+    /// but 10 in 1000.
     pub drift: [f64; 2],
     /// Whether the interval leaves out 0.
     pub has_drift: bool,
-    /// Distance of the summaries from those of the nearest training runs, over the distance that 10 training
+    /// Distance of the summaries from those of the nearest training runs, over the distance that 5 training
     /// runs in 1000 exceed.
     pub distance: f64,
     /// Mean of the second half of the record whose mean lies farthest outside of the means of the training
@@ -87,11 +88,13 @@ fn drift_at(share: f64) -> f64 {
 }
 
 impl Check {
-    /// Learns drift from the training runs, each with a drift of its own; of every record there are the
-    /// noise, as a share of friction, and the unit of friction in its summaries.
+    /// Learns drift from the training runs, each with a drift of its own; of every record there are the places,
+    /// and the unit of friction in its summaries.
     pub(crate) fn learn(
         training: &Training,
-        [noise, units]: [&[f64]; 2],
+        grids: &[SamplePoints],
+        noise: f64,
+        units: &[f64],
         scaling: &Scaling,
         table: &[f64],
     ) -> Self {
@@ -104,12 +107,12 @@ impl Check {
             .par_iter()
             .enumerate()
             .map(|(run, curves)| {
-                let records = curves.iter().zip(noise).enumerate();
-                let records = records.map(|(record, (curve, &noise))| {
+                let records = curves.iter().zip(grids).enumerate();
+                let records = records.map(|(record, (curve, grid))| {
                     let generated: Vec<f64> = normals(Stream::DriftNoise, run, record)
                         .take(curve.len())
                         .collect();
-                    let record_of = |curve: &[f64]| noisy(curve, noise, generated.iter().copied());
+                    let record_of = |curve: &[f64]| grid.noisy(curve, noise, generated.iter().copied());
                     let drifting = record_of(&drifting(curve, drift_at(drifts[run])));
                     (drifting, level(&record_of(curve)))
                 });
@@ -131,7 +134,7 @@ impl Check {
             drifts,
             table: table.to_vec(),
             far: nearest[place.min(runs - 1)],
-            levels: (0..noise.len())
+            levels: (0..grids.len())
                 .map(|record| {
                     let levels = levels.iter().map(|levels| levels[record]);
                     levels.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], level| {

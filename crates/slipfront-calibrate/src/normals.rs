@@ -13,6 +13,8 @@ pub(crate) enum Stream {
     DriftNoise = 2,
     /// Runs that are drawn from an estimate, and noise of their curves.
     Predicted = 3,
+    /// Search of the closest curve.
+    Closest = 4,
 }
 
 /// The numbers of one record of one training run.
@@ -25,14 +27,4 @@ pub(crate) fn draws(stream: Stream, run: usize, record: usize) -> Draws {
 pub(crate) fn normals(stream: Stream, run: usize, record: usize) -> impl Iterator<Item = f64> {
     let mut draws = draws(stream, run, record);
     std::iter::repeat_with(move || draws.normal())
-}
-
-/// Friction with noise of this share of its mean.
-pub(crate) fn noisy(curve: &[f64], noise: f64, normals: impl Iterator<Item = f64>) -> Vec<f64> {
-    let deviation = noise * curve.iter().sum::<f64>().abs() / curve.len() as f64;
-    curve
-        .iter()
-        .zip(normals)
-        .map(|(y, z)| y + deviation * z)
-        .collect()
 }

@@ -1,22 +1,40 @@
-//! Predictions of the calibrated model for the records: runs at points that are drawn from the estimate.
+//! Predictions of the calibrated model for the records: runs at points that are drawn from the estimate, and how
+//! the records compare with them.
 
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
+use serde::Serialize;
+use slipfront_regression::distance_from;
 
-use crate::normals::{Stream, noisy, normals};
+use crate::normals::{Stream, normals};
 use crate::set_up::{Curves, SetUp};
-use crate::summaries::quantiles;
+use crate::summaries::{checked, checked_groups, level, quantiles};
 use slipfront_study::{StudyError, TrainingError};
 
 /// Number of the surface of the first run; training draws from 1 on.
 const FIRST_SURFACE: u64 = 1 << 32;
 
-/// Number of runs from which a band is made.
-pub(crate) const PREDICTED: usize = 60;
+/// Number of runs of a prediction.
+pub(crate) const PREDICTED: usize = 120;
 
 /// Shares of the runs below the lines of a band.
 const LINES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// Share of good records that the comparison refuses, at most.
+const REFUSED: f64 = 0.02;
+
+/// Number of the nearest runs from which a distance between curves is taken.
+const NEAREST: usize = 3;
+
+/// Runs of the calibrated model, noise included.
+#[derive(Clone, Debug)]
+pub struct Predicted {
+    /// Points of the ranges, for every run.
+    points: Vec<Vec<f64>>,
+    /// Friction of every record, for every run.
+    curves: Vec<Curves>,
+}
 
 /// Friction of a record as the calibrated model has it, noise included: 90 % of the runs at every place, and
 /// their median.
@@ -25,6 +43,25 @@ pub(crate) struct Band {
     pub(crate) low: Vec<f64>,
     pub(crate) median: Vec<f64>,
     pub(crate) high: Vec<f64>,
+}
+
+/// Records beside the runs of the calibrated model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Share of the runs that are at least as far from the others as the records are.
+    pub rank: f64,
+    /// Distance of the records from the runs, over the one that half of the runs exceed.
+    pub distance: f64,
+    /// The groups of numbers in which the records differ most from the runs: names in words, and the mean square
+    /// of their distances in standard deviations of the runs.
+    pub differs_in: Vec<(&'static str, f64)>,
+}
+
+impl Comparison {
+    /// Whether the calibrated model does not make such records.
+    pub fn is_refused(&self) -> bool {
+        self.rank < REFUSED
+    }
 }
 
 impl Band {
@@ -50,38 +87,114 @@ impl Band {
     }
 }
 
-/// The bands of all records at these points of the ranges; `noise` is that of a value, as a share of the mean
-/// friction.
-pub(crate) fn bands(
-    set_up: &SetUp,
-    points: &[Vec<f64>],
-    noise: f64,
-    stop: &AtomicBool,
-) -> Result<Vec<Band>, StudyError> {
-    let curves: Vec<Result<Option<Curves>, TrainingError>> = points
-        .par_iter()
-        .enumerate()
-        .with_max_len(1)
-        .map(|(run, point)| {
-            let curves = set_up.curves(point, FIRST_SURFACE + run as u64, stop)?;
-            let with_noise = |curves: Curves| {
-                let records = curves.iter().zip(&set_up.conditions).enumerate();
-                let noisy = records.map(|(record, (curve, conditions))| {
-                    let noise = noise * conditions.grid.noise_share();
-                    noisy(curve, noise, normals(Stream::Predicted, run, record))
-                });
-                noisy.collect()
-            };
-            Ok(curves.map(with_noise))
-        })
-        .collect();
-    let curves: Option<Vec<Curves>> = curves.into_iter().collect::<Result<_, _>>()?;
-    let curves = curves.ok_or(StudyError::Interrupted)?;
-    let band = |record: usize| {
-        let of_record: Vec<&Vec<f64>> = curves.iter().map(|curves| &curves[record]).collect();
-        Band::of(&of_record)
-    };
-    Ok((0..set_up.conditions.len()).map(band).collect())
+impl Predicted {
+    /// Runs these points of the ranges; `noise` is that of a value, as a share of the mean friction.
+    ///
+    /// # Errors
+    /// When a run cannot be made, and after a stop.
+    pub fn run(
+        set_up: &SetUp,
+        points: Vec<Vec<f64>>,
+        noise: f64,
+        stop: &AtomicBool,
+    ) -> Result<Self, StudyError> {
+        let curves: Vec<Result<Option<Curves>, TrainingError>> = points
+            .par_iter()
+            .enumerate()
+            .with_max_len(1)
+            .map(|(run, point)| {
+                let curves = set_up.curves(point, FIRST_SURFACE + run as u64, stop)?;
+                let with_noise = |curves: Curves| {
+                    let records = curves.iter().zip(&set_up.conditions).enumerate();
+                    let noisy = records.map(|(record, (curve, conditions))| {
+                        conditions
+                            .grid
+                            .noisy(curve, noise, normals(Stream::Predicted, run, record))
+                    });
+                    noisy.collect()
+                };
+                Ok(curves.map(with_noise))
+            })
+            .collect();
+        let curves: Option<Vec<Curves>> = curves.into_iter().collect::<Result<_, _>>()?;
+        let curves = curves.ok_or(StudyError::Interrupted)?;
+        Ok(Self { points, curves })
+    }
+
+    /// Points of the ranges, for every run.
+    pub(crate) fn points(&self) -> &[Vec<f64>] {
+        &self.points
+    }
+
+    /// The bands of all records.
+    pub(crate) fn bands(&self) -> Vec<Band> {
+        let records = self.curves.first().map_or(0, Vec::len);
+        let band = |record: usize| {
+            let of_record: Vec<&Vec<f64>> = self.curves.iter().map(|curves| &curves[record]).collect();
+            Band::of(&of_record)
+        };
+        (0..records).map(band).collect()
+    }
+
+    /// Compares records with the runs, by numbers of which most have no part in the estimate.
+    pub fn compare(&self, records: &[Vec<f64>]) -> Comparison {
+        let (rows, own) = self.all_numbers(records);
+        let found = distance_from(&rows, &self.points, &own.concat());
+        let names: Vec<&'static str> = checked_groups().chain([CURVE]).collect();
+        let mut begin = 0;
+        let mut differs_in: Vec<(&'static str, f64)> = own
+            .iter()
+            .enumerate()
+            .map(|(number, group)| {
+                let part = &found.deviations[begin..begin + group.len()];
+                begin += group.len();
+                let mean_square = part.iter().map(|z| z * z).sum::<f64>() / part.len() as f64;
+                (names[number % names.len()], mean_square)
+            })
+            .collect();
+        differs_in.sort_by(|one, other| other.1.total_cmp(&one.1));
+        Comparison {
+            rank: found.rank,
+            distance: found.ratio,
+            differs_in,
+        }
+    }
+
+    /// The numbers of every run, and those of records in groups.
+    fn all_numbers(&self, records: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let runs = self.curves.par_iter().enumerate();
+        let rows = runs.map(|(run, curves)| self.numbers(curves, Some(run)).concat());
+        (rows.collect(), self.numbers(records, None))
+    }
+
+    /// The numbers of some curves, in groups: those of every record, and its distance from the nearest runs but
+    /// for the one of this number.
+    fn numbers(&self, curves: &[Vec<f64>], but_for: Option<usize>) -> Vec<Vec<f64>> {
+        let mut groups = Vec::new();
+        for (record, curve) in curves.iter().enumerate() {
+            groups.extend(checked(curve));
+            let others = self
+                .curves
+                .iter()
+                .enumerate()
+                .filter(|(run, _)| Some(*run) != but_for);
+            let mut distances: Vec<f64> = others.map(|(_, other)| apart(curve, &other[record])).collect();
+            distances.sort_by(f64::total_cmp);
+            let nearest = distances.iter().take(NEAREST).sum::<f64>() / NEAREST as f64;
+            let size = level(curve).abs().max(f64::MIN_POSITIVE);
+            groups.push(vec![libm::log((nearest / size).max(1e-9))]);
+        }
+        groups
+    }
+}
+
+/// Name of the group that compares the curves themselves.
+const CURVE: &str = "curve as a whole";
+
+/// Root mean square of the difference of two curves.
+fn apart(one: &[f64], other: &[f64]) -> f64 {
+    let squares: f64 = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();
+    (squares / one.len() as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -2,13 +2,14 @@
 
 use std::io::Write;
 
-use slipfront_base::number_format::{count, four_digits, in_print, si_prefix};
+use slipfront_base::number_format::{count, four_digits, in_print, si_prefix, with_si_prefix};
 use slipfront_base::text::{COLUMNS, wrapped};
 use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
-use crate::findings::{Findings, OnFinerBlocks, UnknownEstimate};
+use crate::closest::Closest;
+use crate::findings::{Findings, InstrumentFindings, OnFinerBlocks, UnknownEstimate};
 use crate::predicted::{Band, PREDICTED};
 use crate::set_up::{Conditions, SetUp};
 use slipfront_study::StudyError;
@@ -200,12 +201,9 @@ fn in_words(found: &Findings) -> String {
         ));
     }
     if !found.is_refused {
-        let [low, high] = found.misfit.drift.map(|drift| four_digits(100.0 * drift));
-        text += &paragraph(&format!(
-            "Nothing speaks against the model: a drift of friction over the records lies between {low} and {high} %, and they are as near to \
-             training runs as these are to each other."
-        ));
+        text += &paragraph(&accepted(found));
     }
+    text += &paragraph(&instrument(found));
     for (number, percent) in found.within_band_percent.iter().enumerate() {
         text += &paragraph(&format!(
             "{:.0} % of the values of record {} lie within the band that holds 90 % of the runs of the calibrated model.",
@@ -251,8 +249,21 @@ fn refusal(found: &Findings) -> String {
     }
     if found.misfit.distance > 1.0 {
         reasons.push(format!(
-            "they are {} times as far from the training runs as 99 % of these are from each other",
+            "they are {} times as far from the training runs as 99.5 % of these are from each other",
             four_digits(found.misfit.distance)
+        ));
+    }
+    reasons.extend(
+        found
+            .closest
+            .filter(Closest::is_refused)
+            .map(|closest| differences(&closest)),
+    );
+    if found.comparison.is_refused() {
+        let names = found.comparison.differs_in.iter().take(2).map(|(name, _)| *name);
+        reasons.push(format!(
+            "they differ from runs of the calibrated model, most in {}",
+            names.collect::<Vec<_>>().join(" and ")
         ));
     }
     if found.misfit.is_outside() {
@@ -268,9 +279,86 @@ fn refusal(found: &Findings) -> String {
         ));
     }
     format!(
-        "The model does not make such records: {}. Of its own records it refuses some 4 %. Correct a drift of the sensor, look whether law, \
-         units, mount and noise are those of the experiment, and widen the ranges; the intervals below promise nothing.",
-        reasons.join(", and ")
+        "The model does not make such records: {}. Of its own records it refuses some 4 %. Correct a drift of the sensor, describe its filter \
+         in [instrument], look whether law, units, mount and noise are those of the experiment, and widen the ranges; the intervals below \
+         promise nothing.",
+        reasons.join("; ")
+    )
+}
+
+/// The differences from the closest curve, in words.
+fn differences(closest: &Closest) -> String {
+    let part = match closest.share {
+        1.0 => String::new(),
+        share => format!(" over the first {} of the records", one_over(share)),
+    };
+    let size = format!(
+        "the closest curve that was found differs{part} by {:.1} times the noise",
+        closest.noise_ratio
+    );
+    if closest.is_correlated() {
+        format!(
+            "{size}, and neighbouring values differ in the same way (correlation {:.2}, of white noise less than {:.2})",
+            closest.correlation, closest.most_correlated
+        )
+    } else {
+        size
+    }
+}
+
+/// A share such as 1/8.
+fn one_over(share: f64) -> String {
+    format!("1/{}", (1.0 / share).round())
+}
+
+/// What was looked at and does not speak against the model.
+fn accepted(found: &Findings) -> String {
+    let [low, high] = found.misfit.drift.map(|drift| four_digits(100.0 * drift));
+    let closest = match &found.closest {
+        Some(closest) => format!(
+            "the closest curve differs from them by {:.2} times the noise, which is white (correlation {:.2})",
+            closest.noise_ratio, closest.correlation
+        ),
+        None => format!(
+            "they are as near to runs of the calibrated model as these are to each other (of which {:.0} % are farther away)",
+            100.0 * found.comparison.rank
+        ),
+    };
+    format!(
+        "Nothing speaks against the model: a drift of friction over the records lies between {low} and {high} %, and {closest}."
+    )
+}
+
+/// The instrument, the fastest change of the records and their noise.
+fn instrument(found: &Findings) -> String {
+    let InstrumentFindings {
+        bandwidth_hz,
+        fastest_swing_hz,
+        noise_percent,
+    } = &found.instrument;
+    let passes = match bandwidth_hz {
+        Some(hertz) => format!(
+            "The instrument passes friction up to {}",
+            with_si_prefix(*hertz, "Hz")
+        ),
+        None => "No filter is assumed between friction and the records: the file has none in [instrument]"
+            .to_owned(),
+    };
+    let fastest = match fastest_swing_hz {
+        Some(hertz) => format!(
+            "; friction changes as fast as in a swing of {}",
+            with_si_prefix(*hertz, "Hz")
+        ),
+        None => String::new(),
+    };
+    let noise: Vec<String> = noise_percent
+        .iter()
+        .map(|percent| format!("{} %", four_digits(*percent)))
+        .collect();
+    format!(
+        "{passes}{fastest}. Values scatter about their neighbours by {} of the mean; `noise` is {} %.",
+        noise.join(", "),
+        four_digits(100.0 * found.noise)
     )
 }
 

@@ -1,5 +1,6 @@
 //! Equal steps of time or displacement at which a record and the curves of training are compared.
 
+use slipfront_run::instrument::Instrument;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::RunCurve;
 
@@ -20,6 +21,8 @@ pub struct SamplePoints {
     step: f64,
     /// Number of values of the record.
     count: usize,
+    /// Least and largest value that the instrument writes.
+    range: Option<[f64; 2]>,
 }
 
 impl SamplePoints {
@@ -34,6 +37,7 @@ impl SamplePoints {
             start,
             step,
             count,
+            range: None,
         })
     }
 
@@ -91,19 +95,52 @@ impl SamplePoints {
         self.averages(&record.x, &record.y)
     }
 
-    /// The curve of a run in the form of a record; none if the run ends before, or its friction is a torque.
-    pub(crate) fn curve(&self, curve: &RunCurve) -> Option<Vec<f64>> {
+    /// The curve of a run in the form of a record, as an instrument writes it; none if the run ends before, or its
+    /// friction is a torque.
+    pub(crate) fn curve(&self, curve: &RunCurve, instrument: Option<&Instrument>) -> Option<Vec<f64>> {
         let x = curve.along(self.along);
         // What rounding makes of the end of a run is not missed.
         if *x.last()? < self.end() - 0.5 * self.step {
             return None;
         }
-        let mut values = self.averages(x, &curve.coefficient);
-        if self.of == Measure::Force {
-            let unit = curve.unit_force?;
-            values.iter_mut().for_each(|value| *value *= unit);
+        let unit = match self.of {
+            Measure::Force => curve.unit_force?,
+            _ => 1.0,
+        };
+        let friction: Vec<f64> = curve.coefficient.iter().map(|value| value * unit).collect();
+        let Some(instrument) = instrument else {
+            return Some(self.averages(x, &friction));
+        };
+        Some(self.averages(x, &instrument.record(&curve.time, &friction)))
+    }
+
+    /// The places for records that an instrument bounds.
+    pub(crate) fn bounded_by(self, range: Option<[f64; 2]>) -> Self {
+        Self { range, ..self }
+    }
+
+    /// Standard deviation of the noise of a curve at the places, where that of a value of the record is a share of
+    /// the mean.
+    pub(crate) fn deviation(&self, curve: &[f64], noise: f64) -> f64 {
+        let share = noise / (self.merged() as f64).sqrt();
+        share * curve.iter().sum::<f64>().abs() / curve.len() as f64
+    }
+
+    /// A curve at the places with white noise whose standard deviation is the share `noise` of its mean for a
+    /// value of the record; noise does not go beyond the range of the instrument.
+    pub(crate) fn noisy(&self, curve: &[f64], noise: f64, normals: impl Iterator<Item = f64>) -> Vec<f64> {
+        let deviation = self.deviation(curve, noise);
+        let mut values: Vec<f64> = curve
+            .iter()
+            .zip(normals)
+            .map(|(y, z)| y + deviation * z)
+            .collect();
+        if let Some([low, high]) = self.range {
+            values
+                .iter_mut()
+                .for_each(|value| *value = value.clamp(low, high));
         }
-        Some(values)
+        values
     }
 
     /// Means over neighbours of y at equal steps, interpolated between the places x, which never fall.
@@ -191,8 +228,8 @@ mod tests {
             coefficient: record.y,
             unit_force: None,
         };
-        assert!(grid.curve(&run).is_some());
+        assert!(grid.curve(&run, None).is_some());
         run.time.truncate(48);
-        assert_eq!(grid.curve(&run), None);
+        assert_eq!(grid.curve(&run, None), None);
     }
 }

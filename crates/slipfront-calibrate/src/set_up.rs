@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
+use slipfront_run::instrument::{Instrument, InstrumentError, InstrumentKeys};
 use slipfront_run::run_curve::{run_curve_unless, steps_to};
 
 use crate::sample_points::SamplePoints;
@@ -30,6 +31,8 @@ pub struct SetUp {
     pub unknowns: Vec<Unknown>,
     /// The records.
     pub conditions: Vec<Conditions>,
+    /// The table `[instrument]`, if there is one.
+    pub instrument: Option<toml::Table>,
     /// Whether blocks have half the size of those of the case.
     pub is_finer: bool,
 }
@@ -38,10 +41,36 @@ pub struct SetUp {
 pub type Curves = Vec<Vec<f64>>;
 
 impl SetUp {
-    /// Settings of the unknown keys at these shares of the ranges.
+    /// Settings of the unknown keys of the case at these shares of the ranges.
     pub(crate) fn set_to(&self, shares: &[f64]) -> Vec<Override> {
         let values = self.unknowns.iter().zip(shares);
-        values.map(|(unknown, &share)| unknown.set_to(share)).collect()
+        let of_case = values.filter(|(unknown, share)| unknown.of_instrument(**share).is_none());
+        of_case.map(|(unknown, &share)| unknown.set_to(share)).collect()
+    }
+
+    /// The instrument at these shares of the ranges, for the record of these conditions; none if the file has no
+    /// such table, and no key of it is unknown.
+    ///
+    /// # Errors
+    /// When its keys are not valid there.
+    pub(crate) fn instrument(
+        &self,
+        shares: &[f64],
+        conditions: &Conditions,
+    ) -> Result<Option<Instrument>, InstrumentError> {
+        let values = self.unknowns.iter().zip(shares);
+        let unknown: toml::Table = values
+            .filter_map(|(unknown, &share)| unknown.of_instrument(share))
+            .map(|(key, value)| (key.to_owned(), value))
+            .collect();
+        if self.instrument.is_none() && unknown.is_empty() {
+            return Ok(None);
+        }
+        let mut table = self.instrument.clone().unwrap_or_default();
+        table.extend(unknown);
+        InstrumentKeys::of(&table)?
+            .instrument(conditions.grid.friction())
+            .map(Some)
     }
 
     /// The grids of the records.
@@ -73,9 +102,10 @@ impl SetUp {
     }
 
     /// Values of the unknowns at these shares, for a sentence.
-    fn point(&self, shares: &[f64]) -> String {
-        let set = self.set_to(shares);
-        set.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    pub(crate) fn point(&self, shares: &[f64]) -> String {
+        let values = self.unknowns.iter().zip(shares);
+        let set = values.map(|(unknown, &share)| unknown.set_to(share).to_string());
+        set.collect::<Vec<_>>().join(", ")
     }
 
     /// The case of a record at these shares of the ranges, over the surface that `friction.seed` draws.
@@ -138,10 +168,18 @@ impl SetUp {
                 point: self.point(shares),
                 source,
             })?;
-            let curve = grid.curve(&curve).ok_or_else(|| TrainingError::Short {
-                point: self.point(shares),
-                record: number + 1,
-            })?;
+            let instrument =
+                self.instrument(shares, conditions)
+                    .map_err(|source| TrainingError::Instrument {
+                        point: self.point(shares),
+                        source,
+                    })?;
+            let curve = grid
+                .curve(&curve, instrument.as_ref())
+                .ok_or_else(|| TrainingError::Short {
+                    point: self.point(shares),
+                    record: number + 1,
+                })?;
             curves.push(curve);
         }
         Ok(Some(curves))
@@ -157,7 +195,7 @@ impl SetUp {
             hasher.update(physics(&self.case(&middle, 0, conditions)?, None)?.as_bytes());
             hasher.update(format!("{:?}", conditions.grid).as_bytes());
         }
-        hasher.update(format!("{:?}", self.unknowns).as_bytes());
+        hasher.update(format!("{:?}{:?}", self.unknowns, self.instrument).as_bytes());
         Ok(hasher.finalize().to_hex()[..16].to_owned())
     }
 }

@@ -6,14 +6,16 @@
 //! the formulas of its numbers; they are ratios and logarithms, so that a regression on them can be nearly
 //! linear.
 
+mod check;
 mod curve;
 mod levels;
 mod loading;
 mod release;
 mod steady;
 
+use self::check::GROUPS as CHECKED;
 use self::curve::Curve;
-pub(crate) use self::curve::{level, quantiles};
+pub(crate) use self::curve::{deviation, level, quantiles};
 
 /// Smallest number of values of a curve that has summaries.
 pub(crate) const MIN_VALUES: usize = 40;
@@ -24,18 +26,41 @@ pub(crate) const MIN_VALUES: usize = 40;
 /// If there are fewer values.
 pub(crate) fn summaries(y: &[f64]) -> Vec<f64> {
     assert!(y.len() >= MIN_VALUES);
+    estimated_from(&Curve::new(y)).concat()
+}
+
+/// Names of the groups of numbers by which a record is checked, in words.
+pub(crate) fn checked_groups() -> impl Iterator<Item = &'static str> {
+    ESTIMATED.into_iter().chain(CHECKED)
+}
+
+/// The numbers by which a curve is checked: its summaries, and others that the estimate does not use, by the
+/// groups of [`checked_groups`].
+pub(crate) fn checked(y: &[f64]) -> Vec<Vec<f64>> {
     let curve = Curve::new(y);
-    let mut found = loading::summaries(&curve);
-    found.extend(release::summaries(&curve));
-    found.extend(levels::summaries(&curve));
-    found.extend(steady::summaries(&curve));
-    // A curve without friction, or without noise, has ratios that are none.
-    for value in &mut found {
-        if !value.is_finite() {
-            *value = 0.0;
-        }
-    }
-    found
+    let mut groups = estimated_from(&curve).to_vec();
+    groups.extend(check::groups(&curve).map(finite));
+    groups
+}
+
+/// Names of the groups of summaries, in words.
+const ESTIMATED: [&str; 4] = ["loading", "first fall", "levels of friction", "steady sliding"];
+
+/// The groups of summaries, in the order of [`ESTIMATED`].
+fn estimated_from(curve: &Curve) -> [Vec<f64>; 4] {
+    let groups = [
+        loading::summaries(curve),
+        release::summaries(curve),
+        levels::summaries(curve),
+        steady::summaries(curve),
+    ];
+    groups.map(finite)
+}
+
+/// The numbers, with 0 for those that are none: a curve without friction, or without noise, has such ratios.
+fn finite(numbers: Vec<f64>) -> Vec<f64> {
+    let or_zero = |number: f64| if number.is_finite() { number } else { 0.0 };
+    numbers.into_iter().map(or_zero).collect()
 }
 
 /// Number of the summaries of a curve.

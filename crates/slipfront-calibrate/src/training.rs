@@ -120,6 +120,7 @@ mod tests {
             base,
             unknowns,
             conditions: conditions.into(),
+            instrument: None,
             is_finer: false,
         }
     }

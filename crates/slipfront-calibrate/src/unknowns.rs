@@ -1,4 +1,4 @@
-//! The unknowns of a calibration: numeric keys of the case, each with a range.
+//! The unknowns of a calibration: numeric keys of the case or of the instrument, each with a range.
 
 use slipfront_case::case_file::Override;
 use sobol_burley::{NUM_DIMENSIONS, sample};
@@ -112,12 +112,22 @@ impl Unknown {
 
     /// Setting of the key to the value at a share of the range.
     pub fn set_to(&self, share: f64) -> Override {
+        Override::new(&self.key, &self.written(share))
+    }
+
+    /// The value at a share of the range as a file has it.
+    fn written(&self, share: f64) -> toml::Value {
         let value = self.at(share);
-        let value = match &self.unit {
+        match &self.unit {
             Some(unit) => toml::Value::from(format!("{value} {unit}")),
             None => toml::Value::from(value),
-        };
-        Override::new(&self.key, &value)
+        }
+    }
+
+    /// The key of the table `[instrument]` that is unknown, and its value at a share of the range; none for a key
+    /// of the case.
+    pub(crate) fn of_instrument(&self, share: f64) -> Option<(&str, toml::Value)> {
+        Some((self.key.strip_prefix("instrument.")?, self.written(share)))
     }
 }
 

@@ -194,7 +194,6 @@ macro_rules! quantities {
         /// Dimensions that have a name, for messages.
         const NAMED: &[(Dimension, &str)] = &[
             $(($dimension, $label),)*
-            (Dimension::new(1, 0, 0), "a mass"),
         ];
     };
 }
@@ -204,6 +203,8 @@ quantities! {
     Length: Dimension::new(0, 1, 0), "a length", "1 um", "m";
     /// A pressure or an elastic modulus, read into Pa.
     Pressure: Dimension::new(1, -1, -2), "a pressure", "100 kPa", "Pa";
+    /// A mass, read into kg.
+    Mass: Dimension::new(1, 0, 0), "a mass", "20 g", "kg";
     /// A density, read into kg/m^3.
     Density: Dimension::new(1, -3, 0), "a density", "10 g/cm^3", "kg/m^3";
     /// A speed, read into m/s.

@@ -165,7 +165,7 @@ impl DesignFile {
     /// When it is no TOML, has unknown keys, or values out of their bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let (project, keys): (_, DesignKeys) =
-            ProjectFile::parse(&DESIGN, DesignKeys::KEYS, text, file, name, folder)?;
+            ProjectFile::parse(&DESIGN, DesignKeys::KEYS, &[], text, file, name, folder)?;
         keys.check(&project)?;
         Ok(Self { keys, project })
     }

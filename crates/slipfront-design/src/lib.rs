@@ -8,7 +8,6 @@
 //! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on
 //! fresh surfaces.
 
-mod adaptation;
 mod design;
 mod evaluate;
 mod file;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crate::adaptation::Adaptation;
 use crate::limits::Limits;
 use crate::patch::{Draft, Form, Patch};
 use crate::slider_blocks::SliderBlocks;
+use slipfront_study::adaptation::Adaptation;
 use slipfront_study::draws::Draws;
 
 /// Number of drafts whose losses adapt the distribution of the next ones. More would tell the better

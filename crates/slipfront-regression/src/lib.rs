@@ -8,8 +8,10 @@ mod dense;
 mod fit;
 #[cfg(test)]
 mod for_tests;
+mod likeness;
 mod parameters;
 mod regression;
 
 pub use dense::squared_distances;
+pub use likeness::{Distance, distance_from};
 pub use regression::{Prediction, Regression};

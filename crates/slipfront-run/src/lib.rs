@@ -20,6 +20,7 @@ pub mod fields;
 pub mod folder_error;
 mod friction_unit;
 mod front;
+pub mod instrument;
 pub mod leg;
 pub mod manifest;
 pub mod measured;

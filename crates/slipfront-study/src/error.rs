@@ -12,6 +12,7 @@ use slipfront_case::case_file::CaseError;
 use slipfront_case::texture_file::TextureFileError;
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::instrument::InstrumentError;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
 
@@ -231,6 +232,8 @@ impl StudyError {
 pub enum TrainingError {
     #[error("the unknowns {point}: {source}")]
     Case { point: String, source: Box<CaseError> },
+    #[error("the unknowns {point}: {source}")]
+    Instrument { point: String, source: InstrumentError },
     #[error("the unknowns {point}: {source}; narrow the ranges")]
     Run { point: String, source: RunError },
     #[error(

@@ -7,6 +7,7 @@
 //!
 //! Every finished run is a line of the journal. A study that was stopped is continued from there.
 
+pub mod adaptation;
 mod anisotropy;
 mod answer;
 pub mod axis;

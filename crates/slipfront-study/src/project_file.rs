@@ -63,14 +63,15 @@ pub struct ProjectFile {
 }
 
 impl ProjectFile {
-    /// Reads a file called `file` in messages, whose own table has the keys `own`; a base case that it names
-    /// stands relative to `folder`.
+    /// Reads a file called `file` in messages, whose own table has the keys `own`, and whose `further` tables
+    /// are left to [`table`](Self::table); a base case that it names stands relative to `folder`.
     ///
     /// # Errors
     /// When it is no TOML, or has unknown keys.
     pub fn parse<Keys: DeserializeOwned>(
         kind: &'static ProjectKind,
         own: &[Key],
+        further: &[&str],
         text: &str,
         file: &str,
         name: &str,
@@ -84,12 +85,12 @@ impl ProjectFile {
         };
         let base = read_base(&mut tables, file, folder)?;
         let keys = tables.read_with(kind.table, own)?;
+        for table in further {
+            tables.root.remove(*table);
+        }
         if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
-            let sentence = unknown_key(
-                key.get_ref(),
-                &format!("a {} file", kind.name),
-                &["base", kind.table],
-            );
+            let known = [&["base", kind.table], further].concat();
+            let sentence = unknown_key(key.get_ref(), &format!("a {} file", kind.name), &known);
             return Err(source.error_at(key.span(), sentence).into());
         }
         let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
@@ -112,6 +113,24 @@ impl ProjectFile {
     /// When the base case is not valid, or a file that it names cannot be read.
     pub fn given(&self) -> Result<Given, StudyError> {
         given(&self.base, &self.table)
+    }
+
+    /// A table of the file beside the case and the project's own.
+    ///
+    /// # Errors
+    /// When the file has something else of that name.
+    pub fn table(&self, name: &str) -> Result<Option<&toml::Table>, CaseError> {
+        let given = self.table.get(name);
+        if given.is_some_and(|given| !given.is_table()) {
+            let sentence = format!("`{name}` must be a table: write its keys below a line [{name}]");
+            return Err(self.source.error(name, sentence));
+        }
+        Ok(given.and_then(toml::Value::as_table))
+    }
+
+    /// An error about a further table of the file.
+    pub fn error_in_table(&self, name: &str, sentence: String) -> CaseError {
+        self.source.error(name, sentence)
     }
 
     /// An error about a key of the project's own table.

@@ -79,7 +79,7 @@ pub(super) fn running_mean(y: &[f64], w: usize) -> Vec<f64> {
 }
 
 /// Standard deviation about the mean, with n in the denominator.
-pub(super) fn deviation(values: &[f64]) -> f64 {
+pub(crate) fn deviation(values: &[f64]) -> f64 {
     let middle = mean(values);
     let squares: f64 = values
         .iter()

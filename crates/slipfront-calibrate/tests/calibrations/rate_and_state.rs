@@ -167,6 +167,7 @@ fn set_up() -> SetUp {
             overrides: Vec::new(),
             grid: SamplePoints::of(&record).unwrap(),
         }],
+        instrument: None,
         is_finer: false,
     }
 }

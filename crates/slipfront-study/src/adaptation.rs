@@ -4,11 +4,11 @@
 //! adaptation evolution strategy, IEEE Transactions on Evolutionary Computation 21 (2017) 746-759,
 //! doi:10.1109/TEVC.2017.2680320, with the weights and constants given there.
 
-use slipfront_study::draws::Draws;
+use crate::draws::Draws;
 
 /// A normal distribution of vectors x = m + s M z, where z are standard normal numbers.
 #[derive(Debug)]
-pub(crate) struct Adaptation {
+pub struct Adaptation {
     /// The mean m.
     mean: Vec<f64>,
     /// The length s of a step.
@@ -21,7 +21,7 @@ pub(crate) struct Adaptation {
 
 impl Adaptation {
     /// A distribution with this mean, and this deviation in every direction.
-    pub(crate) fn new(mean: Vec<f64>, step: f64) -> Self {
+    pub fn new(mean: Vec<f64>, step: f64) -> Self {
         let n = mean.len();
         let mut matrix = vec![0.0; n * n];
         matrix
@@ -37,12 +37,12 @@ impl Adaptation {
     }
 
     /// Length s of a step.
-    pub(crate) fn step(&self) -> f64 {
+    pub fn step(&self) -> f64 {
         self.step
     }
 
     /// Standard normal numbers z, and the vector x that they give.
-    pub(crate) fn draw(&self, draws: &mut Draws) -> (Vec<f64>, Vec<f64>) {
+    pub fn draw(&self, draws: &mut Draws) -> (Vec<f64>, Vec<f64>) {
         let z: Vec<f64> = self.mean.iter().map(|_| draws.normal()).collect();
         let x = self.mean.iter().zip(self.times(&z));
         (z.clone(), x.map(|(mean, y)| mean + self.step * y).collect())
@@ -66,10 +66,9 @@ impl Adaptation {
     /// c_s = (mu_e + 2)/(n + mu_e + 5),   d_s = 1 + c_s + 2 max(0, sqrt((mu_e - 1)/(n + 1)) - 1)
     /// c_1 = 2/((n + 1.3)^2 + mu_e),   c_w = min(1 - c_1, 2 (mu_e + 1/mu_e - 2)/((n + 2)^2 + mu_e))
     /// ```
-    pub(crate) fn adapt(&mut self, drafts: &[&[f64]]) {
+    pub fn adapt(&mut self, drafts: &[&[f64]]) {
         let size = self.mean.len();
         let n = size as f64;
-        // are for.
         let parents = &drafts[..drafts.len() / 2];
         let raw = |i: usize| libm::log(parents.len() as f64 + 0.5) - libm::log((i + 1) as f64);
         let sum: f64 = (0..parents.len()).map(raw).sum();

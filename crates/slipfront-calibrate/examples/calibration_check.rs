@@ -1,0 +1,519 @@
+//! Power of the check of a calibration: records that were changed in one way each, and how many of them are
+//! refused.
+//!
+//! ```console
+//! $ cargo run --release -p slipfront-calibrate --example calibration_check -- one_block 200 1
+//! ```
+//!
+//! The arguments are the set-up (`one_block`, `lattice` or `rate_and_state`), the number of records of each kind,
+//! and the number of the first record: other numbers are other records. A fourth argument names kinds that count
+//! alone, by a part of their name. Records are made apart from the library's
+//! instruments: by filters of this file, and rate and state by an integration of this file. Noise is 1 % of the
+//! mean.
+//!
+//! Prints for every kind: the share of records that is refused, by either part of the check; the share whose
+//! interval misses some truth by more than its half width; the share of those that is refused; and of the records
+//! that pass, the share of intervals that hold the truth.
+
+use std::collections::HashMap;
+use std::error::Error;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use rayon::prelude::*;
+use slipfront_calibrate::{Calibration, Conditions, Predicted, SamplePoints, SetUp, Training, Unknown};
+use slipfront_case::case::Case;
+use slipfront_case::case_file::Override;
+use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_run::run_curve::run_curve_unless;
+use slipfront_study::{Base, StudyFile};
+
+/// Standard deviation of the noise, over the mean of friction.
+const NOISE: f64 = 0.01;
+
+/// Runs that are drawn from an estimate.
+const PREDICTED: usize = 120;
+
+/// Seeds of the surfaces of records; those of training runs are small.
+const FIRST_SEED: u64 = 3_000_000_000;
+
+/// What happens to friction before it is a record.
+#[derive(Clone, Copy)]
+enum Change {
+    Nothing,
+    /// First order low-pass with this time constant, s.
+    Lag(f64),
+    /// Mean over the last of this time, s.
+    Mean(f64),
+    /// Noise times this.
+    Noise(f64),
+    /// Keys of the case that differ.
+    Law(&'static str),
+    /// Values above this quantile of the record are written as it.
+    Clipped(f64),
+    /// A number is added, as a share of the mean.
+    Offset(f64),
+    /// Friction rises by this share over the record.
+    Drift(f64),
+    /// Slip law in place of ageing.
+    SlipLaw,
+}
+
+struct Experiment {
+    set_up: SetUp,
+    runs: usize,
+    /// Names and changes of the kinds of records.
+    kinds: Vec<(&'static str, Change)>,
+    /// Whether records come from the integration of this file.
+    is_rate_and_state: bool,
+    /// Number of values of a record.
+    count: usize,
+    /// Distance of values, s.
+    spacing: f64,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let usage = "usage: calibration_check one_block|lattice|rate_and_state RECORDS FIRST [KIND]";
+    let [_, name, records, first, kinds @ ..] = arguments.as_slice() else {
+        return Err(usage.into());
+    };
+    let (records, first): (usize, usize) = (records.parse()?, first.parse()?);
+    let experiment = match name.as_str() {
+        "one_block" => one_block()?,
+        "lattice" => lattice()?,
+        "rate_and_state" => rate_and_state()?,
+        _ => return Err(usage.into()),
+    };
+    let go_on = AtomicBool::new(false);
+    let set_up = &experiment.set_up;
+    let training = Training::run(set_up, experiment.runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
+    let grids: Vec<SamplePoints> = set_up.conditions.iter().map(|one| one.grid.clone()).collect();
+    let calibration = Calibration::new(&training, &grids, NOISE);
+    println!(
+        "{name}: {records} records of each kind from {first} on, {} training runs",
+        experiment.runs
+    );
+    println!(
+        "{:28} {:>8} {:>8} {:>8} {:>8} {:>8}  {:>8}   {}",
+        "kind", "refused", "compared", "closest", "misses", "caught", "held", "differs most in"
+    );
+    for (kind, change) in &experiment.kinds {
+        if !kinds.is_empty() && !kinds.iter().any(|wanted| kind.contains(wanted.as_str())) {
+            continue;
+        }
+        let judged: Vec<Judged> = (first..first + records)
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|record| judge(&experiment, &calibration, *change, record))
+            .collect::<Result<_, String>>()?;
+        report(kind, &judged, set_up.unknowns.len());
+    }
+    Ok(())
+}
+
+struct Judged {
+    is_refused: bool,
+    by_comparison: bool,
+    by_closest: bool,
+    misses: bool,
+    held: usize,
+    differs: &'static str,
+}
+
+fn judge(
+    experiment: &Experiment,
+    calibration: &Calibration,
+    change: Change,
+    record: usize,
+) -> Result<Judged, String> {
+    let go_on = AtomicBool::new(false);
+    let set_up = &experiment.set_up;
+    let truth: Vec<f64> = uniform(record, set_up.unknowns.len())
+        .iter()
+        .map(|u| 0.1 + 0.8 * u)
+        .collect();
+    let values = record_of(experiment, change, &truth, record)?;
+    let estimate = calibration.estimate(std::slice::from_ref(&values));
+    let points = calibration.sample(&estimate, PREDICTED);
+    let predicted =
+        Predicted::run(set_up, points.clone(), NOISE, &go_on).map_err(|error| error.to_string())?;
+    let comparison = predicted.compare(std::slice::from_ref(&values));
+    let closest = slipfront_calibrate::closest(set_up, &points, std::slice::from_ref(&values), NOISE, &go_on)
+        .map_err(|error| error.to_string())?;
+    let mut held = 0;
+    let mut misses = false;
+    for (distribution, truth) in estimate.distributions.iter().zip(&truth) {
+        let [low, high] = distribution.interval(0.9);
+        held += usize::from((low..=high).contains(truth));
+        let beyond = (low - truth).max(truth - high);
+        misses |= beyond > 0.5 * (high - low);
+    }
+    let by_comparison = comparison.is_refused();
+    let by_closest = closest.is_some_and(|closest| closest.is_refused());
+    Ok(Judged {
+        is_refused: estimate.misfit.is_refused() || by_comparison || by_closest,
+        by_comparison,
+        by_closest,
+        misses,
+        held,
+        differs: comparison.differs_in[0].0,
+    })
+}
+
+fn report(kind: &str, judged: &[Judged], unknowns: usize) {
+    let share = |of: &[&Judged], is: &dyn Fn(&Judged) -> bool| {
+        100.0 * of.iter().filter(|one| is(one)).count() as f64 / of.len() as f64
+    };
+    let all: Vec<&Judged> = judged.iter().collect();
+    let missing: Vec<&Judged> = judged.iter().filter(|one| one.misses).collect();
+    let passing: Vec<&Judged> = judged.iter().filter(|one| !one.is_refused).collect();
+    let held: usize = passing.iter().map(|one| one.held).sum();
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    for one in judged.iter().filter(|one| one.by_comparison) {
+        *counts.entry(one.differs).or_default() += 1;
+    }
+    let most = counts.into_iter().max_by_key(|(name, count)| (*count, *name));
+    println!(
+        "{kind:28} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:7.1} %   {}",
+        share(&all, &|one| one.is_refused),
+        share(&all, &|one| one.by_comparison),
+        share(&all, &|one| one.by_closest),
+        share(&all, &|one| one.misses),
+        share(&missing, &|one| one.is_refused),
+        100.0 * held as f64 / (passing.len() * unknowns) as f64,
+        most.map_or("", |(name, _)| name)
+    );
+}
+
+/// A record of this truth, changed, with noise, in the form in which it is compared.
+fn record_of(
+    experiment: &Experiment,
+    change: Change,
+    truth: &[f64],
+    record: usize,
+) -> Result<Vec<f64>, String> {
+    let conditions = &experiment.set_up.conditions[0];
+    let (times, fine) = if experiment.is_rate_and_state {
+        let fine = friction(truth, matches!(change, Change::SlipLaw));
+        let dt = experiment.spacing / STEPS as f64;
+        ((0..fine.len()).map(|k| k as f64 * dt).collect(), fine)
+    } else {
+        run(experiment, change, truth, record)?
+    };
+    let dt = times[1] - times[0];
+    let filtered = match change {
+        Change::Lag(constant) => lagged(&fine, dt, constant),
+        Change::Mean(width) => running_mean(&fine, (width / dt).round() as usize),
+        _ => fine,
+    };
+    let at = |time: f64| {
+        let place = (time / dt).min((filtered.len() - 1) as f64);
+        let before = (place as usize).min(filtered.len() - 2);
+        filtered[before] + (place - before as f64) * (filtered[before + 1] - filtered[before])
+    };
+    let x: Vec<f64> = (0..experiment.count)
+        .map(|k| k as f64 * experiment.spacing)
+        .collect();
+    let plain: Vec<f64> = x.iter().map(|x| at(*x)).collect();
+    let mean = plain.iter().sum::<f64>() / plain.len() as f64;
+    let factor = if let Change::Noise(factor) = change {
+        factor
+    } else {
+        1.0
+    };
+    let offset = if let Change::Offset(offset) = change {
+        offset * mean
+    } else {
+        0.0
+    };
+    let drift = if let Change::Drift(drift) = change {
+        drift
+    } else {
+        0.0
+    };
+    let mut state = (record as u64 + 7).wrapping_mul(0xE703_7ED1_A0B4_28DB);
+    let last = (plain.len() - 1) as f64;
+    let mut y: Vec<f64> = plain
+        .iter()
+        .enumerate()
+        .map(|(i, y)| {
+            y * (1.0 + drift * i as f64 / last) + offset + factor * NOISE * mean * normal(&mut state)
+        })
+        .collect();
+    if let Change::Clipped(quantile) = change {
+        let mut sorted = y.clone();
+        sorted.sort_by(f64::total_cmp);
+        let bound = sorted[(quantile * last) as usize];
+        y.iter_mut().for_each(|y| *y = y.min(bound));
+    }
+    Ok(conditions.grid.record(&measured(x, y)))
+}
+
+/// Times and friction of every step of a run of this truth.
+fn run(
+    experiment: &Experiment,
+    change: Change,
+    truth: &[f64],
+    record: usize,
+) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let set_up = &experiment.set_up;
+    let mut conditions = set_up.conditions[0].clone();
+    if let Change::Law(keys) = change {
+        let table: toml::Table = keys.parse().map_err(|error: toml::de::Error| error.to_string())?;
+        conditions
+            .overrides
+            .extend(slipfront_study::axis::overrides(&table));
+    }
+    let case = set_up
+        .case(truth, FIRST_SEED + record as u64, &conditions)
+        .map_err(|error| error.to_string())?;
+    let curve = run_curve_unless(&case, Measure::Time, conditions.grid.end(), &|| false).ok_or("given up")?;
+    let curve = curve.map_err(|error| error.to_string())?;
+    Ok((curve.time, curve.coefficient))
+}
+
+/// A record of coefficients over time.
+fn measured(x: Vec<f64>, y: Vec<f64>) -> MeasuredRecord {
+    MeasuredRecord {
+        x,
+        y,
+        along: Measure::Time,
+        of: Measure::Coefficient,
+        took: None,
+        footer: None,
+        averaged: None,
+    }
+}
+
+/// A low-pass of first order by Euler's backward method.
+fn lagged(y: &[f64], dt: f64, constant: f64) -> Vec<f64> {
+    let mut x = y[0];
+    y.iter()
+        .map(|y| {
+            x += dt / (constant + dt) * (y - x);
+            x
+        })
+        .collect()
+}
+
+fn running_mean(y: &[f64], width: usize) -> Vec<f64> {
+    let before = |i: usize| (i + 1).saturating_sub(width);
+    (0..y.len())
+        .map(|i| y[before(i)..=i].iter().sum::<f64>() / (i + 1 - before(i)) as f64)
+        .collect()
+}
+
+fn base(text: &str) -> Result<Base, Box<dyn Error>> {
+    Ok(StudyFile::parse(text, "base", "base", Path::new(""))?.base)
+}
+
+/// An experiment with records of so many values at this distance in s.
+fn experiment(
+    base: Base,
+    unknowns: Vec<Unknown>,
+    count: usize,
+    spacing: f64,
+) -> Result<Experiment, Box<dyn Error>> {
+    let x: Vec<f64> = (0..count).map(|k| k as f64 * spacing).collect();
+    let grid = SamplePoints::of(&measured(x, vec![0.0; count])).ok_or("no places")?;
+    let conditions = vec![Conditions {
+        overrides: Vec::<Override>::new(),
+        grid,
+    }];
+    Ok(Experiment {
+        set_up: SetUp {
+            base,
+            unknowns,
+            conditions,
+            instrument: None,
+            is_finer: false,
+        },
+        runs: 600,
+        kinds: Vec::new(),
+        is_rate_and_state: false,
+        count,
+        spacing,
+    })
+}
+
+/// Changes that any record can have.
+const COMMON: [(&str, Change); 6] = [
+    ("good", Change::Nothing),
+    ("noise three times", Change::Noise(3.0)),
+    ("clipped at the 90 % quantile", Change::Clipped(0.9)),
+    ("offset of 10 %", Change::Offset(0.1)),
+    ("drift of 3 %", Change::Drift(0.03)),
+    ("drift of -3 %", Change::Drift(-0.03)),
+];
+
+/// Stick-slip of a rigid slider on a spring: the case of the paper on paper.
+fn one_block() -> Result<Experiment, Box<dyn Error>> {
+    let text = "[base]\nslider = { blocks = [1, 1], block_size = '4 cm', density = '479.7 kg/m^3', young_modulus = '11.2 kPa' }\n\
+                load.pressure = '188.2 Pa'\ndrive.speed = '1.1 mm/s'\ntime.step = 0.4\n\
+                friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }";
+    let unknowns = vec![
+        Unknown::new("friction.mu_static", 0.2, 0.6, false)?,
+        Unknown::new("friction.r_star", 0.5, 0.98, false)?,
+        Unknown::new("slider.damping_rate", 1.0, 100.0, true)?.in_unit("1/s"),
+        Unknown::new("drive.total_stiffness", 80.0, 350.0, true)?.in_unit("N/m"),
+    ];
+    // 4 s, 200 values a second, which become means of two.
+    let mut made = experiment(base(text)?, unknowns, 800, 0.005)?;
+    made.kinds = COMMON.to_vec();
+    made.kinds.extend([
+        (
+            "low-pass 20 Hz",
+            Change::Lag(1.0 / (std::f64::consts::TAU * 20.0)),
+        ),
+        (
+            "low-pass 10 Hz",
+            Change::Lag(1.0 / (std::f64::consts::TAU * 10.0)),
+        ),
+        ("mean over 0.1 s", Change::Mean(0.1)),
+        (
+            "ageing",
+            Change::Law("friction.ageing = { law = 'logarithmic', beta = 0.03, time_star = 1 }"),
+        ),
+        (
+            "velocity weakening",
+            Change::Law("friction.velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.5 }"),
+        ),
+    ]);
+    Ok(made)
+}
+
+/// A lattice whose strength falls with slip.
+fn lattice() -> Result<Experiment, Box<dyn Error>> {
+    let plain = Case::parse("", "plain", "", &[])?;
+    let time = plain.scales.time();
+    let text = "[base]\nslider.blocks = [16, 8]\ndrive.v_star = 0.03\ntime = { step = 0.4, duration_star = 400 }\n\
+                friction.slip_weakening = { length_star = 1 }";
+    let unknowns = vec![
+        Unknown::new("friction.mu_static", 0.3, 0.9, false)?,
+        Unknown::new("friction.r_star", 0.3, 0.9, false)?,
+        Unknown::new("slider.omega_star", 0.03, 0.5, true)?,
+        Unknown::new("drive.stiffness_star", 0.26, 0.53, true)?,
+    ];
+    let mut made = experiment(base(text)?, unknowns, 400, time)?;
+    made.runs = 1000;
+    made.kinds = COMMON.to_vec();
+    made.kinds.extend([
+        // The lattice swings with a period of some 10 t*.
+        ("low-pass over 1 t*", Change::Lag(time)),
+        ("low-pass over 3 t*", Change::Lag(3.0 * time)),
+        ("mean over 8 t*", Change::Mean(8.0 * time)),
+    ]);
+    Ok(made)
+}
+
+/// Coefficient of steady sliding at the speed [`V_0`], by which forces are scaled.
+const MU_0: f64 = 0.6;
+const V_0: f64 = 0.005;
+const STIFFNESS: f64 = 1.0;
+const SPEEDS: [(f64, f64); 5] = [
+    (0.005, 600.0),
+    (0.0015, 1400.0),
+    (0.005, 1800.0),
+    (0.0015, 2600.0),
+    (0.005, 2800.0),
+];
+/// Time t* from one value of a record to the next.
+const SPACING: f64 = 8.0;
+/// Steps of the integration from one value of a record to the next.
+const STEPS: usize = 16;
+const RANGES: [[f64; 2]; 3] = [[0.005, 0.03], [0.005, 0.03], [0.3, 3.0]];
+
+/// Friction of a block without inertia under rate and state, with the law of ageing or of slip, by Runge and
+/// Kutta's method:
+///
+/// ```text
+/// dF/dt = k (V(t) - v),   v = V_0 exp((F - mu_0 - b ln(V_0 theta/D_c))/a)
+/// ageing dtheta/dt = 1 - v theta/D_c,   slip dtheta/dt = -v theta/D_c ln(v theta/D_c)
+/// ```
+fn friction(truth: &[f64], is_slip_law: bool) -> Vec<f64> {
+    let value = |j: usize| RANGES[j][0] + truth[j] * (RANGES[j][1] - RANGES[j][0]);
+    let (a, b, d_c) = (value(0) / MU_0, value(1) / MU_0, value(2));
+    let dt = SPACING / STEPS as f64;
+    let rates = |[force, state]: [f64; 2], drive: f64| {
+        let v = V_0 * ((force - 1.0 - b * (V_0 * state / d_c).ln()) / a).exp();
+        let ratio = v * state / d_c;
+        let evolution = if is_slip_law {
+            -ratio * ratio.ln()
+        } else {
+            1.0 - ratio
+        };
+        [STIFFNESS * (drive - v), evolution]
+    };
+    let moved = |from: [f64; 2], rate: [f64; 2], dt: f64| [from[0] + dt * rate[0], from[1] + dt * rate[1]];
+    let mut now = [0.0, d_c / V_0];
+    let mut values = vec![0.0];
+    for (drive, until) in SPEEDS {
+        while values.len() as f64 * dt < until + 0.5 * dt {
+            let k1 = rates(now, drive);
+            let k2 = rates(moved(now, k1, 0.5 * dt), drive);
+            let k3 = rates(moved(now, k2, 0.5 * dt), drive);
+            let k4 = rates(moved(now, k3, dt), drive);
+            let mean = |i: usize| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
+            now = moved(now, [mean(0), mean(1)], dt);
+            values.push(MU_0 * now[0]);
+        }
+    }
+    values
+}
+
+/// Steps of speed of one block under rate and state.
+fn rate_and_state() -> Result<Experiment, Box<dyn Error>> {
+    let mut program: Vec<String> = SPEEDS
+        .iter()
+        .map(|(v, until)| format!("{{ v_star = {v}, until_star = {until} }}"))
+        .collect();
+    program.push(format!("{{ v_star = {} }}", SPEEDS[4].0));
+    let text = format!(
+        "[base]\nslider = {{ blocks = [1, 1], omega_star = 0 }}\n\
+         drive = {{ program = [{}], total_stiffness_star = {STIFFNESS} }}\n\
+         friction = {{ law = 'rate_and_state', mu_static = {MU_0}, a = 0.01, b = 0.01, d_c_star = 1, v_0_star = {V_0} }}\n\
+         time = {{ step = 0.4, duration_star = 2900 }}",
+        program.join(", ")
+    );
+    let unknowns = ["friction.a", "friction.b", "friction.d_c_star"]
+        .into_iter()
+        .zip(RANGES)
+        .map(|(key, [from, to])| Unknown::new(key, from, to, false))
+        .collect::<Result<_, _>>()?;
+    let time = Case::parse("", "unit", "", &[])?.scales.time();
+    let count = friction(&[0.5; 3], false).len().div_ceil(STEPS);
+    let mut made = experiment(base(&text)?, unknowns, count, SPACING * time)?;
+    made.is_rate_and_state = true;
+    made.kinds = COMMON.to_vec();
+    made.kinds.extend([
+        ("slip law", Change::SlipLaw),
+        // At V_0 the drive moves by one unit of displacement in 200 t*.
+        ("lag of a displacement of 0.1", Change::Lag(20.0 * time)),
+        ("lag of a displacement of 0.3", Change::Lag(60.0 * time)),
+    ]);
+    Ok(made)
+}
+
+/// Pseudorandom bits (SplitMix64), unrelated to those of training.
+fn bits(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+fn unit_interval(state: &mut u64) -> f64 {
+    ((bits(state) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+}
+
+fn normal(state: &mut u64) -> f64 {
+    let radius = (-2.0 * unit_interval(state).ln()).sqrt();
+    radius * (std::f64::consts::TAU * unit_interval(state)).cos()
+}
+
+fn uniform(record: usize, count: usize) -> Vec<f64> {
+    let mut state = (record as u64 + 1).wrapping_mul(0xAEF1_7502_108E_F2D9);
+    (0..count).map(|_| unit_interval(&mut state)).collect()
+}

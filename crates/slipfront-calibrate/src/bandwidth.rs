@@ -1,0 +1,94 @@
+//! How fast friction of a record changes, and how much its values scatter.
+
+use slipfront_run::measured::MeasuredRecord;
+
+use crate::summaries::quantiles;
+use slipfront_study::statistics::mean;
+
+/// Standard deviations of the noise by which friction has to change before it counts as a change.
+const CHANGE: f64 = 12.0;
+
+/// Standard deviation of the noise of a record, by its second differences: it is 1/sqrt(6) of theirs where
+/// friction is straight over three values, and half of those of a normal distribution exceed 0.6745 standard
+/// deviations.
+fn noise(y: &[f64]) -> f64 {
+    let second = y.windows(3).map(|y| (y[0] - 2.0 * y[1] + y[2]).abs());
+    quantiles(&second.collect::<Vec<_>>(), [0.5])[0] / (0.6745 * 6.0_f64.sqrt())
+}
+
+/// Standard deviation of the noise of a record over its mean friction.
+pub(crate) fn noise_share(record: &MeasuredRecord) -> f64 {
+    noise(&record.y) / mean(&record.y).abs()
+}
+
+/// Frequency in Hz of a swing over the whole range of friction that changes as fast as a record over time does at
+/// most: `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by more than
+/// noise can; none if it never does.
+pub(crate) fn fastest_swing(record: &MeasuredRecord) -> Option<f64> {
+    let (x, y) = (&record.x, &record.y);
+    let [low, high] = quantiles(y, [0.0, 1.0]);
+    let least = CHANGE * noise(y);
+    let mut distance = 1;
+    while distance < y.len() {
+        let rates = (distance..y.len()).filter_map(|k| {
+            let change = (y[k] - y[k - distance]).abs();
+            let time = x[k] - x[k - distance];
+            (change > least && time > 0.0).then(|| change / time)
+        });
+        if let Some(fastest) = rates.max_by(f64::total_cmp) {
+            return Some(fastest / (std::f64::consts::PI * (high - low)));
+        }
+        distance *= 2;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront_run::measured::Measure;
+
+    use super::*;
+    use crate::normals::{Stream, normals};
+
+    fn record(y: Vec<f64>) -> MeasuredRecord {
+        MeasuredRecord {
+            x: (0..y.len()).map(|k| 1e-3 * k as f64).collect(),
+            y,
+            along: Measure::Time,
+            of: Measure::Coefficient,
+            took: None,
+            footer: None,
+            averaged: None,
+        }
+    }
+
+    /// A swing of 14 Hz and amplitude 0.1 about 0.5, every millisecond. Its rate over 8 ms, in which it exceeds
+    /// the noise twelve times, is that at the steepest place but for (2 pi 14 0.004)^2/6 = 2 %, and noise adds
+    /// some 3 standard deviations over such a change.
+    #[test]
+    fn a_swing_has_its_frequency_and_its_noise() {
+        let swing = |k: usize| 0.5 + 0.1 * (std::f64::consts::TAU * 0.014 * k as f64).sin();
+        let noise = normals(Stream::Noise, 1, 0);
+        let found = record(
+            (0..2000)
+                .map(swing)
+                .zip(noise)
+                .map(|(y, z)| y + 0.005 * z)
+                .collect(),
+        );
+        let frequency = fastest_swing(&found).unwrap();
+        assert!((frequency / 14.0 - 1.0).abs() < 0.3, "{frequency}");
+        // 2000 values tell a deviation to 2 %; curvature of the swing adds to it, 0.1 (2 pi 0.014)^2 to 0.012.
+        let share = noise_share(&found);
+        assert!((share / 0.01 - 1.0).abs() < 0.1, "{share}");
+    }
+
+    #[test]
+    fn noise_alone_has_no_swing() {
+        let noise = normals(Stream::Noise, 1, 0).take(500);
+        assert_eq!(
+            fastest_swing(&record(noise.map(|z| 1.0 + 0.01 * z).collect())),
+            None
+        );
+    }
+}

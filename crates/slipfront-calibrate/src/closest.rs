@@ -1,0 +1,255 @@
+//! The curve of the model that lies closest to records, where the unknowns determine it: without random
+//! coefficients there is one whose difference from a good record is noise.
+
+use std::sync::atomic::AtomicBool;
+
+use rayon::prelude::*;
+use serde::Serialize;
+use slipfront_study::StudyError;
+use slipfront_study::adaptation::Adaptation;
+use slipfront_study::draws::Draws;
+use slipfront_study::statistics::mean;
+
+use crate::normals::{Stream, draws};
+use crate::set_up::{Curves, SetUp};
+use crate::summaries::deviation;
+
+/// Largest ratio of the differences from the closest curve to the noise that the file states: intervals for less
+/// noise are too narrow.
+const MOST_NOISE: f64 = 1.2;
+
+/// Standard errors by which differences of neighbouring values may be correlated. Noise is by more than half of
+/// them, one time in 40, and a search that ends near the closest curve leaves the rest.
+const MOST_CORRELATED: f64 = 4.0;
+
+/// Ratio of differences to noise over a part of the records with which a search goes on to the next part.
+const NEAR: f64 = 1.5;
+
+/// Shares of the records, from their beginning, over which curves are compared one after the other: where the
+/// phases of stick-slip agree over a part, they nearly agree over twice of it.
+const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
+
+/// Number of searches, and runs of a generation.
+const SEARCHES: usize = 4;
+const DRAFTS: usize = 24;
+
+/// Generations without progress after which a search over a part ends, and the share of the distance that is
+/// progress.
+const PATIENCE: usize = 12;
+const PROGRESS: f64 = 0.002;
+
+/// Differences between records and the curve of the model that lies closest to them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Closest {
+    /// Root of their mean square, over the standard deviation of the noise that the file states.
+    pub noise_ratio: f64,
+    /// Correlation of differences of neighbouring values: 0 of white noise.
+    pub correlation: f64,
+    /// Correlation above which the differences are not taken for noise.
+    pub most_correlated: f64,
+    /// Share of the records, from their beginning, over which they were compared.
+    pub share: f64,
+}
+
+impl Closest {
+    /// Whether the records differ from the model by more than the noise.
+    pub fn is_refused(&self) -> bool {
+        self.is_noisier() || self.is_correlated()
+    }
+
+    /// Whether the differences are larger than the noise.
+    pub fn is_noisier(&self) -> bool {
+        self.noise_ratio > MOST_NOISE
+    }
+
+    /// Whether the differences are no white noise.
+    pub fn is_correlated(&self) -> bool {
+        self.correlation > self.most_correlated
+    }
+
+    /// Differences in units of the noise over this share of records.
+    fn of(differences: &[Vec<f64>], share: f64) -> Self {
+        let parts = differences
+            .iter()
+            .map(|e| &e[..(share * e.len() as f64) as usize]);
+        let all = parts.clone().flatten();
+        let count = all.clone().count() as f64;
+        let squares: f64 = all.map(|e| e * e).sum();
+        let pairs = parts.flat_map(|e| e.windows(2));
+        let products: f64 = pairs.map(|pair| pair[0] * pair[1]).sum();
+        Self {
+            noise_ratio: (squares / count).sqrt(),
+            correlation: products / squares,
+            most_correlated: MOST_CORRELATED / count.sqrt(),
+            share,
+        }
+    }
+}
+
+/// Search for the closest curve.
+struct Search<'a> {
+    set_up: &'a SetUp,
+    records: &'a [Vec<f64>],
+    /// Standard deviation of the noise of a value, as a share of the mean friction.
+    noise: f64,
+    stop: &'a AtomicBool,
+    /// Mean and standard deviation of every unknown from which a search begins.
+    begin: Vec<[f64; 2]>,
+}
+
+/// Looks for the closest curve among those of the unknowns that an estimate has drawn; none where random
+/// coefficients make curves of the same unknowns differ. A search ends where the differences are noise. `noise` is
+/// that of a value of the records, as a share of their mean friction.
+///
+/// # Errors
+/// When a run cannot be made, and after a stop.
+pub fn closest(
+    set_up: &SetUp,
+    drawn: &[Vec<f64>],
+    records: &[Vec<f64>],
+    noise: f64,
+    stop: &AtomicBool,
+) -> Result<Option<Closest>, StudyError> {
+    let begin = |j: usize| {
+        let values: Vec<f64> = drawn.iter().map(|point| point[j]).collect();
+        [mean(&values), deviation(&values)]
+    };
+    let search = Search {
+        set_up,
+        records,
+        noise,
+        stop,
+        begin: (0..set_up.unknowns.len()).map(begin).collect(),
+    };
+    let middle = set_up.middle();
+    if search.run(&middle, 1)? != search.run(&middle, 2)? {
+        return Ok(None);
+    }
+    let mut best: Option<Closest> = None;
+    for number in 0..SEARCHES {
+        let found = search.from(number)?;
+        let is_better = |best: Closest| {
+            (found.share, -found.noise_ratio) > (best.share, -best.noise_ratio) || !found.is_refused()
+        };
+        if best.is_none_or(is_better) {
+            best = Some(found);
+        }
+        if !found.is_refused() {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+impl Search<'_> {
+    fn run(&self, point: &[f64], seed: u64) -> Result<Curves, StudyError> {
+        let curves = self.set_up.curves(point, seed, self.stop);
+        curves?.ok_or(StudyError::Interrupted)
+    }
+
+    /// The closest curve of the search of this number.
+    fn from(&self, number: usize) -> Result<Closest, StudyError> {
+        let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);
+        let mut draws = draws(Stream::Closest, number, 0);
+        let mut best = self.judge(&self.run(&self.point(&vec![0.0; self.begin.len()]), 1)?, PARTS[0]);
+        for part in PARTS {
+            best = Closest {
+                noise_ratio: f64::INFINITY,
+                share: part,
+                ..best
+            };
+            let mut idle = 0;
+            while idle < PATIENCE {
+                let found = self.generation(&mut adaptation, &mut draws, part)?;
+                idle += 1;
+                if found.noise_ratio < (1.0 - PROGRESS) * best.noise_ratio {
+                    idle = 0;
+                }
+                if found.noise_ratio < best.noise_ratio {
+                    best = found;
+                }
+                let is_done = if part < 1.0 {
+                    best.noise_ratio < NEAR
+                } else {
+                    !best.is_refused()
+                };
+                if is_done {
+                    break;
+                }
+            }
+            if best.noise_ratio > NEAR {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The point of the ranges at numbers of a search.
+    fn point(&self, numbers: &[f64]) -> Vec<f64> {
+        let all = self.begin.iter().zip(numbers);
+        all.map(|([mean, deviation], x)| (mean + deviation * x).clamp(0.0, 1.0))
+            .collect()
+    }
+
+    /// The closest curve of the next generation over a part of the records.
+    fn generation(
+        &self,
+        adaptation: &mut Adaptation,
+        draws: &mut Draws,
+        part: f64,
+    ) -> Result<Closest, StudyError> {
+        let drafts: Vec<_> = (0..DRAFTS).map(|_| adaptation.draw(draws)).collect();
+        let judged: Result<Vec<Closest>, StudyError> = drafts
+            .par_iter()
+            .with_max_len(1)
+            .map(|(_, numbers)| Ok(self.judge(&self.run(&self.point(numbers), 1)?, part)))
+            .collect();
+        let mut ranked: Vec<(Closest, &[f64])> = judged?
+            .into_iter()
+            .zip(drafts.iter().map(|(z, _)| z.as_slice()))
+            .collect();
+        ranked.sort_by(|one, other| one.0.noise_ratio.total_cmp(&other.0.noise_ratio));
+        let normal: Vec<&[f64]> = ranked.iter().map(|(_, z)| *z).collect();
+        adaptation.adapt(&normal);
+        Ok(ranked[0].0)
+    }
+
+    /// Differences between the records and curves over a part, in standard deviations of the noise.
+    fn judge(&self, curves: &Curves, part: f64) -> Closest {
+        let records = self.records.iter().zip(curves).zip(&self.set_up.conditions);
+        let differences = records.map(|((record, curve), conditions)| {
+            let deviation = conditions.grid.deviation(record, self.noise);
+            record
+                .iter()
+                .zip(curve)
+                .map(|(y, f)| (y - f) / deviation)
+                .collect()
+        });
+        Closest::of(&differences.collect::<Vec<_>>(), part)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::normals::normals;
+
+    #[test]
+    fn noise_passes_and_a_wave_does_not() {
+        let noise: Vec<f64> = normals(Stream::Noise, 1, 0).take(400).collect();
+        let plain = Closest::of(&[noise.clone()], 1.0);
+        assert!(
+            !plain.is_refused() && (plain.noise_ratio - 1.0).abs() < 0.1,
+            "{plain:?}"
+        );
+        let more: Vec<f64> = noise.iter().map(|e| 1.5 * e).collect();
+        assert!(Closest::of(&[more], 1.0).is_noisier());
+        // The mean square of the wave is 0.4, which makes the correlation 0.29, and the noise 1.19 times as much.
+        let wave = noise
+            .iter()
+            .enumerate()
+            .map(|(i, e)| e + 0.9 * (0.05 * i as f64).sin());
+        let waved = Closest::of(&[wave.collect()], 1.0);
+        assert!(waved.is_correlated() && !waved.is_noisier(), "{waved:?}");
+    }
+}

@@ -1,0 +1,278 @@
+//! The measuring chain between friction and a record: load cell, filter, sampling, gain, offset and range.
+
+mod filter;
+mod keys;
+
+pub use self::keys::{InstrumentError, InstrumentKeys};
+
+use self::filter::{FirstOrder, SecondOrder, average, passed};
+
+/// The measuring chain, in SI units. The signal passes the fields in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instrument {
+    /// The load cell, a mass on its spring: its undamped frequency, Hz, and its damping ratio.
+    cell: Option<[f64; 2]>,
+    filter: Option<Filter>,
+    /// Rate at which values are taken and held, Hz.
+    sampling: Option<f64>,
+    gain: f64,
+    offset: f64,
+    /// Least and largest value of the record.
+    range: Option<[f64; 2]>,
+}
+
+/// A filter of the signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Filter {
+    /// Time constant, s.
+    FirstOrder(f64),
+    /// Order, and the frequency at which 1/sqrt(2) of an amplitude is left, Hz.
+    Butterworth(u32, f64),
+    /// Width of the window that ends at the present time, s.
+    MovingMean(f64),
+}
+
+impl Instrument {
+    /// The values that the instrument writes at the times of a signal, which rise. Before the first of them the
+    /// signal has been constant.
+    ///
+    /// Load cell and filters are exact for a signal that is straight between its values:
+    ///
+    /// ```text
+    /// load cell     x''/omega^2 + 2 zeta x'/omega + x = y,   omega^2 = stiffness/mass
+    /// first order   time x' + x = y
+    /// Butterworth   |X/Y|^2 = 1/(1 + (f/cutoff)^(2 order))
+    /// moving mean   x(t) = integral of y from t - time to t, over time
+    /// ```
+    ///
+    /// Then `gain x + offset` is bounded by the range.
+    pub fn record(&self, time: &[f64], signal: &[f64]) -> Vec<f64> {
+        let mut signal = signal.to_vec();
+        if let Some([frequency, damping]) = self.cell {
+            passed(&mut SecondOrder::new(frequency, damping), time, &mut signal);
+        }
+        match self.filter {
+            Some(Filter::FirstOrder(constant)) => passed(&mut FirstOrder::new(constant), time, &mut signal),
+            Some(Filter::Butterworth(order, cutoff)) => butterworth(order, cutoff, time, &mut signal),
+            Some(Filter::MovingMean(width)) => signal = average(time, &signal, width),
+            None => {}
+        }
+        if let Some(rate) = self.sampling {
+            signal = held(time, &signal, rate);
+        }
+        let [low, high] = self.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let written = signal
+            .iter()
+            .map(|y| (self.gain * y + self.offset).clamp(low, high));
+        written.collect()
+    }
+
+    /// Least and largest value that the instrument writes.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        self.range
+    }
+
+    /// Whether values depend on times before their own.
+    pub fn has_memory(&self) -> bool {
+        self.cell.is_some() || self.filter.is_some() || self.sampling.is_some()
+    }
+
+    /// Frequency above which the instrument passes less than 1/sqrt(2) of an amplitude, or takes no values, Hz;
+    /// none without a load cell, filter and sampling.
+    pub fn bandwidth(&self) -> Option<f64> {
+        // A mean over a width passes sin(pi f width)/(pi f width).
+        let of_filter = self.filter.map(|filter| match filter {
+            Filter::FirstOrder(constant) => 1.0 / (std::f64::consts::TAU * constant),
+            Filter::Butterworth(_, cutoff) => cutoff,
+            Filter::MovingMean(width) => MOVING_MEAN_CUTOFF / width,
+        });
+        let of_cell = self.cell.map(|[frequency, _]| frequency);
+        let of_sampling = self.sampling.map(|rate| 0.5 * rate);
+        [of_filter, of_cell, of_sampling]
+            .into_iter()
+            .flatten()
+            .min_by(f64::total_cmp)
+    }
+}
+
+/// Frequency times width at which a moving mean leaves 1/sqrt(2) of an amplitude: the first root of
+/// sin(pi f)/(pi f) = 1/sqrt(2).
+const MOVING_MEAN_CUTOFF: f64 = 0.442_946_470_689_452_34;
+
+/// Passes a signal through a Butterworth filter. Its poles lie on a circle: a pair of them is a section of
+/// second order with the damping ratio sin(pi (2 k + 1)/(2 order)), the one on the axis a section of first
+/// order.
+fn butterworth(order: u32, cutoff: f64, time: &[f64], signal: &mut [f64]) {
+    for pair in 0..order / 2 {
+        let angle = std::f64::consts::PI * f64::from(2 * pair + 1) / f64::from(2 * order);
+        passed(&mut SecondOrder::new(cutoff, libm::sin(angle)), time, signal);
+    }
+    if order % 2 == 1 {
+        passed(
+            &mut FirstOrder::new(1.0 / (std::f64::consts::TAU * cutoff)),
+            time,
+            signal,
+        );
+    }
+}
+
+/// Values that are taken at multiples of 1/rate and held until the next one.
+fn held(time: &[f64], signal: &[f64], rate: f64) -> Vec<f64> {
+    let mut after = 0;
+    let mut value_at = |place: f64| {
+        while after + 1 < time.len() && time[after] < place {
+            after += 1;
+        }
+        let before = after.saturating_sub(1);
+        let span = time[after] - time[before];
+        let share = if span > 0.0 {
+            ((place - time[before]) / span).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        signal[before] + share * (signal[after] - signal[before])
+    };
+    // A time that rounding has put just below a multiple belongs to it.
+    let tick = |time: f64| (time * rate + 1e-9).floor() / rate;
+    time.iter().map(|&time| value_at(tick(time))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use slipfront_case::quantity::{Duration, Rate};
+    use test_case::test_case;
+
+    use super::*;
+    use crate::measured::Measure;
+
+    fn instrument(keys: &str) -> Instrument {
+        InstrumentKeys::of(&keys.parse().unwrap())
+            .unwrap()
+            .instrument(Measure::Force)
+            .unwrap()
+    }
+
+    /// Amplitude of a swing of this frequency behind the instrument, from its last period of 40.
+    fn gain(keys: &str, frequency: f64) -> f64 {
+        const PER_PERIOD: usize = 1000;
+        let time: Vec<f64> = (0..40 * PER_PERIOD)
+            .map(|k| k as f64 / (PER_PERIOD as f64 * frequency))
+            .collect();
+        let signal: Vec<f64> = time.iter().map(|t| (TAU * frequency * t).sin()).collect();
+        let found = instrument(keys).record(&time, &signal);
+        let last = time.len() - PER_PERIOD;
+        let part = |of: fn(f64) -> f64| {
+            let products = time[last..].iter().zip(&found[last..]);
+            products.map(|(t, y)| y * of(TAU * frequency * t)).sum::<f64>() * 2.0 / PER_PERIOD as f64
+        };
+        part(f64::sin).hypot(part(f64::cos))
+    }
+
+    /// The textbook's amplitude of each element. A signal that is straight between 1000 values of a period has
+    /// lost (pi/1000)^2/3 of the amplitude, and so it has between up to three sections.
+    #[test_case("filter = 'first_order'\ncutoff = '20 Hz'", |f| 1.0 / (1.0 + (f / 20.0).powi(2)).sqrt(); "first order by frequency")]
+    #[test_case("filter = 'first_order'\ntime = '10 ms'", |f| 1.0 / (1.0 + (TAU * f * 0.01).powi(2)).sqrt(); "first order by time")]
+    #[test_case("filter = 'butterworth'\ncutoff = '20 Hz'", |f| 1.0 / (1.0 + (f / 20.0).powi(4)).sqrt(); "second order")]
+    #[test_case("filter = 'butterworth'\norder = 5\ncutoff = '20 Hz'", |f| 1.0 / (1.0 + (f / 20.0).powi(10)).sqrt(); "fifth order")]
+    #[test_case("filter = 'moving_mean'\ntime = '30 ms'", |f| ((PI * f * 0.03).sin() / (PI * f * 0.03)).abs(); "moving mean")]
+    #[test_case("mass = '10 g'\nstiffness = '400 N/m'\ndamping_ratio = 0.1", |f| {
+        let r = TAU * f / 200.0;
+        1.0 / ((1.0 - r * r).powi(2) + (0.2 * r).powi(2)).sqrt()
+    }; "load cell")]
+    fn swings_have_the_amplitude_of_the_textbook(keys: &str, amplitude: fn(f64) -> f64) {
+        for frequency in [2.0, 13.0, 20.0, 31.0, 47.0] {
+            let (found, exact) = (gain(keys, frequency), amplitude(frequency));
+            assert!(
+                (found - exact).abs() < 1e-5 * exact.max(1.0),
+                "{frequency} {found} {exact}"
+            );
+        }
+    }
+
+    /// A step has the exact answer of a filter of first order at any distance of the values.
+    #[test]
+    fn a_straight_signal_is_filtered_exactly() {
+        let time: Vec<f64> = (0..20).map(|k| 0.03 * f64::from(k)).collect();
+        let signal: Vec<f64> = time.iter().map(|t| 3.0 * t).collect();
+        let found = instrument("filter = 'first_order'\ntime = '10 ms'").record(&time, &signal);
+        for (t, y) in time.iter().zip(found) {
+            let exact = 3.0 * (t - 0.01 * (1.0 - (-t / 0.01).exp()));
+            assert!((y - exact).abs() < 1e-15, "{y} {exact}");
+        }
+    }
+
+    /// A resonance above the rate of the values stays bounded, and follows a slow signal.
+    #[test]
+    fn a_stiff_load_cell_changes_nothing() {
+        let time: Vec<f64> = (0..1000).map(|k| 1e-2 * f64::from(k)).collect();
+        let signal: Vec<f64> = time.iter().map(|t| t.sin()).collect();
+        let found = instrument("mass = '1 g'\nstiffness = '1 GN/m'").record(&time, &signal);
+        // The frequency is 10^6/s: a kink of the slope by 10^-2 swings by less than 10^-8.
+        assert!(
+            found
+                .iter()
+                .zip(&signal)
+                .all(|(found, exact)| (found - exact).abs() < 1e-7)
+        );
+    }
+
+    #[test]
+    fn values_are_held_corrected_and_bounded() {
+        let time: Vec<f64> = (0..=10).map(f64::from).collect();
+        let held = instrument("sampling = '0.25 Hz'").record(&time, &time);
+        assert_eq!(held, [0.0, 0.0, 0.0, 0.0, 4.0, 4.0, 4.0, 4.0, 8.0, 8.0, 8.0]);
+        let bounded = instrument("gain = 2\noffset = '-500 mN'\nrange = ['0 N', 10]").record(&time, &time);
+        assert_eq!(
+            bounded,
+            [0.0, 1.5, 3.5, 5.5, 7.5, 9.5, 10.0, 10.0, 10.0, 10.0, 10.0]
+        );
+    }
+
+    /// The cutoff of a moving mean is what its width leaves: both forms are one filter.
+    #[test]
+    fn the_bandwidth_is_the_cutoff() {
+        let cutoff = |keys: &str| instrument(keys).bandwidth().unwrap();
+        assert_eq!(
+            cutoff("filter = 'butterworth'\norder = 3\ncutoff = '20 Hz'"),
+            20.0
+        );
+        assert!((cutoff("filter = 'moving_mean'\ncutoff = '20 Hz'") - 20.0).abs() < 1e-13);
+        assert!((gain("filter = 'moving_mean'\ncutoff = '20 Hz'", 20.0) - 0.5_f64.sqrt()).abs() < 1e-5);
+        assert_eq!(
+            cutoff("sampling = '100 Hz'\nfilter = 'first_order'\ncutoff = '1 kHz'"),
+            50.0
+        );
+        assert_eq!(instrument("gain = 2").bandwidth(), None);
+    }
+
+    #[test_case("filter = 'butterworth'", "`filter`"; "no cutoff")]
+    #[test_case("filter = 'butterworth'\ntime = '1 s'", "`time`"; "Butterworth by time")]
+    #[test_case("filter = 'first_order'\ntime = '1 s'\ncutoff = '1 Hz'", "`time`"; "both")]
+    #[test_case("filter = 'first_order'\norder = 2\ncutoff = '1 Hz'", "`order`"; "order of another filter")]
+    #[test_case("filter = 'butterworth'\norder = 11\ncutoff = '1 Hz'", "`order`"; "order too high")]
+    #[test_case("cutoff = '1 Hz'", "`cutoff`"; "cutoff of no filter")]
+    #[test_case("filter = 'first_order'\ncutoff = '0 Hz'", "`cutoff`"; "cutoff of zero")]
+    #[test_case("mass = '1 g'", "`mass`"; "mass alone")]
+    #[test_case("stiffness = '1 N/m'", "`stiffness`"; "stiffness alone")]
+    #[test_case("damping_ratio = 0.1", "`damping_ratio`"; "damping of no load cell")]
+    #[test_case("mass = '1 g'\nstiffness = '1 N/m'\ndamping_ratio = 1", "`damping_ratio`"; "overdamped")]
+    #[test_case("sampling = '-1 Hz'", "`sampling`"; "negative rate")]
+    #[test_case("gain = 0", "`gain`"; "no gain")]
+    #[test_case("offset = '1 mm'", "`offset`"; "offset of another quantity")]
+    #[test_case("range = [1, 1]", "`range`"; "empty range")]
+    #[test_case("cuttoff = '1 Hz'", "unknown"; "unknown key")]
+    fn what_is_wrong_is_said(keys: &str, sentence: &str) {
+        let made =
+            InstrumentKeys::of(&keys.parse().unwrap()).and_then(|keys| keys.instrument(Measure::Force));
+        let error = made.unwrap_err().to_string();
+        assert!(error.contains(sentence), "{error}");
+    }
+
+    #[test]
+    fn units_are_those_of_cases() {
+        assert_eq!("20 Hz".parse::<Rate>().unwrap().si(), 20.0);
+        assert_eq!("10 ms".parse::<Duration>().unwrap().si(), 0.01);
+    }
+}
