@@ -85,8 +85,8 @@ impl Case {
             true => self.sheet_that_fits(lengths.reach()),
             false => format!(
                 "no single sheet stands for it, since this texture has wave lengths above a pitch, where a sheet that fits at the pitch \
-                 found {} for {}: lay the texture over the whole slider in one array with a `pitch`, for which there is one, or read the \
-                 answer as that of a free sheet",
+                 found {} for {}: lay the texture over the whole slider in one array with a `pitch`, for which there is one, or take the \
+                 answer for that of a sheet",
                 LONGER_WAVES[0], LONGER_WAVES[1]
             ),
         };
