@@ -12,7 +12,7 @@ pub(crate) enum Rest {
     /// The force that keeps the blocks moving is next to nothing, in a run in which exact rest did not come
     /// once.
     ByForce {
-        /// Whether it is so at t_n.
+        /// Whether this force is next to nothing at t_n.
         at_rest: bool,
     },
 }

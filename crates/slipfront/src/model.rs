@@ -153,8 +153,8 @@ impl Model {
         })
     }
 
-    /// Fall of strength per slip of a block in contact, `W = (S - K)/D_c` with their mean strength, in units of
-    /// `E h`; none under laws whose strength does not fall with slip.
+    /// Fall of strength per slip of a block in contact, `W = (S - K)/D_c` with the mean strength of all of
+    /// them, in units of `E h`; none under laws whose strength does not fall with slip.
     pub fn weakening(&self) -> Option<f64> {
         let law = self.friction.strength_over_slip()?;
         let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;

@@ -1,9 +1,9 @@
 //! Where the slider is so thick that it is a bulk body under its texture, and no sheet.
 //!
-//! A sheet of thickness h on a mount K answers a traction of wave number q with `K + 9/8 E h q^2` along it and
-//! `K + 3/8 E h q^2` across, a deep body with `G q/(1 - nu)` and `G q`: stress beside a texture of pitch p
-//! reaches about p deep in it, and much farther along in a thick sheet. `docs/model.md`, "Sheet and bulk
-//! body", has both.
+//! A sheet of thickness h on a mount K answers a traction of wave number q with `K + 9/8 E h q^2` along it
+//! and `K + 3/8 E h q^2` across, a deep body with `G q/(1 - nu)` and `G q`: stress beside a texture of pitch
+//! p reaches about p deep in it, and much farther along in a thick sheet. `docs/model.md`, "Thickness and
+//! mount", has both.
 
 use std::f64::consts::TAU;
 
@@ -20,15 +20,15 @@ const ROUNDING: f64 = 1e-3;
 const NU: f64 = 1.0 / 3.0;
 /// Shear modulus `G = E/(2 (1 + nu))` over Young's modulus.
 const SHEAR: f64 = 1.0 / (2.0 * (1.0 + NU));
-/// Critical size of a long strip on a rigid base in units of `mu*/w`: an eigenvalue, 2.313 to 2.319 on 400
-/// cells.
+/// Critical size of a long strip on a rigid base in units of `G/((1 - nu) w)`: an eigenvalue, which is 2.313
+/// to 2.319 on 400 cells.
 const STRIP: f64 = 2.316;
 /// Thickness over pitch, and the range of what a texture changes about static friction in a bulk body over
-/// what it changes in the sheet. A square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a height of
-/// five pitches, `w p/mu*` from 1 to 20 (`docs/model.md`).
+/// what it changes in the sheet, for a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a
+/// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/model.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
-/// Lowest and highest reduction by a band and by a patch of dimples, and by random dimples, in a sheet that
-/// fits at their pitch and in the bulk body, %.
+/// Reductions of static friction by a patch of dimples, a band of them, and random dimples: the lowest and
+/// the highest in the sheet that fits at their pitch, and in the bulk body.
 const LONGER_WAVES: [&str; 2] = ["3.1 to 8.2 %", "12.4 to 15.5 %"];
 
 /// Lengths of the textures of a case that tell whether it is a sheet, m.
@@ -47,7 +47,7 @@ impl Case {
     /// where strength falls with slip; none for a chain:
     ///
     /// ```text
-    /// L_c = 2.316 mu*/w,   mu* = G/(1 - nu),   w = (mu_s - mu_k) P/D_c
+    /// L_c = 2.316 G/((1 - nu) w),   w = (mu_s - mu_k) P/D_c
     /// ```
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
@@ -77,7 +77,12 @@ impl Case {
     fn note_on_thickness(&self, lengths: TextureLengths) -> Option<String> {
         let thickness = self.file.slider.thickness.as_ref()?.si();
         let (name, smallest) = lengths.smallest()?;
-        let fits = lengths.reach() / (4.0 * TAU);
+        // The sheet that fits is one of any features.
+        let fits = if lengths.is_regular {
+            fitting_thickness(lengths.reach())
+        } else {
+            0.0
+        };
         if thickness <= (THICK * smallest).max(fits) * (1.0 + ROUNDING) {
             return None;
         }
@@ -91,8 +96,8 @@ impl Case {
             ),
         };
         Some(format!(
-            "`slider.thickness` is {}, more than a third of the {name} of {}: such a part is a bulk body, in which stress beside the texture \
-             reaches about {} deep, and no sheet; in it the texture changes mu_s* by about {} times as much; {remedy}",
+            "`slider.thickness` is {}, more than a third of the {name} of {}: so thick a part is no sheet but a bulk body, in which stress \
+             beside the texture reaches about {} deep, and the texture changes mu_s* by about {} times as much as in this sheet; {remedy}",
             with_si_prefix(thickness, "m"),
             with_si_prefix(smallest, "m"),
             with_si_prefix(lengths.reach(), "m"),
@@ -100,17 +105,15 @@ impl Case {
         ))
     }
 
-    /// Keys of the sheet that answers tractions of wave number `2 pi/pitch` along and across as a bulk body
-    /// does:
+    /// Keys of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk
+    /// body does: its [thickness](fitting_thickness), and the mount
     ///
     /// ```text
-    /// h = (2/3) nu/((1 - nu^2) q),   K = G q (2 - 3 nu)/(2 (1 - nu))
+    /// K = G q (2 - 3 nu)/(2 (1 - nu))
     /// ```
     fn sheet_that_fits(&self, pitch: f64) -> String {
-        let q = TAU / pitch;
-        let thickness = 2.0 / 3.0 * NU / ((1.0 - NU * NU) * q);
         let shear_modulus = SHEAR * self.scales.young_modulus;
-        let mount = shear_modulus * q * (2.0 - 3.0 * NU) / (2.0 * (1.0 - NU));
+        let mount = shear_modulus * (TAU / pitch) * (2.0 - 3.0 * NU) / (2.0 * (1.0 - NU));
         let attach = match self.file.drive.attached {
             Attached::At(AttachedEdge::All) => "",
             _ => ", `drive.attach = \"all\"`",
@@ -119,10 +122,11 @@ impl Case {
             "one sheet that fits this pitch has `slider.thickness = \"{}\"` and `drive.stiffness_per_area = \"{mount:.3e} N/m^3\"`{attach}, and \
              finds 5 % less to 18 % more than a bulk body of nu = 1/3; it fails for patterns with longer wave lengths: random dimples, bands, \
              patches",
-            with_si_prefix(thickness, "m")
+            with_si_prefix(fitting_thickness(pitch), "m")
         )
     }
 
+    /// The smallest feature and pitch of all textures.
     fn texture_lengths(&self) -> TextureLengths {
         let textures = &self.file.texture;
         let patterns: Vec<(f64, bool)> = textures
@@ -170,8 +174,8 @@ impl TextureLengths {
             .min_by(|(_, one), (_, other)| one.total_cmp(other))
     }
 
-    /// How far stress reaches beside the texture: a pitch; twice the width of a feature, of which the pitch
-    /// would be as large in the array whose answers are known.
+    /// How far stress reaches beside the texture: a pitch; without one twice the width of a feature, which is
+    /// the pitch of the array whose answers are known.
     fn reach(&self) -> f64 {
         self.pitch
             .or(self.feature.map(|feature| 2.0 * feature))
@@ -179,11 +183,24 @@ impl TextureLengths {
     }
 }
 
+/// Thickness of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk
+/// body does, on the mount that belongs to it:
+///
+/// ```text
+/// h = (2/3) nu/((1 - nu^2) q)
+/// ```
+fn fitting_thickness(pitch: f64) -> f64 {
+    2.0 / 3.0 * NU / (1.0 - NU * NU) * (pitch / TAU)
+}
+
 /// Range of what a texture changes in a bulk body over what it changes in a sheet of this thickness over the
 /// pitch, in words; a straight line on logarithmic scales between thicknesses for which it is known.
 fn times_as_much(thickness_over_pitch: f64) -> String {
     let known = BULK_OVER_SHEET;
-    let (thickest, [least, _]) = known[known.len() - 1];
+    let ((thinnest, [_, most]), (thickest, [least, _])) = (known[0], known[known.len() - 1]);
+    if thickness_over_pitch < thinnest {
+        return format!("less than {most:.1}");
+    }
     if thickness_over_pitch > thickest * (1.0 + ROUNDING) {
         return format!("more than {least:.0}");
     }

@@ -41,16 +41,16 @@ fn keys(note: &str) -> Vec<String> {
     quoted.map(|keys| keys.replacen(" = ", "=", 1)).collect()
 }
 
-/// Of a sheet that fits h = p/(8 pi) and K = 9/16 pi E/p, since nu = 1/3 and G = 3/8 E.
+/// The sheet that fits has h = p/(8 pi) and K = 9/16 pi E/p, since nu = 1/3 and G = 3/8 E.
 #[test]
 fn a_thickness_above_a_third_of_the_feature_is_noted() {
     // A third of 100 um, and a thousandth more for rounding.
     assert_eq!(note(DIMPLES, "33.3 um"), None);
     assert_eq!(
         note(DIMPLES, "33.4 um").unwrap(),
-        "`slider.thickness` is 33.4 um, more than a third of the smallest feature of 100 um: such a part is a bulk body, in which stress \
-         beside the texture reaches about 200 um deep, and no sheet; in it the texture changes mu_s* by about 0.6 to 1.2 times as much; one \
-         sheet that fits this pitch has `slider.thickness = \"7.958 um\"` and `drive.stiffness_per_area = \"8.836e14 N/m^3\"`, and finds 5 % \
+        "`slider.thickness` is 33.4 um, more than a third of the smallest feature of 100 um: so thick a part is no sheet but a bulk body, in \
+         which stress beside the texture reaches about 200 um deep, and the texture changes mu_s* by about 0.6 to 1.2 times as much as in this \
+         sheet; one sheet that fits this pitch has `slider.thickness = \"7.958 um\"` and `drive.stiffness_per_area = \"8.836e14 N/m^3\"`, and finds 5 % \
          less to 18 % more than a bulk body of nu = 1/3; it fails for patterns with longer wave lengths: random dimples, bands, patches"
     );
 }
@@ -67,6 +67,9 @@ fn the_factor_is_that_of_the_known_thicknesses() {
     ] {
         assert_eq!(times(DIMPLES, thickness), expected, "{thickness}");
     }
+    // Thinner than any that is known: a tenth of the pitch.
+    let small = DIMPLES.replace("lambda = '50 um'", "lambda = '10 um'");
+    assert_eq!(times(&small, "19.9 um"), "less than 0.9");
 }
 
 #[test]
@@ -131,7 +134,7 @@ fn paper_blocks_bare_sliders_and_thin_sheets_have_no_note() {
     assert_eq!(note(DIMPLES, "8 um"), None);
 }
 
-/// Of a mask the pitch is known, and its features are not.
+/// Where a mask is repeated, the pitch is known, and the features in it are not.
 #[test]
 fn of_a_mask_the_pitch_counts() {
     let folder = tempfile::tempdir().unwrap();
@@ -167,7 +170,8 @@ fn a_feature_alone_is_enough_for_a_note() {
     );
 }
 
-/// `L_c = 2.316 mu*/w` with mu* = G/(1 - nu) = 9/16 E, and `w = (mu_s - mu_k) P/D_c`, whatever the thickness.
+/// `L_c = 2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E and `w = (mu_s - mu_k) P/D_c`, whatever the
+/// thickness.
 #[test]
 fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
     for thickness in ["20 um", "2 mm"] {

@@ -39,8 +39,8 @@ fn assert_lengths(case: &Case, expected: &[(&str, f64, Option<f64>)]) {
     }
 }
 
-/// The critical size of a bulk body in blocks, `2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E, on blocks that
-/// are cubes: w is W times E over the edge of a block.
+/// The critical size of a bulk body in blocks, `2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E, on blocks
+/// that are cubes: w is W times E over the edge of a block.
 fn of_bulk(weakening: f64) -> (&'static str, f64, Option<f64>) {
     ("critical size, bulk body", 2.316 * 0.5625 / weakening, None)
 }

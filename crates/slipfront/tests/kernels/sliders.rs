@@ -58,8 +58,8 @@ pub(crate) fn held(blocks: [usize; 2], edges: Edges, degrees: f64, has_program: 
     }
 }
 
-/// Under a held drive and with strong damping, blocks whose strength falls with slip and whose slip is stable:
-/// they creep for ever, so that the drive moves on by the residual force.
+/// Under a held drive and with strong damping, blocks whose strength falls with slip and whose slip is
+/// stable: they creep for ever, so that the drive moves on by the residual force.
 pub(crate) fn creeping() -> Slider {
     Slider {
         blocks: [12, 10],
