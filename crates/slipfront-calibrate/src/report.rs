@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use slipfront_base::number_format::{count, four_digits, in_print, si_prefix, with_si_prefix};
-use slipfront_base::text::{COLUMNS, wrapped};
+use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
@@ -52,23 +52,37 @@ impl Report<'_> {
         }
         let case = self.case()?;
         self.batch.write(CASE, |to| to.write_all(case.as_bytes()))?;
-        let text = in_words(self.findings);
+        let text = in_words(self.findings) + &self.thickness()?;
         self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
         Ok(text)
     }
 
     /// The case with the median of every unknown.
     fn case(&self) -> Result<String, StudyError> {
-        let medians: Vec<f64> = self
-            .findings
-            .unknowns
-            .iter()
-            .zip(&self.set_up.unknowns)
-            .map(|(told, unknown)| unknown.share_of(told.median))
-            .collect();
-        let set = self.set_up.set_to(&medians);
+        let set = self.set_up.set_to(&self.medians());
         let set: Vec<_> = set.iter().collect();
         Ok(self.set_up.base.parse()?.with(&set)?.to_toml()?)
+    }
+
+    /// The median of every unknown, as a share of its range.
+    fn medians(&self) -> Vec<f64> {
+        let unknowns = self.findings.unknowns.iter().zip(&self.set_up.unknowns);
+        unknowns
+            .map(|(told, unknown)| unknown.share_of(told.median))
+            .collect()
+    }
+
+    /// A note on the first record whose texture makes the calibrated slider a bulk body and no sheet; nothing
+    /// where there is none.
+    fn thickness(&self) -> Result<String, StudyError> {
+        let medians = self.medians();
+        for conditions in &self.set_up.conditions {
+            let case = self.set_up.case(&medians, 0, conditions)?;
+            if let Some(sentence) = case.thick_for_texture() {
+                return Ok(note(&sentence, COLUMNS));
+            }
+        }
+        Ok(String::new())
     }
 
     /// A record and the band of the calibrated model, as a table and as a picture.

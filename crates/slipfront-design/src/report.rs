@@ -269,7 +269,13 @@ impl Report<'_> {
                 COLUMNS,
             );
         }
-        let sentences = losses(&outcome.tried, verdict).into_iter().chain(design.notes());
+        let thick = as_meshed
+            .feature_m
+            .and_then(|feature| case.thick_for_feature(feature));
+        let sentences = losses(&outcome.tried, verdict)
+            .into_iter()
+            .chain(design.notes())
+            .chain(thick);
         text.extend(sentences.map(|sentence| note(&sentence, COLUMNS)));
         let lengths = case.file.lengths_of_a_block();
         if !lengths.is_empty() {

@@ -505,6 +505,25 @@ fn the_folder_has_the_cases_of_the_verdict() {
     assert!(text.contains("no texture keeps the limits"), "{text}");
 }
 
+/// A slider that is thick for the features of the design is told to be no sheet.
+#[test]
+fn a_thick_slider_is_told() {
+    for (thickness, is_told) in [("0.6 um", false), ("4 um", true)] {
+        let base = SMOOTH.replace("[design]", &format!("slider.thickness = '{thickness}'\n[design]"));
+        let folder = tempfile::tempdir().unwrap();
+        let mut opened = DesignFolder::open(folder.path(), &file_of(&base, LEAST), false).unwrap();
+        let text = opened
+            .find(&bounds(30, &AtomicBool::new(false)), &mut |_| {})
+            .unwrap();
+        assert_eq!(
+            text.contains("note: `slider.thickness` is 4 um, more"),
+            is_told,
+            "{text}"
+        );
+        assert!(!text.contains("note: `slider.thickness` is 0.6 um"), "{text}");
+    }
+}
+
 /// Textures from which the search begins are judged, and told where they break a limit.
 #[test]
 fn drawings_are_judged() {

@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::clock::Clock;
+use crate::clock::{Clock, Rest};
 use crate::fixed_point::{FixedPoint, Window};
 use crate::friction::ContactTotals;
 use crate::measure::Peak;
@@ -23,6 +23,7 @@ pub struct Checkpoint {
     pub drive_steps: u64,
     /// Number of steps just before this one through which the drive has stood.
     pub(crate) standing: u64,
+    pub(crate) rest: Rest,
     pub(crate) totals: Totals,
     pub(crate) contact: ContactTotals,
     pub(crate) peak: Peak,
@@ -39,6 +40,7 @@ impl Checkpoint {
             step: self.step,
             drive_steps: self.drive_steps,
             standing: self.standing,
+            rest: self.rest,
             dt_star,
         }
     }
@@ -46,7 +48,9 @@ impl Checkpoint {
     /// Whether the counts of steps can be those of a run of this model.
     pub fn is_consistent_with(&self, model: &Model) -> bool {
         let stood = self.step.checked_sub(self.drive_steps);
-        stood.is_some_and(|stood| self.standing <= stood && (stood == 0 || model.drive.is_held()))
+        let is_held = model.drive.is_held();
+        (self.rest == Rest::Exact || is_held)
+            && stood.is_some_and(|stood| self.standing <= stood && (stood == 0 || is_held))
     }
 }
 

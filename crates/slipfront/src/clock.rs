@@ -1,6 +1,22 @@
 //! The two times of a run: the time of the blocks, and the time of the drive, which stands while a held drive
 //! does.
 
+use serde::{Deserialize, Serialize};
+
+/// How a held drive knows that slip has come to rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Rest {
+    /// No block in contact slides.
+    #[default]
+    Exact,
+    /// The force that keeps the blocks moving is next to nothing, in a run in which exact rest did not come
+    /// once.
+    ByForce {
+        /// Whether this force is next to nothing at t_n.
+        at_rest: bool,
+    },
+}
+
 /// An instant t_n, as counts of steps: times are products of these and of the time step, so that no rounding
 /// errors add up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +27,8 @@ pub(crate) struct Clock {
     pub(crate) drive_steps: u64,
     /// Steps just before t_n through which the drive has stood.
     pub(crate) standing: u64,
+    /// Rest under a held drive.
+    pub(crate) rest: Rest,
     pub(crate) dt_star: f64,
 }
 
@@ -21,6 +39,7 @@ impl Clock {
             step: 0,
             drive_steps: 0,
             standing: 0,
+            rest: Rest::Exact,
             dt_star,
         }
     }

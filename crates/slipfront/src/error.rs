@@ -24,8 +24,8 @@ pub enum RunError {
     },
     /// Under a drive that is held some block has slid for too long.
     #[error(
-        "{n_slipping} blocks in contact still slide at step {step}, t* = {time_star:.1}, after the drive has stood still for {standing} steps: {}",
-        why_no_rest(*speed)
+        "{n_slipping} blocks in contact still slide at step {step}, t* = {time_star:.1}, after the drive has stood still for {standing} steps: \
+         friction takes too little for the slider to come to rest; raise its kinetic friction or damping, or take constant loading"
     )]
     NoRest {
         /// Step at which the limit on sliding was passed.
@@ -36,8 +36,6 @@ pub enum RunError {
         standing: u64,
         /// Blocks in contact that slide.
         n_slipping: usize,
-        /// Root of the sum of `m v^2` over all blocks, in units of `P mu_s/sqrt(E rho)`.
-        speed: f64,
     },
     /// A run under a drive that is held has taken more steps than can be counted.
     #[error(
@@ -53,20 +51,6 @@ pub enum RunError {
     /// An observer failed.
     #[error("{0}")]
     Observer(String),
-}
-
-/// Speed below which motion is due to rounding, in units of `P mu_s/sqrt(E rho)`: displacements of 1 are
-/// rounded by 1e-16 at every step, and some thousand blocks may be involved.
-const ROUNDING_SPEED: f64 = 1e-9;
-
-/// Cause and remedy of a slider that does not come to rest.
-fn why_no_rest(speed: f64) -> &'static str {
-    if speed < ROUNDING_SPEED {
-        "these speeds are errors of rounding, since slip has weakened blocks to the very friction at which they stand; take constant loading, or \
-         another time step"
-    } else {
-        "friction takes too little for the slider to come to rest; raise its kinetic friction or damping, or take constant loading"
-    }
 }
 
 /// Why a surface is impossible.

@@ -137,9 +137,7 @@ impl Model {
     /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
     /// ```
     pub fn critical_size(&self) -> Option<f64> {
-        let law = self.friction.strength_over_slip()?;
-        let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
-        let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
+        let weakening = self.weakening()?;
         let mean_spring = self.slider.sum_of_drive_springs(&self.lattice) / self.n_blocks() as f64;
         // A stiff drive at an edge does not hold a patch far from it.
         let mount = if self.slider.drives_some {
@@ -147,12 +145,21 @@ impl Model {
         } else {
             self.drive.k_drive * mean_spring
         };
-        let unstable = drop / law.length - mount;
+        let unstable = weakening - mount;
         Some(if unstable > 0.0 {
             PI * (self.lattice.stiffness_along() / unstable).sqrt()
         } else {
             f64::INFINITY
         })
+    }
+
+    /// Fall of strength per slip of a block in contact, `W = (S - K)/D_c` with the mean strength of all of
+    /// them, in units of `E h`; none under laws whose strength does not fall with slip.
+    pub fn weakening(&self) -> Option<f64> {
+        let law = self.friction.strength_over_slip()?;
+        let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
+        let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
+        Some(drop / law.length)
     }
 
     /// Divisor of the sum of the forces of the drive springs in mu*: the number of blocks that exist; for a

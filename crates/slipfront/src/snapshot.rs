@@ -1,7 +1,7 @@
 //! The view of a run that observers get.
 
 use crate::checkpoint::BlockColumn;
-use crate::clock::Clock;
+use crate::clock::{Clock, Rest};
 use crate::communicator::Communicator;
 use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
@@ -181,8 +181,8 @@ impl Snapshot<'_> {
 
     /// The next instant: whether a held drive moves until then is known now.
     pub(crate) fn next_clock(&self) -> Clock {
-        let stands = self.model.drive.is_held() && self.totals.n_slipping > 0;
-        self.clock.next(!stands)
+        let is_at_rest = self.totals.n_slipping == 0 || self.clock.rest == Rest::ByForce { at_rest: true };
+        self.clock.next(is_at_rest || !self.model.drive.is_held())
     }
 
     /// Time of the drive at the next step.

@@ -306,7 +306,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
 }
 
 /// Records of another law are refused and conditions count: several records are fitted at once, and a record
-/// of another speed is none of this model.
+/// of another speed is none of this model. A slider that is no sheet under its texture has a note.
 #[test]
 fn records_of_another_law_are_refused_and_conditions_count() {
     let folder = tempfile::tempdir().unwrap();
@@ -317,13 +317,19 @@ fn records_of_another_law_are_refused_and_conditions_count() {
     let keys = format!("{BASE}{KEYS}records = [{{ set = {{}} }}, {{ set = {{ drive.v_star = 0.1 }} }}]\n");
     let both = [one.clone(), other];
     let mut two = open(&out, None, &file(&keys), &both, false).unwrap();
-    find(&mut two, 2).unwrap();
+    let text = find(&mut two, 2).unwrap();
+    assert!(!text.contains("slider.thickness"), "{text}");
     assert_eq!(numbers(&out)["within_band_percent"].as_array().unwrap().len(), 2);
     let foreign = folder.path().join("foreign");
-    let keys = format!("{BASE}{KEYS}").replace("v_star = 0.1", "v_star = 0.3");
+    let thick = "slider.thickness = '4 um'\ntexture = [{ shape = 'cavity', lambda = '1 um' }]\n";
+    let keys = format!("{BASE}{thick}{KEYS}").replace("v_star = 0.1", "v_star = 0.3");
     let mut foreign_fit = open(&foreign, None, &file(&keys), &[one], false).unwrap();
     let text = find(&mut foreign_fit, 2).unwrap();
     assert!(text.starts_with("The model does not make such records"), "{text}");
+    assert!(
+        text.contains("note: `slider.thickness` is 4 um, more than a third"),
+        "{text}"
+    );
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
 }
 

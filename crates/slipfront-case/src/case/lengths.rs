@@ -62,8 +62,9 @@ impl CaseFile {
 }
 
 impl Case {
-    /// The block, the screening lengths of the mount, the critical size of slip, the correlation length of
-    /// the coefficients, and the smallest feature and gap of the texture, as far as the case has them.
+    /// The block, the screening lengths of the mount, the critical sizes of slip in this sheet and in a bulk
+    /// body on a rigid base, the correlation length of the coefficients, and the smallest feature and gap of
+    /// the texture, as far as the case has them.
     pub fn lengths(&self) -> Vec<CaseLength> {
         let mut lengths = self.material_lengths();
         lengths.extend(self.smallest_lengths());
@@ -81,11 +82,15 @@ impl Case {
             lengths.push(self.length("screening length along", along, counts.then_some(OF_SCREENING)));
             lengths.push(self.length("screening length across", across, None));
         }
-        let critical_size = critical_size.map(|blocks| ("critical size", blocks, OF_CRITICAL_SIZE));
-        let field = self.correlated_field();
-        let correlation = field.map(|field| ("correlation length", field.length(), OF_CORRELATION));
-        for (name, blocks, enough) in critical_size.into_iter().chain(correlation) {
-            lengths.push(self.length(name, blocks, blocks.is_finite().then_some(enough)));
+        if let Some(blocks) = critical_size {
+            let enough = blocks.is_finite().then_some(OF_CRITICAL_SIZE);
+            lengths.push(self.length("critical size", blocks, enough));
+        }
+        if let Some(blocks) = self.critical_size_of_bulk() {
+            lengths.push(self.length("critical size, bulk body", blocks, None));
+        }
+        if let Some(field) = self.correlated_field() {
+            lengths.push(self.length("correlation length", field.length(), Some(OF_CORRELATION)));
         }
         lengths
     }
@@ -93,9 +98,7 @@ impl Case {
     /// The smallest feature and gap of the textures; none for masks and height maps, whose outlines are not
     /// known.
     pub(super) fn smallest_lengths(&self) -> Vec<CaseLength> {
-        let lattice = &self.model.lattice;
-        let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
-        let Clearance { feature, gap } = clearance(lattice, &outlines);
+        let Clearance { feature, gap } = self.clearance();
         let [feature_name, gap_name] = names(&self.file.texture);
         let found = [
             (feature_name, feature, ACROSS_A_FEATURE),
@@ -107,6 +110,14 @@ impl Case {
                 Some(self.length(&format!("smallest {name}"), blocks?, Some(enough)))
             })
             .collect()
+    }
+
+    /// The smallest feature and gap of the textures in blocks; none for masks and height maps, whose outlines
+    /// are not known.
+    pub(super) fn clearance(&self) -> Clearance {
+        let lattice = &self.model.lattice;
+        let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
+        clearance(lattice, &outlines)
     }
 
     /// The length that decides the mesh error of an answer, in a sentence without a full stop.

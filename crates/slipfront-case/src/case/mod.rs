@@ -1,6 +1,7 @@
 //! `CaseFile` -> [`Case`]: a case that can be run, with every length counted in blocks and every file read.
 
 mod budget;
+mod bulk;
 mod coarse;
 mod coefficients;
 mod derived;

@@ -211,6 +211,7 @@ impl Case {
             ));
         }
         warnings.extend(self.too_coarse());
+        warnings.extend(self.thick_for_texture());
         warnings
     }
 

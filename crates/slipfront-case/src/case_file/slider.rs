@@ -33,10 +33,12 @@ key_rows! {
         /// Edge of a block.
         pub block_size: Length = key("\"1 um\"", quantity("m", within(1e-12, 1e3))).paper("l")
             .title("block size", "l", "m"),
-        /// Thickness of the sheet that the slider is; `block_size` if not given, as of the paper's cubes.
+        /// Thickness of the sheet that the slider is; `block_size` if not given, as of the paper's cubes. A
+        /// part is a sheet up to a third of the smallest feature and of the pitch of its texture; a thicker
+        /// one is a bulk body, for which the effect of the texture is wrong, and has a note.
         pub thickness: Option<Length> = key("", quantity("m", within(1e-12, 1e3)))
             .title("thickness", "h", "m")
-            .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes."),
+            .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes, and what to write for a bulk body."),
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),

@@ -39,6 +39,12 @@ fn assert_lengths(case: &Case, expected: &[(&str, f64, Option<f64>)]) {
     }
 }
 
+/// The critical size of a bulk body in blocks, `2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E, on blocks
+/// that are cubes: w is W times E over the edge of a block.
+fn of_bulk(weakening: f64) -> (&'static str, f64, Option<f64>) {
+    ("critical size, bulk body", 2.316 * 0.5625 / weakening, None)
+}
+
 /// Note on the length with the given name.
 fn note_on(case: &Case, name: &str) -> Option<String> {
     let begins = format!("the {name} is ");
@@ -58,6 +64,7 @@ fn the_critical_size_decides_of_a_sheet() {
             ("screening length along", 3.0_f64.sqrt(), None),
             ("screening length across", 1.0, None),
             ("critical size", critical, Some(5.0)),
+            of_bulk(0.5 / 0.8),
         ],
     );
     let said = sheet.deciding_length();
@@ -88,7 +95,11 @@ fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
         let critical = std::f64::consts::PI * (1.125_f64 / (0.5 / 0.2)).sqrt();
         assert_lengths(
             &sheet,
-            &[("block", 1.0, None), ("critical size", critical, Some(5.0))],
+            &[
+                ("block", 1.0, None),
+                ("critical size", critical, Some(5.0)),
+                of_bulk(0.5 / 0.2),
+            ],
         );
         assert_eq!(
             note_on(&sheet, "critical size").unwrap(),
@@ -112,6 +123,7 @@ fn the_screening_length_decides_where_slip_is_stable() {
                 ("screening length along", 3.0_f64.sqrt(), Some(3.0)),
                 ("screening length across", 1.0, None),
                 ("critical size", size, size_enough),
+                of_bulk(0.5 / length),
             ],
         );
         let said = sheet.deciding_length();
@@ -136,7 +148,7 @@ fn features_gaps_and_correlated_coefficients_are_lengths() {
     );
     let grooved = case(&text);
     let found = lengths(&grooved);
-    let last: Vec<(&str, f64, Option<f64>)> = found[4..]
+    let last: Vec<(&str, f64, Option<f64>)> = found[5..]
         .iter()
         .map(|(name, blocks, enough)| (name.as_str(), *blocks, *enough))
         .collect();

@@ -8,6 +8,7 @@
 mod reference_page;
 
 mod bad;
+mod bulk;
 mod coarse;
 mod good;
 mod heights;

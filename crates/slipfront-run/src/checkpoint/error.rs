@@ -6,7 +6,7 @@ use slipfront_case::same::Difference;
 use thiserror::Error;
 
 /// Version of the file's layout. A program reads no other layout.
-pub(super) const LAYOUT: u32 = 4;
+pub(super) const LAYOUT: u32 = 5;
 
 /// Reason for which a run cannot go on from a checkpoint.
 #[derive(Debug, Error)]

@@ -15,7 +15,7 @@ use slipfront::{
 use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, cavity, varied};
-use crate::{bits, columns, fused, general, resumed, stopped_and_resumed};
+use crate::{bits, columns, fused, general, resumed, sliders, stopped_and_resumed};
 
 fn slider(law: FrictionLaw) -> Slider {
     Slider {
@@ -71,6 +71,36 @@ fn held_drives(every: u64) {
         ..slider(FrictionLaw::Projection)
     };
     goes_on_from_checkpoints(&slider, every);
+}
+
+/// A run in which the residual force takes the place of rest goes on doing so, in either kernel.
+#[test_matrix([1, 7], [false, true])]
+fn creep_under_a_held_drive(every: u64, is_fused: bool) {
+    let slider = sliders::creeping();
+    let (model, dt_star) = (slider.model(), slider.dt_star);
+    let execution = || if is_fused { fused() } else { general() };
+    let mut plain = Simulation::new(model.clone(), dt_star, None, execution());
+    let mut stopped = Simulation::new(model.clone(), dt_star, None, execution());
+    for drive_steps in 1..=90 {
+        for simulation in [&mut plain, &mut stopped] {
+            simulation.run(Stop::at_step(drive_steps), &mut []).unwrap();
+        }
+        if drive_steps % every == 0 {
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, execution());
+        }
+        assert_eq!(
+            everything(&stopped),
+            everything(&plain),
+            "drive step {drive_steps}"
+        );
+    }
+    let now = plain.snapshot();
+    // Exact rest did not come within 1000 times a front across the slider.
+    assert!(
+        (now.step - now.drive_steps) as f64 > 1000.0 * 12.0 / dt_star,
+        "{}",
+        now.step
+    );
 }
 
 #[test_matrix([1, 7], [false, true])]

@@ -2,7 +2,7 @@
 //! checkpoints.
 
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
+use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface};
 use test_case::test_matrix;
 
 use crate::common::{cavity, groove};
@@ -143,6 +143,22 @@ fn textures_and_strains(texture: Option<Texture>, epsilon: f64) {
 fn held_drives((blocks, edges): ([usize; 2], Edges), degrees: f64, has_program: bool) {
     let slider = sliders::held(blocks, edges, degrees, has_program);
     assert_same_bits(&slider.model(), slider.dt_star, None, 2 * slider.steps(4.0));
+}
+
+/// Rest by force is found alike, once exact rest has not come within 1000 times a front across the slider.
+#[test]
+fn creep_under_a_held_drive() {
+    let slider = sliders::creeping();
+    assert_same_bits(&slider.model(), slider.dt_star, None, 90);
+    let mut simulation = Simulation::new(slider.model(), slider.dt_star, None, fused());
+    simulation.run(Stop::at_step(90), &mut []).unwrap();
+    let now = simulation.snapshot();
+    let longest = 1000.0 * 12.0 / slider.dt_star;
+    let stood = (now.step - now.drive_steps) as f64;
+    assert!(
+        (longest..1.5 * longest).contains(&stood),
+        "{stood} steps for {longest}"
+    );
 }
 
 /// The strains need every formula of springs, and change it while blocks are at rest.

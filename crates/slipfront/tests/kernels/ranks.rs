@@ -208,6 +208,14 @@ fn held_drives(degrees: f64, has_program: bool) {
     assert_goes_on(&slider, &|_, _| ());
 }
 
+/// All ranks know alike that the residual force is next to nothing.
+#[test]
+fn creep_under_a_held_drive() {
+    let slider = sliders::creeping();
+    assert_same(&slider, None, 90);
+    assert_goes_on(&slider, &|_, _| ());
+}
+
 #[test_matrix([[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic]], [1e-6, 1e-2])]
 fn a_state_in_motion(edges: [Edges; 2], epsilon: f64) {
     let (slider, from) = sliders::in_motion(edges, epsilon);

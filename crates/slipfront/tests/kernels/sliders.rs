@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use slipfront::surface::Texture;
-use slipfront::{Edges, Loading, Program, State};
+use slipfront::{Edges, Loading, Program, SlipWeakening, State};
 
 use crate::common::{self, Slider};
 
@@ -55,6 +55,23 @@ pub(crate) fn held(blocks: [usize; 2], edges: Edges, degrees: f64, has_program: 
         program: has_program.then(|| Arc::new(program())),
         loading: Loading::Held { onset_steps: 30 },
         ..slow(blocks, edges, degrees, 1e-6)
+    }
+}
+
+/// Under a held drive and with strong damping, blocks whose strength falls with slip and whose slip is
+/// stable: they creep for ever, so that the drive moves on by the residual force.
+pub(crate) fn creeping() -> Slider {
+    Slider {
+        blocks: [12, 10],
+        omega_star: 2.0,
+        slip_weakening: Some(SlipWeakening {
+            length: 2.0,
+            healing_time: None,
+        }),
+        v_star: 0.1,
+        dt_star: 0.8,
+        loading: Loading::Held { onset_steps: 90 },
+        ..Slider::default()
     }
 }
 

@@ -1,0 +1,223 @@
+//! Where the slider is so thick that it is a bulk body under its texture, and no sheet.
+//!
+//! A sheet of thickness h on a mount K answers a traction of wave number q with `K + 9/8 E h q^2` along it
+//! and `K + 3/8 E h q^2` across, a deep body with `G q/(1 - nu)` and `G q`: stress beside a texture of pitch
+//! p reaches about p deep in it, and much farther along in a thick sheet. `docs/model.md`, "Thickness and
+//! mount", has both.
+
+use std::f64::consts::TAU;
+
+use super::runnable::Case;
+use super::textures::arrays;
+use crate::case_file::{Attached, AttachedEdge, Shape, Texture};
+use slipfront_base::number_format::with_si_prefix;
+
+/// Thickness over the pitch, or over the smallest feature, above which there is a note.
+const THICK: f64 = 1.0 / 3.0;
+/// Share by which a thickness may be too large: rounding of lengths, and of a thickness to four digits.
+const ROUNDING: f64 = 1e-3;
+/// Poisson's ratio of the springs between blocks.
+const NU: f64 = 1.0 / 3.0;
+/// Shear modulus `G = E/(2 (1 + nu))` over Young's modulus.
+const SHEAR: f64 = 1.0 / (2.0 * (1.0 + NU));
+/// Critical size of a long strip on a rigid base in units of `G/((1 - nu) w)`: an eigenvalue, which is 2.313
+/// to 2.319 on 400 cells.
+const STRIP: f64 = 2.316;
+/// Thickness over pitch, and the range of what a texture changes about static friction in a bulk body over
+/// what it changes in the sheet, for a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a
+/// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/model.md`).
+const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
+/// Reductions of static friction by a patch of dimples, a band of them, and random dimples: the lowest and
+/// the highest in the sheet that fits at their pitch, and in the bulk body.
+const LONGER_WAVES: [&str; 2] = ["3.1 to 8.2 %", "12.4 to 15.5 %"];
+
+/// Lengths of the textures of a case that tell whether it is a sheet, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TextureLengths {
+    /// Smallest feature, where one is known.
+    feature: Option<f64>,
+    /// Pitch of the innermost pattern, where there is one.
+    pitch: Option<f64>,
+    /// Whether one array of this pitch fills the slider.
+    is_regular: bool,
+}
+
+impl Case {
+    /// The critical size of slip in a bulk body on a rigid base in blocks, for a long strip across the drive,
+    /// where strength falls with slip; none for a chain:
+    ///
+    /// ```text
+    /// L_c = 2.316 G/((1 - nu) w),   w = (mu_s - mu_k) P/D_c
+    /// ```
+    pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
+        let (model, scales) = (&self.model, &self.scales);
+        // On a block it is w l^2 in units of E h.
+        let weakening = model.weakening().filter(|weakening| *weakening > 0.0)?;
+        let blocks = STRIP * SHEAR / (1.0 - NU) / weakening * (scales.block_size / scales.thickness);
+        (model.lattice.nx > 1 && model.lattice.ny > 1).then_some(blocks)
+    }
+
+    /// A sentence on a slider whose thickness is given and that is no sheet under its texture: by how much
+    /// about its answer is wrong, and what to write instead. There is none where neither a pitch nor a
+    /// feature is known.
+    pub fn thick_for_texture(&self) -> Option<String> {
+        self.note_on_thickness(self.texture_lengths())
+    }
+
+    /// A sentence as [`thick_for_texture`](Self::thick_for_texture) for textures that are not drawn yet, with
+    /// a smallest feature in m.
+    pub fn thick_for_feature(&self, feature: f64) -> Option<String> {
+        self.note_on_thickness(TextureLengths {
+            feature: Some(feature),
+            pitch: None,
+            is_regular: false,
+        })
+    }
+
+    fn note_on_thickness(&self, lengths: TextureLengths) -> Option<String> {
+        let thickness = self.file.slider.thickness.as_ref()?.si();
+        let (name, smallest) = lengths.smallest()?;
+        // The sheet that fits is one of any features.
+        let fits = if lengths.is_regular {
+            fitting_thickness(lengths.reach())
+        } else {
+            0.0
+        };
+        if thickness <= (THICK * smallest).max(fits) * (1.0 + ROUNDING) {
+            return None;
+        }
+        let remedy = match lengths.is_regular {
+            true => self.sheet_that_fits(lengths.reach()),
+            false => format!(
+                "no single sheet stands for it, since this texture has wave lengths above a pitch, where a sheet that fits at the pitch \
+                 found {} for {}: lay the texture over the whole slider in one array with a `pitch`, for which there is one, or take the \
+                 answer for that of a sheet",
+                LONGER_WAVES[0], LONGER_WAVES[1]
+            ),
+        };
+        Some(format!(
+            "`slider.thickness` is {}, more than a third of the {name} of {}: so thick a part is no sheet but a bulk body, in which stress \
+             beside the texture reaches about {} deep, and the texture changes mu_s* by about {} times as much as in this sheet; {remedy}",
+            with_si_prefix(thickness, "m"),
+            with_si_prefix(smallest, "m"),
+            with_si_prefix(lengths.reach(), "m"),
+            times_as_much(thickness / lengths.reach())
+        ))
+    }
+
+    /// Keys of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk
+    /// body does: its [thickness](fitting_thickness), and the mount
+    ///
+    /// ```text
+    /// K = G q (2 - 3 nu)/(2 (1 - nu))
+    /// ```
+    fn sheet_that_fits(&self, pitch: f64) -> String {
+        let shear_modulus = SHEAR * self.scales.young_modulus;
+        let mount = shear_modulus * (TAU / pitch) * (2.0 - 3.0 * NU) / (2.0 * (1.0 - NU));
+        let attach = match self.file.drive.attached {
+            Attached::At(AttachedEdge::All) => "",
+            _ => ", `drive.attach = \"all\"`",
+        };
+        format!(
+            "one sheet that fits this pitch has `slider.thickness = \"{}\"` and `drive.stiffness_per_area = \"{mount:.3e} N/m^3\"`{attach}, and \
+             finds 5 % less to 18 % more than a bulk body of nu = 1/3; it fails for patterns with longer wave lengths: random dimples, bands, \
+             patches",
+            with_si_prefix(fitting_thickness(pitch), "m")
+        )
+    }
+
+    /// The smallest feature and pitch of all textures.
+    fn texture_lengths(&self) -> TextureLengths {
+        let textures = &self.file.texture;
+        let patterns: Vec<(f64, bool)> = textures
+            .iter()
+            .filter_map(|texture| self.pitch(texture))
+            .collect();
+        let pitch = patterns.iter().map(|(pitch, _)| *pitch).reduce(f64::min);
+        let feature = self.clearance().feature;
+        TextureLengths {
+            feature: feature.map(|blocks| blocks * self.scales.block_size),
+            pitch,
+            is_regular: textures.len() == 1 && patterns.iter().all(|(_, fills)| *fills) && pitch.is_some(),
+        }
+    }
+
+    /// Pitch of the innermost array of a texture, and whether it is the only one and fills the slider.
+    fn pitch(&self, texture: &Texture) -> Option<(f64, bool)> {
+        let lattice = &self.model.lattice;
+        let arrays = arrays(&texture.pattern, &self.scales, lattice).ok()?;
+        let array = arrays.last()?;
+        // Copies of a groove lie in one direction.
+        let is_groove = matches!(texture.shape, Shape::Groove(_));
+        let repeated = (0..2).filter(|&axis| array.count[axis] > 1);
+        let pitch = repeated
+            .clone()
+            .map(|axis| array.spacing[axis])
+            .reduce(f64::max)?;
+        let sizes = [lattice.nx, lattice.ny];
+        let is_filled =
+            |axis: usize| array.spacing[axis] * (array.count[axis] + 1) as f64 > sizes[axis] as f64;
+        let is_regular =
+            arrays.len() == 1 && (0..2).all(|axis| is_filled(axis) && (array.count[axis] > 1 || is_groove));
+        Some((pitch * self.scales.block_size, is_regular))
+    }
+}
+
+impl TextureLengths {
+    /// The smaller of pitch and feature, with its name.
+    fn smallest(&self) -> Option<(&'static str, f64)> {
+        let feature = self.feature.map(|feature| ("smallest feature", feature));
+        let pitch = self.pitch.map(|pitch| ("pitch", pitch));
+        feature
+            .into_iter()
+            .chain(pitch)
+            .min_by(|(_, one), (_, other)| one.total_cmp(other))
+    }
+
+    /// How far stress reaches beside the texture: a pitch; without one twice the width of a feature, which is
+    /// the pitch of the array whose answers are known.
+    fn reach(&self) -> f64 {
+        self.pitch
+            .or(self.feature.map(|feature| 2.0 * feature))
+            .unwrap_or(0.0)
+    }
+}
+
+/// Thickness of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk
+/// body does, on the mount that belongs to it:
+///
+/// ```text
+/// h = (2/3) nu/((1 - nu^2) q)
+/// ```
+fn fitting_thickness(pitch: f64) -> f64 {
+    2.0 / 3.0 * NU / (1.0 - NU * NU) * (pitch / TAU)
+}
+
+/// Range of what a texture changes in a bulk body over what it changes in a sheet of this thickness over the
+/// pitch, in words; a straight line on logarithmic scales between thicknesses for which it is known.
+fn times_as_much(thickness_over_pitch: f64) -> String {
+    let known = BULK_OVER_SHEET;
+    let ((thinnest, [_, most]), (thickest, [least, _])) = (known[0], known[known.len() - 1]);
+    if thickness_over_pitch < thinnest {
+        return format!("less than {most:.1}");
+    }
+    if thickness_over_pitch > thickest * (1.0 + ROUNDING) {
+        return format!("more than {least:.0}");
+    }
+    let above = known
+        .iter()
+        .position(|(thickness, _)| thickness_over_pitch <= *thickness);
+    let upper = above.unwrap_or(known.len() - 1).max(1);
+    let [(from, low), (to, high)] = [known[upper - 1], known[upper]];
+    let place = libm::log(thickness_over_pitch / from) / libm::log(to / from);
+    let at = |end: usize| low[end] * libm::pow(high[end] / low[end], place);
+    format!("{} to {}", two_digits(at(0)), two_digits(at(1)))
+}
+
+fn two_digits(ratio: f64) -> String {
+    if ratio < 9.95 {
+        format!("{ratio:.1}")
+    } else {
+        format!("{ratio:.0}")
+    }
+}
