@@ -30,6 +30,9 @@ use slipfront_study::{StudyError, TrainingError};
 /// Beginning of the names of copies of records.
 const RECORD: &str = "record-";
 
+/// Number of runs at half the time step.
+const AT_HALF_STEP: usize = 40;
+
 /// Number of points that are drawn from the estimate.
 const SAMPLE: usize = 400;
 
@@ -285,6 +288,14 @@ impl CalibrationFolder {
         let sample = |points| told.calibration.sample(estimate, points);
         let predicted = Predicted::run(&set_up, sample(PREDICTED), keys.noise, stop)?;
         let (bands, comparison) = (predicted.bands(), predicted.compare(&told.curves));
+        let points = predicted.points()[..AT_HALF_STEP].to_vec();
+        let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop)?;
+        let moved = told
+            .calibration
+            .moved(&predicted.curves()[..AT_HALF_STEP], half_step.curves());
+        for (told, (unknown, moved)) in unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved)) {
+            told.hold_against_half_step(unknown, moved);
+        }
         let closest = closest(&set_up, predicted.points(), &told.curves, keys.noise, stop)?;
         let within = bands.iter().zip(&told.curves);
         let findings = Findings {
