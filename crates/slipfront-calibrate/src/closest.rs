@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn noise_passes_and_a_wave_does_not() {
-        let noise: Vec<f64> = normals(Stream::Noise, 1, 0).take(400).collect();
+        let noise: Vec<f64> = normals(Stream::Noise, 1, 0).take(4000).collect();
         let plain = Closest::of(&[noise.clone()], 1.0);
         assert!(
             !plain.is_refused() && (plain.noise_ratio - 1.0).abs() < 0.1,
