@@ -13,7 +13,8 @@
 //!
 //! Prints for every kind: the share of records that is refused, by either part of the check; the share whose
 //! interval misses some truth by more than its half width; the share of those that is refused; and of the records
-//! that pass, the share of intervals that hold the truth.
+//! that pass, the share of intervals of each unknown that hold the truth. Records "told" are calibrated by a file
+//! that describes their filter.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -21,7 +22,9 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use slipfront_calibrate::{Calibration, Conditions, Predicted, SamplePoints, SetUp, Training, Unknown};
+use slipfront_calibrate::{
+    Calibration, Conditions, Predicted, SamplePoints, SetUp, Training, Unknown, closest,
+};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
@@ -59,11 +62,28 @@ enum Change {
     SlipLaw,
 }
 
+/// A kind of records.
+#[derive(Clone, Copy)]
+struct Kind {
+    name: &'static str,
+    change: Change,
+    /// The instrument of the calibration file, which has none if this is empty.
+    told: &'static str,
+}
+
+/// A kind of records of which the calibration file knows nothing.
+const fn kind(name: &'static str, change: Change) -> Kind {
+    Kind {
+        name,
+        change,
+        told: "",
+    }
+}
+
 struct Experiment {
     set_up: SetUp,
     runs: usize,
-    /// Names and changes of the kinds of records.
-    kinds: Vec<(&'static str, Change)>,
+    kinds: Vec<Kind>,
     /// Whether records come from the integration of this file.
     is_rate_and_state: bool,
     /// Number of values of a record.
@@ -85,31 +105,72 @@ fn main() -> Result<(), Box<dyn Error>> {
         "rate_and_state" => rate_and_state()?,
         _ => return Err(usage.into()),
     };
-    let go_on = AtomicBool::new(false);
-    let set_up = &experiment.set_up;
-    let training = Training::run(set_up, experiment.runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
-    let grids: Vec<SamplePoints> = set_up.conditions.iter().map(|one| one.grid.clone()).collect();
-    let calibration = Calibration::new(&training, &grids, NOISE);
+    let unknowns: Vec<&str> = experiment.set_up.unknowns.iter().map(Unknown::key).collect();
     println!(
-        "{name}: {records} records of each kind from {first} on, {} training runs",
-        experiment.runs
+        "{name}: {records} records of each kind from {first} on, {} training runs; intervals of {}",
+        experiment.runs,
+        unknowns.join(", ")
     );
     println!(
-        "{:28} {:>8} {:>8} {:>8} {:>8} {:>8}  {:>8}   {}",
-        "kind", "refused", "compared", "closest", "misses", "caught", "held", "differs most in"
+        "{:28} {:>8} {:>8} {:>8} {:>8} {:>8}   {:28} {}",
+        "kind",
+        "refused",
+        "compared",
+        "closest",
+        "misses",
+        "caught",
+        "held, of those that pass, %",
+        "differs most in"
     );
-    for (kind, change) in &experiment.kinds {
-        if !kinds.is_empty() && !kinds.iter().any(|wanted| kind.contains(wanted.as_str())) {
-            continue;
+    let is_wanted =
+        |kind: &str| kinds.is_empty() || kinds.iter().any(|wanted| kind.contains(wanted.as_str()));
+    let wanted: Vec<&Kind> = experiment
+        .kinds
+        .iter()
+        .filter(|kind| is_wanted(kind.name))
+        .collect();
+    let mut told: Vec<&str> = wanted.iter().map(|kind| kind.told).collect();
+    told.sort_unstable();
+    told.dedup();
+    for told in told {
+        let trained = Trained::new(&experiment, told)?;
+        for kind in wanted.iter().filter(|kind| kind.told == told) {
+            let judged: Vec<Judged> = (first..first + records)
+                .into_par_iter()
+                .with_max_len(1)
+                .map(|record| trained.judge(&experiment, kind.change, record))
+                .collect::<Result<_, String>>()?;
+            report(kind.name, &judged);
         }
-        let judged: Vec<Judged> = (first..first + records)
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|record| judge(&experiment, &calibration, *change, record))
-            .collect::<Result<_, String>>()?;
-        report(kind, &judged, set_up.unknowns.len());
     }
     Ok(())
+}
+
+/// A calibration whose file describes an instrument.
+struct Trained {
+    set_up: SetUp,
+    calibration: Calibration,
+}
+
+impl Trained {
+    fn new(experiment: &Experiment, told: &str) -> Result<Self, Box<dyn Error>> {
+        let go_on = AtomicBool::new(false);
+        let instrument = if told.is_empty() {
+            None
+        } else {
+            Some(told.parse()?)
+        };
+        let set_up = SetUp {
+            instrument,
+            ..experiment.set_up.clone()
+        };
+        let training = Training::run(&set_up, experiment.runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
+        let grids: Vec<SamplePoints> = set_up.conditions.iter().map(|one| one.grid.clone()).collect();
+        Ok(Self {
+            calibration: Calibration::new(&training, &grids, NOISE),
+            set_up,
+        })
+    }
 }
 
 struct Judged {
@@ -117,71 +178,69 @@ struct Judged {
     by_comparison: bool,
     by_closest: bool,
     misses: bool,
-    held: usize,
+    /// Whether the interval of every unknown holds the truth.
+    held: Vec<bool>,
     differs: &'static str,
 }
 
-fn judge(
-    experiment: &Experiment,
-    calibration: &Calibration,
-    change: Change,
-    record: usize,
-) -> Result<Judged, String> {
-    let go_on = AtomicBool::new(false);
-    let set_up = &experiment.set_up;
-    let truth: Vec<f64> = uniform(record, set_up.unknowns.len())
-        .iter()
-        .map(|u| 0.1 + 0.8 * u)
-        .collect();
-    let values = record_of(experiment, change, &truth, record)?;
-    let estimate = calibration.estimate(std::slice::from_ref(&values));
-    let points = calibration.sample(&estimate, PREDICTED);
-    let predicted =
-        Predicted::run(set_up, points.clone(), NOISE, &go_on).map_err(|error| error.to_string())?;
-    let comparison = predicted.compare(std::slice::from_ref(&values));
-    let closest = slipfront_calibrate::closest(set_up, &points, std::slice::from_ref(&values), NOISE, &go_on)
-        .map_err(|error| error.to_string())?;
-    let mut held = 0;
-    let mut misses = false;
-    for (distribution, truth) in estimate.distributions.iter().zip(&truth) {
-        let [low, high] = distribution.interval(0.9);
-        held += usize::from((low..=high).contains(truth));
-        let beyond = (low - truth).max(truth - high);
-        misses |= beyond > 0.5 * (high - low);
+impl Trained {
+    fn judge(&self, experiment: &Experiment, change: Change, record: usize) -> Result<Judged, String> {
+        let go_on = AtomicBool::new(false);
+        let Self { set_up, calibration } = self;
+        let truth = uniform(record, set_up.unknowns.len());
+        let truth: Vec<f64> = truth.iter().map(|u| 0.1 + 0.8 * u).collect();
+        let values = [record_of(experiment, change, &truth, record)?];
+        let estimate = calibration.estimate(&values);
+        let points = calibration.sample(&estimate, PREDICTED);
+        let failed = |error: slipfront_study::StudyError| error.to_string();
+        let predicted = Predicted::run(set_up, points.clone(), NOISE, &go_on).map_err(failed)?;
+        let comparison = predicted.compare(&values);
+        let closest = closest(set_up, &points, &values, NOISE, &go_on).map_err(failed)?;
+        let intervals = estimate
+            .distributions
+            .iter()
+            .map(|one| one.interval(0.9))
+            .zip(&truth);
+        let (held, misses): (Vec<bool>, Vec<bool>) = intervals
+            .map(|([low, high], truth)| {
+                let beyond = (low - truth).max(truth - high);
+                (beyond <= 0.0, beyond > 0.5 * (high - low))
+            })
+            .unzip();
+        let by_comparison = comparison.is_refused();
+        let by_closest = closest.is_some_and(|closest| closest.is_refused());
+        Ok(Judged {
+            is_refused: estimate.misfit.is_refused() || by_comparison || by_closest,
+            by_comparison,
+            by_closest,
+            misses: misses.contains(&true),
+            held,
+            differs: comparison.differs_in[0].0,
+        })
     }
-    let by_comparison = comparison.is_refused();
-    let by_closest = closest.is_some_and(|closest| closest.is_refused());
-    Ok(Judged {
-        is_refused: estimate.misfit.is_refused() || by_comparison || by_closest,
-        by_comparison,
-        by_closest,
-        misses,
-        held,
-        differs: comparison.differs_in[0].0,
-    })
 }
 
-fn report(kind: &str, judged: &[Judged], unknowns: usize) {
+fn report(kind: &str, judged: &[Judged]) {
     let share = |of: &[&Judged], is: &dyn Fn(&Judged) -> bool| {
         100.0 * of.iter().filter(|one| is(one)).count() as f64 / of.len() as f64
     };
     let all: Vec<&Judged> = judged.iter().collect();
     let missing: Vec<&Judged> = judged.iter().filter(|one| one.misses).collect();
     let passing: Vec<&Judged> = judged.iter().filter(|one| !one.is_refused).collect();
-    let held: usize = passing.iter().map(|one| one.held).sum();
+    let held = (0..judged[0].held.len()).map(|j| format!("{:5.1}", share(&passing, &|one| one.held[j])));
+    let held = held.collect::<Vec<_>>().join(" ");
     let mut counts: HashMap<&str, usize> = HashMap::new();
     for one in judged.iter().filter(|one| one.by_comparison) {
         *counts.entry(one.differs).or_default() += 1;
     }
     let most = counts.into_iter().max_by_key(|(name, count)| (*count, *name));
     println!(
-        "{kind:28} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:7.1} %   {}",
+        "{kind:28} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} %   {held:28} {}",
         share(&all, &|one| one.is_refused),
         share(&all, &|one| one.by_comparison),
         share(&all, &|one| one.by_closest),
         share(&all, &|one| one.misses),
         share(&missing, &|one| one.is_refused),
-        100.0 * held as f64 / (passing.len() * unknowns) as f64,
         most.map_or("", |(name, _)| name)
     );
 }
@@ -339,13 +398,13 @@ fn experiment(
 }
 
 /// Changes that any record can have.
-const COMMON: [(&str, Change); 6] = [
-    ("good", Change::Nothing),
-    ("noise three times", Change::Noise(3.0)),
-    ("clipped at the 90 % quantile", Change::Clipped(0.9)),
-    ("offset of 10 %", Change::Offset(0.1)),
-    ("drift of 3 %", Change::Drift(0.03)),
-    ("drift of -3 %", Change::Drift(-0.03)),
+const COMMON: [Kind; 6] = [
+    kind("good", Change::Nothing),
+    kind("noise three times", Change::Noise(3.0)),
+    kind("clipped at the 90 % quantile", Change::Clipped(0.9)),
+    kind("offset of 10 %", Change::Offset(0.1)),
+    kind("drift of 3 %", Change::Drift(0.03)),
+    kind("drift of -3 %", Change::Drift(-0.03)),
 ];
 
 /// Stick-slip of a rigid slider on a spring: the case of the paper on paper.
@@ -363,20 +422,20 @@ fn one_block() -> Result<Experiment, Box<dyn Error>> {
     let mut made = experiment(base(text)?, unknowns, 800, 0.005)?;
     made.kinds = COMMON.to_vec();
     made.kinds.extend([
-        (
+        kind(
             "low-pass 20 Hz",
             Change::Lag(1.0 / (std::f64::consts::TAU * 20.0)),
         ),
-        (
+        kind(
             "low-pass 10 Hz",
             Change::Lag(1.0 / (std::f64::consts::TAU * 10.0)),
         ),
-        ("mean over 0.1 s", Change::Mean(0.1)),
-        (
+        kind("mean over 0.1 s", Change::Mean(0.1)),
+        kind(
             "ageing",
             Change::Law("friction.ageing = { law = 'logarithmic', beta = 0.03, time_star = 1 }"),
         ),
-        (
+        kind(
             "velocity weakening",
             Change::Law("friction.velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.5 }"),
         ),
@@ -401,9 +460,9 @@ fn lattice() -> Result<Experiment, Box<dyn Error>> {
     made.kinds = COMMON.to_vec();
     made.kinds.extend([
         // The lattice swings with a period of some 10 t*.
-        ("low-pass over 1 t*", Change::Lag(time)),
-        ("low-pass over 3 t*", Change::Lag(3.0 * time)),
-        ("mean over 8 t*", Change::Mean(8.0 * time)),
+        kind("low-pass over 1 t*", Change::Lag(time)),
+        kind("low-pass over 3 t*", Change::Lag(3.0 * time)),
+        kind("mean over 8 t*", Change::Mean(8.0 * time)),
     ]);
     Ok(made)
 }
@@ -488,10 +547,10 @@ fn rate_and_state() -> Result<Experiment, Box<dyn Error>> {
     made.is_rate_and_state = true;
     made.kinds = COMMON.to_vec();
     made.kinds.extend([
-        ("slip law", Change::SlipLaw),
+        kind("slip law", Change::SlipLaw),
         // At V_0 the drive moves by one unit of displacement in 200 t*.
-        ("lag of a displacement of 0.1", Change::Lag(20.0 * time)),
-        ("lag of a displacement of 0.3", Change::Lag(60.0 * time)),
+        kind("lag of a displacement of 0.1", Change::Lag(20.0 * time)),
+        kind("lag of a displacement of 0.3", Change::Lag(60.0 * time)),
     ]);
     Ok(made)
 }
