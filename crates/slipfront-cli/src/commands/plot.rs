@@ -117,8 +117,8 @@ pub(crate) struct PlotCommand {
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
     /// Draw the curves as an instrument writes them, and compare the record with that: the table
-    /// `[instrument]` of this file, such as a calibration file. Peak and kinetic mean, which are those of
-    /// friction itself, are left out
+    /// `[instrument]` of this file, such as a calibration file. Marks of instants and peaks, which are
+    /// those of friction itself, are left out
     #[arg(long, value_name = "FILE", requires = "data")]
     instrument: Option<PathBuf>,
     /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a
