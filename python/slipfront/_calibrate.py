@@ -274,7 +274,7 @@ class Calibration:
         threads: int | None,
         work: Callable[[list[Path], int, Callable[[int, int], object]], Found],
     ) -> Found:
-        """What `work` finds of records, whose files in a temporary folder no error names."""
+        """Do some work over records, whose files in a temporary folder no error names."""
         shown, watch = parted(progress)
         paths = [self._path(record, temporary.path / f"record {number}.csv") for number, record in enumerate(records, 1)]
         with Bar(shown, None, "run", self.name) as bar:

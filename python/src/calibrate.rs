@@ -59,8 +59,7 @@ impl Calibration {
     }
 
     /// Tests whether the model can have made the records, and returns the reasons for which it cannot, the
-    /// tests as a text of JSON, and sentences about lines of the records that were passed over. The folder has
-    /// nothing of it afterwards but copies of the records, and training runs unless another folder keeps them.
+    /// numbers of the tests as JSON, and sentences about lines of the records that were passed over.
     fn check(
         &self,
         py: Python<'_>,

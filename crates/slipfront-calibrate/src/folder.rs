@@ -331,7 +331,7 @@ impl CalibrationFolder {
         Ok(text)
     }
 
-    /// Trains, and tests whether the model can have made the records: what [`Self::find`] says of that. Training
+    /// Trains, and makes the tests of [`Self::find`] of whether the model can have made the records. Training
     /// runs are kept, and no findings are written.
     ///
     /// # Errors

@@ -241,7 +241,8 @@ fn a_filtered_record_is_compared_with_filtered_curves() {
         column(&workspace, "a", "friction_force_n"),
     );
     let (constant, offset) = (times.last().unwrap() / 20.0, 2e-6);
-    // Exact for a force that is straight between its values: F = f + g t gives x = F - constant g + C exp(-t/constant).
+    // Exact for a force that is straight between its values: F = f + g t gives
+    // x = F - constant g + C exp(-t/constant).
     let mut filtered = forces[0];
     let mut rows = format!("{:e},{:e}\n", times[0], filtered + offset);
     for k in 1..times.len() {

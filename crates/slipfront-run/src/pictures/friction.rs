@@ -162,12 +162,13 @@ pub fn overlay(
     })
 }
 
-/// Draws the friction curves of run folders and a measured record over each other, in SI units. Curves that an
-/// instrument has written have no marks, which are those of friction itself.
+/// Draws the friction curves of run folders and a measured record over each other, in SI units. Curves that
+/// an instrument has written have no marks, which are those of friction itself.
 ///
 /// # Errors
-/// As for [`overlay`]; when an instrument needs the time of a drive that is held; when the record has less than a tenth of the shorter of both in common with every
-/// curve, and when a shift that is not given could be one or another.
+/// As for [`overlay`]; when an instrument needs the time of a drive that is held; when the record has less
+/// than a tenth of the shorter of both in common with every curve, and when a shift that is not given could
+/// be one or another.
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
