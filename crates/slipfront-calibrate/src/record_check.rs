@@ -111,56 +111,47 @@ mod tests {
                 distance: 0.9,
                 differs_in: vec![("spectrum", 1.2), ("slips", 1.0), ("levels", 0.7)],
             },
-            closest: Some(Closest {
-                noise_ratio: 1.01,
-                correlation: 0.05,
-                most_correlated: 0.2,
-                share: 1.0,
-            }),
+            closest: closest(1.01, 0.05, 1.0),
         }
+    }
+
+    fn closest(noise_ratio: f64, correlation: f64, share: f64) -> Option<Closest> {
+        Some(Closest {
+            noise_ratio,
+            correlation,
+            most_correlated: 0.2,
+            share,
+        })
     }
 
     /// There is a reason where a record is refused, and none where it is not.
     #[test]
     fn every_refusal_has_its_reason() {
         assert!(!passed().is_refused() && passed().reasons().is_empty());
-        let refusals: [(fn(&mut RecordCheck), &str); 6] = [
-            (
-                |check| check.misfit.has_drift = true,
-                "friction drifts by -1 to 2 %",
-            ),
-            (|check| check.misfit.distance = 3.0, "they are 3 times as far"),
-            (
-                |check| check.misfit.level = [9.0, 1.0, 3.0],
-                "3 times the largest",
-            ),
-            (|check| check.comparison.rank = 0.0, "most in spectrum and slips"),
-            (
-                |check| {
-                    check.closest = check.closest.map(|closest| Closest {
-                        noise_ratio: 2.0,
-                        share: 0.25,
-                        ..closest
-                    });
-                },
-                "over the first 1/4 of the records by 2.0 times the noise",
-            ),
-            (
-                |check| {
-                    check.closest = check.closest.map(|closest| Closest {
-                        correlation: 0.5,
-                        ..closest
-                    });
-                },
-                "(correlation 0.50, of white noise less than 0.20)",
-            ),
-        ];
-        for (change, words) in refusals {
+        let refuse = |change: fn(&mut RecordCheck), words: &str| {
             let mut check = passed();
             change(&mut check);
             let reasons = check.reasons();
             assert!(check.is_refused() && reasons.len() == 1, "{words}: {reasons:?}");
             assert!(reasons[0].contains(words), "{words}: {reasons:?}");
-        }
+        };
+        refuse(
+            |check| check.misfit.has_drift = true,
+            "friction drifts by -1 to 2 %",
+        );
+        refuse(|check| check.misfit.distance = 3.0, "they are 3 times as far");
+        refuse(
+            |check| check.misfit.level = [9.0, 1.0, 3.0],
+            "3 times the largest",
+        );
+        refuse(|check| check.comparison.rank = 0.0, "most in spectrum and slips");
+        refuse(
+            |check| check.closest = closest(2.0, 0.05, 0.25),
+            "over the first 1/4 of the records by 2.0 times the noise",
+        );
+        refuse(
+            |check| check.closest = closest(1.01, 0.5, 1.0),
+            "(correlation 0.50, of white noise less than 0.20)",
+        );
     }
 }
