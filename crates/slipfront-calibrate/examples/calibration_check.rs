@@ -328,6 +328,7 @@ fn experiment(
             conditions,
             instrument: None,
             is_finer: false,
+            has_half_step: false,
         },
         runs: 600,
         kinds: Vec::new(),

@@ -8,6 +8,8 @@ use crate::misfit::{Check, Misfit};
 use crate::normals::{Stream, normals};
 use crate::sample_points::SamplePoints;
 use crate::scaling::{Scaling, summaries_of, units_of_friction};
+use crate::set_up::Curves;
+use crate::summaries::quantiles;
 use crate::training::Training;
 
 /// Width of an interval of 90 %, as a share of the range, above which the record does not determine the
@@ -128,6 +130,31 @@ impl Calibration {
             likeness: self.likeness(&predictions),
             predictions,
         }
+    }
+
+    /// How far the median of every unknown moves from some records to others of the same unknowns: the median of
+    /// all pairs, as a share of the range.
+    pub(crate) fn moved(&self, from: &[Curves], to: &[Curves]) -> Vec<f64> {
+        let medians = |records: &Curves| -> Vec<f64> {
+            let found = self.estimate(records).distributions;
+            found.iter().map(|one| one.quantile(0.5)).collect()
+        };
+        let pairs: Vec<Vec<f64>> = from
+            .par_iter()
+            .zip(to)
+            .map(|(from, to)| {
+                medians(to)
+                    .iter()
+                    .zip(medians(from))
+                    .map(|(to, from)| to - from)
+                    .collect()
+            })
+            .collect();
+        let of_unknown = |j: usize| {
+            let all: Vec<f64> = pairs.iter().map(|moved| moved[j]).collect();
+            quantiles(&all, [0.5])[0]
+        };
+        (0..self.truths.len()).map(of_unknown).collect()
     }
 
     /// Likeness of a record with these predictions to every training run: a product of normal weights, wide

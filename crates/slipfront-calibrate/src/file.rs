@@ -389,6 +389,7 @@ impl CalibrationFile {
             conditions: conditions.collect(),
             instrument: self.project.table(INSTRUMENT)?.cloned(),
             is_finer: false,
+            has_half_step: false,
         };
         let middle = set_up.middle();
         let in_instrument = |why: String| self.project.error_in_table(INSTRUMENT, why);

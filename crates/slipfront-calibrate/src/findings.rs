@@ -65,6 +65,10 @@ pub(crate) struct UnknownEstimate {
     pub(crate) on_finer_blocks: Option<(f64, [f64; 2])>,
     /// Whether the median on blocks of half the size lies beyond the interval.
     pub(crate) belongs_to_block: bool,
+    /// Median at half the time step.
+    pub(crate) at_half_step: f64,
+    /// Whether the median at half the time step lies beyond the interval.
+    pub(crate) depends_on_step: bool,
 }
 
 /// Two unknowns that are determined only together.
@@ -107,7 +111,17 @@ impl UnknownEstimate {
             is_determined: !estimate.undetermined.contains(&number),
             on_finer_blocks: None,
             belongs_to_block: false,
+            at_half_step: median,
+            depends_on_step: false,
         }
+    }
+
+    /// Adds the median at half the time step, by the share of the range by which records of half the step move the
+    /// estimate.
+    pub(crate) fn hold_against_half_step(&mut self, unknown: &Unknown, moved: f64) {
+        let [low, high] = self.interval;
+        self.at_half_step = unknown.at(unknown.share_of(self.median) - moved);
+        self.depends_on_step = self.is_determined && !(low..=high).contains(&self.at_half_step);
     }
 
     /// Adds the results on blocks of half the size.

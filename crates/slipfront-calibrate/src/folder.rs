@@ -31,6 +31,9 @@ use slipfront_study::{StudyError, TrainingError};
 /// Beginning of the names of copies of records.
 const RECORD: &str = "record-";
 
+/// Number of runs at half the time step.
+const AT_HALF_STEP: usize = 40;
+
 /// Number of points that are drawn from the estimate.
 const SAMPLE: usize = 400;
 
@@ -306,6 +309,14 @@ impl CalibrationFolder {
         let next = self.weigh(&mut work, further, &training, &told)?;
         let (predicted, check) = told.check(&set_up, keys.noise, stop)?;
         let bands = predicted.bands();
+        let points = predicted.points()[..AT_HALF_STEP].to_vec();
+        let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop)?;
+        let moved = told
+            .calibration
+            .moved(&predicted.curves()[..AT_HALF_STEP], half_step.curves());
+        for (told, (unknown, moved)) in unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved)) {
+            told.hold_against_half_step(unknown, moved);
+        }
         let within = bands.iter().zip(&told.curves);
         let findings = Findings {
             runs: keys.runs as usize,

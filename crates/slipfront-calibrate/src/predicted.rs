@@ -136,6 +136,11 @@ impl Predicted {
         (0..records).map(band).collect()
     }
 
+    /// Friction of every record, for every run.
+    pub(crate) fn curves(&self) -> &[Curves] {
+        &self.curves
+    }
+
     /// Compares records with the runs, by numbers of which most have no part in the estimate.
     pub fn compare(&self, records: &[Vec<f64>]) -> Comparison {
         let (rows, own) = self.all_numbers(records);

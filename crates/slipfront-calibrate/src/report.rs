@@ -224,6 +224,7 @@ fn in_words(found: &Findings) -> String {
             number + 1
         ));
     }
+    text += &at_half_step(found);
     text += &on_finer_blocks(found);
     text += &further(found);
     text
@@ -248,6 +249,8 @@ fn row(told: &UnknownEstimate) -> Vec<String> {
         row.push("not told".to_owned());
     } else if told.belongs_to_block {
         row.push("belongs to the block".to_owned());
+    } else if told.depends_on_step {
+        row.push("depends on the step".to_owned());
     }
     row
 }
@@ -311,6 +314,24 @@ fn instrument(found: &Findings) -> String {
         noise.join(", "),
         four_digits(100.0 * found.noise)
     )
+}
+
+/// The medians at half the time step, in words.
+fn at_half_step(found: &Findings) -> String {
+    let moved: Vec<String> = found
+        .unknowns
+        .iter()
+        .filter(|told| told.depends_on_step)
+        .map(|told| format!("{} ({})", told.key, told.text(told.at_half_step)))
+        .collect();
+    paragraph(&if moved.is_empty() {
+        "At half the time step every median lies within its interval.".to_owned()
+    } else {
+        format!(
+            "At half the time step these leave their intervals: {}. Lower `time.step` of the case until they stay.",
+            moved.join(", ")
+        )
+    })
 }
 
 fn on_finer_blocks(found: &Findings) -> String {

@@ -21,6 +21,8 @@ pub struct SamplePoints {
     step: f64,
     /// Number of values of the record.
     count: usize,
+    /// Number of values that are averaged to one.
+    merged: usize,
     /// Least and largest value that the instrument writes.
     range: Option<[f64; 2]>,
 }
@@ -37,6 +39,7 @@ impl SamplePoints {
             start,
             step,
             count,
+            merged: count.div_ceil(MAX_VALUES),
             range: None,
         })
     }
@@ -66,24 +69,19 @@ impl SamplePoints {
         self.start + (self.count - 1) as f64 * self.step
     }
 
-    /// Number of values that are averaged to one.
-    fn merged(&self) -> usize {
-        self.count.div_ceil(MAX_VALUES)
-    }
-
     /// Number of averages, which are the values of a curve.
     pub(crate) fn n_values(&self) -> usize {
-        self.count / self.merged()
+        self.count / self.merged
     }
 
     /// Standard deviation of the noise of an average over that of a value.
     pub(crate) fn noise_share(&self) -> f64 {
-        1.0 / (self.merged() as f64).sqrt()
+        1.0 / (self.merged as f64).sqrt()
     }
 
     /// Places of the averages.
     pub fn places(&self) -> Vec<f64> {
-        let merged = self.merged();
+        let merged = self.merged;
         let middle = 0.5 * (merged - 1) as f64;
         (0..self.n_values())
             .map(|k| self.start + ((k * merged) as f64 + middle) * self.step)
@@ -114,6 +112,15 @@ impl SamplePoints {
         Some(self.averages(x, &instrument.record(&curve.time, &friction)))
     }
 
+    /// The first places, a share of all.
+    pub(crate) fn beginning(&self, share: f64) -> Self {
+        let values = (share * self.n_values() as f64) as usize;
+        Self {
+            count: self.merged * values.max(1),
+            ..self.clone()
+        }
+    }
+
     /// The places for records that an instrument bounds.
     pub(crate) fn bounded_by(self, range: Option<[f64; 2]>) -> Self {
         Self { range, ..self }
@@ -122,7 +129,7 @@ impl SamplePoints {
     /// Standard deviation of the noise of a curve at the places, where that of a value of the record is a share of
     /// the mean.
     pub(crate) fn deviation(&self, curve: &[f64], noise: f64) -> f64 {
-        let share = noise / (self.merged() as f64).sqrt();
+        let share = noise / (self.merged as f64).sqrt();
         share * curve.iter().sum::<f64>().abs() / curve.len() as f64
     }
 
@@ -160,7 +167,7 @@ impl SamplePoints {
                 y[before] + share * (y[after] - y[before])
             })
             .collect();
-        let merged = self.merged();
+        let merged = self.merged;
         let means = values.chunks_exact(merged);
         means
             .map(|chunk| chunk.iter().sum::<f64>() / merged as f64)

@@ -35,6 +35,8 @@ pub struct SetUp {
     pub instrument: Option<toml::Table>,
     /// Whether blocks have half the size of those of the case.
     pub is_finer: bool,
+    /// Whether the time step is half of that of the case.
+    pub has_half_step: bool,
 }
 
 /// Friction without noise, for every record.
@@ -83,6 +85,23 @@ impl SetUp {
         vec![0.5; self.unknowns.len()]
     }
 
+    /// The set-up for the beginning of the records, a share of them.
+    pub(crate) fn beginning(&self, share: f64) -> Self {
+        let mut part = self.clone();
+        for conditions in &mut part.conditions {
+            conditions.grid = conditions.grid.beginning(share);
+        }
+        part
+    }
+
+    /// The set-up at half the time step.
+    pub(crate) fn at_half_step(&self) -> Self {
+        Self {
+            has_half_step: true,
+            ..self.clone()
+        }
+    }
+
     /// The set-up on blocks of half the size.
     ///
     /// # Errors
@@ -118,7 +137,12 @@ impl SetUp {
         let all: Vec<&Override> = conditions.overrides.iter().chain(&changes).collect();
         let made =
             |file: CaseFile| Case::new(file, "training", &self.base.folder, &mut |_| true, Ranks::ALONE);
-        let case = made(self.base.parse()?.with(&all)?)?;
+        let mut case = made(self.base.parse()?.with(&all)?)?;
+        if self.has_half_step {
+            let half = Override::new("time.step", &toml::Value::from(0.5 * case.time_plan.dt_star));
+            let all: Vec<&Override> = all.into_iter().chain([&half]).collect();
+            case = made(self.base.parse()?.with(&all)?)?;
+        }
         if !self.is_finer {
             return Ok(case);
         }

@@ -122,6 +122,7 @@ mod tests {
             conditions: conditions.into(),
             instrument: None,
             is_finer: false,
+            has_half_step: false,
         }
     }
 

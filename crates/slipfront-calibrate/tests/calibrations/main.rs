@@ -15,6 +15,7 @@ use serde_json::Value;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationKeys, CalibrationStage};
 use slipfront_case::case::Case;
 use slipfront_design::DesignFile;
+use slipfront_run::instrument::InstrumentKeys;
 use slipfront_run::measured::Measure;
 use slipfront_run::run_curve::run_curve_unless;
 use slipfront_study::StudyError;
@@ -57,12 +58,15 @@ fn write_record(path: &Path) {
     fs::write(path, format!("time_s,force_n\n{}", lines.collect::<String>())).unwrap();
 }
 
-/// A standard normal for every step: twelve parts of multiples of the golden ratio, each uniform, less their
-/// mean.
+/// A standard normal for every step, by Box and Muller from two numbers of SplitMix64.
 fn normal(step: usize) -> f64 {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let uniform = |k: usize| ((step * 12 + k + 1) as f64 * golden * 1e4).fract();
-    (0..12).map(uniform).sum::<f64>() - 6.0
+    let uniform = |k: u64| {
+        let z = (2 * step as u64 + k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (((z ^ (z >> 31)) >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    };
+    (-2.0 * uniform(0).ln()).sqrt() * (std::f64::consts::TAU * uniform(1)).cos()
 }
 
 /// Reads records, and opens a folder for them; training runs are kept in it, or in another one.
@@ -164,7 +168,8 @@ fn calibration_files_are_true() {
 #[test]
 fn the_reference_has_the_keys_of_the_struct() {
     expect_page("calibration-file.md", |page| {
-        with_keys(page, "`[calibrate]`", CalibrationKeys::KEYS)
+        let page = with_keys(page, "`[calibrate]`", CalibrationKeys::KEYS);
+        with_keys(&page, "`[instrument]`", InstrumentKeys::KEYS)
     });
 }
 
@@ -333,6 +338,116 @@ fn records_of_another_law_are_refused_and_conditions_count() {
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
 }
 
+/// A block on a spring, whose damping and stiffness are unknown.
+const BLOCK: &str = "[base]\nslider.blocks = [1, 1]\ndrive.v_star = 0.05\ntime.step = 0.2\n\
+    friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
+const OF_BLOCK: &str = "[calibrate]\nx = 't_s'\ny = 'mu_1'\nnoise = 0.01\nruns = 300\nfiner_runs = 0\n\
+    unknowns = { 'slider.omega_star' = [0.05, 0.5], 'drive.stiffness_star' = [0.1, 0.4] }\n";
+
+/// A record of the block with an Omega* of 0.2 and a stiffness of 0.25, 400 values over 240 t*, behind a filter
+/// of first order with this time constant in t*, by Euler's method in 50 steps of a value.
+fn write_filtered(path: &Path, constant: f64) {
+    let text = "slider = { blocks = [1, 1], omega_star = 0.2 }\ndrive = { v_star = 0.05, stiffness_star = 0.25 }\n\
+                time.step = 0.2\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
+    let case = Case::parse(text, "truth", "", &[]).unwrap();
+    let unit = case.scales.time();
+    let curve = run_curve_unless(&case, Measure::Time, 241.0 * unit, &|| false)
+        .unwrap()
+        .unwrap();
+    let friction = |star: f64| {
+        let place = star / 0.2;
+        let k = place as usize;
+        curve.coefficient[k] + (place - k as f64) * (curve.coefficient[k + 1] - curve.coefficient[k])
+    };
+    let dt = 0.6 / 50.0;
+    let mut x = 0.0;
+    let mut values = Vec::new();
+    for step in 0..400 * 50 {
+        x += dt / (constant + dt) * (friction(f64::from(step) * dt) - x);
+        if step % 50 == 0 {
+            values.push(x);
+        }
+    }
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let lines = values.iter().enumerate();
+    let lines =
+        lines.map(|(k, y)| format!("{:e},{:e}\n", 0.6 * k as f64 * unit, y + 0.01 * mean * normal(k)));
+    fs::write(path, format!("t_s,mu_1\n{}", lines.collect::<String>())).unwrap();
+}
+
+/// The filter of an instrument is part of the model: where the file has it, the intervals are about the truth and
+/// the record passes; a file without it, or with half of it, refuses the record.
+#[test]
+fn a_filter_is_part_of_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    write_filtered(&record, 2.0);
+    let unit = Case::parse("", "unit", "", &[]).unwrap().scales.time();
+    let found = |name: &str, instrument: &str| {
+        let out = folder.path().join(name);
+        let file = file(&format!("{BLOCK}{OF_BLOCK}{instrument}"));
+        let mut fit = open(&out, None, &file, std::slice::from_ref(&record), false).unwrap();
+        let text = find(&mut fit, 2).unwrap();
+        (numbers(&out), text)
+    };
+    let filter = |constant: f64| {
+        format!(
+            "[instrument]\nfilter = 'first_order'\ntime = '{:e} s'\n",
+            constant * unit
+        )
+    };
+    let (told, text) = found("told", &filter(2.0));
+    assert!(!told["is_refused"].as_bool().unwrap(), "{text}");
+    for (number, truth) in [0.2, 0.25].into_iter().enumerate() {
+        let unknown = &told["unknowns"][number];
+        let end = |k: usize| unknown["interval"][k].as_f64().unwrap();
+        // One interval in ten misses, hardly any by half of its width.
+        let beyond = (end(0) - truth).max(truth - end(1));
+        assert!(beyond < 0.5 * (end(1) - end(0)), "{text}");
+    }
+    assert!(text.contains("The instrument passes friction up to"), "{text}");
+    for (name, instrument) in [("none", String::new()), ("half", filter(1.0))] {
+        let (other, text) = found(name, &instrument);
+        assert!(other["is_refused"].as_bool().unwrap(), "{name}: {text}");
+        assert!(
+            text.contains("the closest curve that was found differs"),
+            "{text}"
+        );
+    }
+}
+
+/// A gain that is not known is an unknown as others are.
+#[test]
+fn a_key_of_the_instrument_may_be_unknown() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    write_filtered(&record, 1e-6);
+    let keys = OF_BLOCK.replace(
+        "'slider.omega_star' = [0.05, 0.5]",
+        "'instrument.gain' = [0.8, 1.2]",
+    );
+    let block = BLOCK.replace(
+        "slider.blocks = [1, 1]",
+        "slider = { blocks = [1, 1], omega_star = 0.2 }",
+    );
+    let out = folder.path().join("found");
+    let mut fit = open(&out, None, &file(&format!("{block}{keys}")), &[record], false).unwrap();
+    let text = find(&mut fit, 2).unwrap();
+    let of_gain = numbers(&out)["unknowns"].as_array().unwrap().clone();
+    let of_gain = of_gain
+        .iter()
+        .find(|one| one["key"] == "instrument.gain")
+        .unwrap();
+    let end = |k: usize| of_gain["interval"][k].as_f64().unwrap();
+    assert!(end(0) <= 1.0 && 1.0 <= end(1) && end(1) - end(0) < 0.05, "{text}");
+    // The case that is written has no key of the instrument.
+    assert!(
+        !fs::read_to_string(out.join("case.toml"))
+            .unwrap()
+            .contains("gain")
+    );
+}
+
 /// A file or record that cannot be calibrated is refused with its key.
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
@@ -342,6 +457,10 @@ fn what_cannot_be_calibrated_is_refused() {
     let whole = format!("{BASE}{KEYS}");
     let refused = |from: &str, to: &str| {
         assert!(whole.contains(from), "{from}");
+        let whole = match to.contains("'held'") {
+            true => format!("{whole}[instrument]\nfilter = 'first_order'\ncutoff = '1 GHz'\n"),
+            false => whole.clone(),
+        };
         let out = folder.path().join("out");
         let opened = CalibrationFile::parse(&whole.replace(from, to), "fit.toml", "fit", Path::new(""))
             .and_then(|file| open(&out, None, &file, std::slice::from_ref(&record), false));
@@ -391,6 +510,16 @@ fn what_cannot_be_calibrated_is_refused() {
             "more than 10000000: a step lasts",
         ),
         ("[calibrate]", "[other]\n[calibrate]", "other"),
+        (
+            "[calibrate]",
+            "[instrument]\nfilter = 'first_order'\n[calibrate]",
+            "`filter` of the instrument: give its `cutoff`",
+        ),
+        (
+            "time.step",
+            "drive.loading = 'held'\ntime.step",
+            "a held drive has no time while blocks slide",
+        ),
     ] {
         let error = refused(from, to);
         assert!(error.contains(sentence), "{from}: {error}");

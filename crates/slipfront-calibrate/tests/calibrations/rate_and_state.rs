@@ -169,6 +169,7 @@ fn set_up() -> SetUp {
         }],
         instrument: None,
         is_finer: false,
+        has_half_step: false,
     }
 }
 
