@@ -6,7 +6,7 @@
 0.73
 """
 
-from ._calibrate import Calibration, CalibrationResults, Interval
+from ._calibrate import Calibration, CalibrationResults, Interval, RecordCheck
 from ._case import Case, CaseError
 from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
@@ -35,6 +35,7 @@ __all__ = [
     "Least",
     "PaperResults",
     "QuantityOnMeshes",
+    "RecordCheck",
     "Run",
     "RunError",
     "Simulation",

@@ -9,8 +9,9 @@ import os
 import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,12 @@ from ._pickle import sealed
 from ._progress import Bar, parted
 from ._simulation import _threads
 from ._study import _as_base
+from ._tables import frame, read_table
 from ._temporary import TemporaryFolder
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
 
 
 class Columns(Protocol):
@@ -32,12 +38,20 @@ class Columns(Protocol):
         """Names and columns."""
 
 
+Found = TypeVar("Found")
+
 Record: TypeAlias = str | os.PathLike[str] | Columns | tuple[npt.ArrayLike, npt.ArrayLike]
 """A record: the path of a table of text or of a workbook; its columns by their names, which are found as in such a table, with or without
 their units; or two arrays, of the columns `x` and `y`."""
 
 Range: TypeAlias = Sequence[float] | Sequence[str] | Mapping[str, Any]
 """Both ends of a range, as numbers or texts with a unit, or ``{"from": 0.03, "to": 0.5, "scale": "log"}``."""
+
+
+def _table(name: str, keys: Mapping[str, Any], arrays: _toml.Arrays) -> str:
+    """A table of a calibration file, without the keys that are None."""
+    lines = (f"{key} = {_toml.value(given, arrays, f'{name}.{key}')}\n" for key, given in keys.items() if given is not None)
+    return f"[{name}]\n{''.join(lines)}"
 
 
 def _without_folder(text: str, folder: Path) -> str:
@@ -72,6 +86,29 @@ class Interval:
     belongs_to_block: bool
 
 
+@dataclasses.dataclass(frozen=True)
+class RecordCheck:
+    """Tests of whether the model can have made records.
+
+    Attributes
+    ----------
+    reasons
+        Sentences that say why it cannot; none if nothing speaks against it.
+    misfit, comparison, closest
+        Numbers of the tests, as `CalibrationResults` has them.
+    """
+
+    reasons: list[str]
+    misfit: dict[str, Any]
+    comparison: dict[str, Any]
+    closest: dict[str, Any] | None
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the model cannot have made the records: some 4 % of those that it has made are refused, too."""
+        return bool(self.reasons)
+
+
 class Calibration:
     """The keys of a case that are not known, and what is known of records.
 
@@ -86,6 +123,9 @@ class Calibration:
     x, y
         Columns of records: times or displacements, and forces, or coefficients if their unit is 1. Names end in the unit, or `x_unit` and
         `y_unit` tell it.
+    instrument
+        What stands between friction and the record, as the table ``[instrument]``: load cell, filter, sampling, gain, offset and range.
+        Unknowns may be keys of it, such as ``"instrument.gain"``.
     keys
         Further keys of the table ``[calibrate]``, such as ``against``, ``runs``, ``finer_runs`` or ``next``.
 
@@ -100,6 +140,11 @@ class Calibration:
     >>> fit = calibration.fit(record, progress=False)
     >>> fit.intervals["drive.stiffness_star"].is_determined
     True
+
+    Whether the model makes such a record, without the rest:
+
+    >>> calibration.check(record, progress=False).is_refused
+    False
     """
 
     def __init__(
@@ -110,13 +155,15 @@ class Calibration:
         noise: float | None = None,
         x: str = "time_s",
         y: str = "force_n",
+        instrument: Mapping[str, Any] | None = None,
         name: str | None = None,
         **keys: Any,
     ) -> None:
         # Runs of records at the same times are made once.
         self._training = TemporaryFolder()
         if unknowns is None or noise is None:
-            if unknowns is not None or noise is not None or keys or not isinstance(case, (str, os.PathLike)):
+            is_alone = unknowns is None and noise is None and instrument is None and not keys
+            if not is_alone or not isinstance(case, (str, os.PathLike)):
                 raise ValueError("give a case with `unknowns` and `noise`, or the path of a calibration file alone")
             self._native = _slipfront.Calibration.load(Path(case))
             return
@@ -124,9 +171,8 @@ class Calibration:
         arrays = _toml.Arrays(case._native.arrays)
         ranges = {key: dict(ends) if isinstance(ends, Mapping) else list(ends) for key, ends in unknowns.items()}
         lines = {"unknowns": ranges, "noise": noise, "x": x, "y": y, **keys}
-        text = "[calibrate]\n" + "".join(
-            f"{key} = {_toml.value(given, arrays, f'calibrate.{key}')}\n" for key, given in lines.items() if given is not None
-        )
+        tables = {"calibrate": lines} if instrument is None else {"calibrate": lines, "instrument": instrument}
+        text = "".join(_table(name, keys, arrays) for name, keys in tables.items())
         # Its runs read arrays from files, which stand as long as it may have some to do.
         text, self._arrays = arrays.on_disk(text + _as_base(case))
         self._native = _slipfront.Calibration.parse(text, name or f"{case.name}-calibration", Path())
@@ -175,12 +221,62 @@ class Calibration:
         UserWarning
             When the model does not make such records, and about lines without numbers at the end of a record.
         """
-        shown, watch = parted(progress)
         temporary = TemporaryFolder()
-        paths = [self._path(record, temporary.path / f"record {number}.csv") for number, record in enumerate(records, 1)]
         path = temporary.path / self.name if folder is None else Path(folder)
         if training is None and folder is None:
             training = self._training.path
+        kept = None if training is None else Path(training)
+        notes = self._watched(records, temporary, progress, threads, partial(self._native.execute, (path, force), kept))
+        results = CalibrationResults.read(path, None if folder is None else path)
+        if results.is_refused:
+            notes.append("the model does not make such records, and the intervals promise nothing: `text` says why, and what to look at")
+        for note in notes:
+            warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
+        return results
+
+    def check(
+        self,
+        *records: Record,
+        progress: bool | Callable[[int, int], object] | None = None,
+        threads: int | None = None,
+    ) -> RecordCheck:
+        """Test whether the model makes such records, as `fit` does, without blocks of half the size and next experiments.
+
+        Training runs are shared with those fits of this object that are in memory.
+
+        Parameters
+        ----------
+        records, progress, threads
+            As of `fit`.
+
+        Raises
+        ------
+        CaseError
+            When a record cannot be read, or the ranges leave the bounds of the case.
+
+        Warns
+        -----
+        UserWarning
+            About lines without numbers at the end of a record.
+        """
+        temporary = TemporaryFolder()
+        work = partial(self._native.check, temporary.path / self.name, self._training.path)
+        reasons, tests, notes = self._watched(records, temporary, progress, threads, work)
+        for note in notes:
+            warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
+        return RecordCheck(reasons, **json.loads(tests))
+
+    def _watched(
+        self,
+        records: Sequence[Record],
+        temporary: TemporaryFolder,
+        progress: bool | Callable[[int, int], object] | None,
+        threads: int | None,
+        work: Callable[[list[Path], int, Callable[[int, int], object]], Found],
+    ) -> Found:
+        """Do some work over records, whose files in a temporary folder no error names."""
+        shown, watch = parted(progress)
+        paths = [self._path(record, temporary.path / f"record {number}.csv") for number, record in enumerate(records, 1)]
         with Bar(shown, None, "run", self.name) as bar:
 
             def show(done: int, total: int) -> None:
@@ -188,18 +284,11 @@ class Calibration:
                     watch(done, total)
                 bar.show(done, total)
 
-            kept = None if training is None else Path(training)
             try:
-                notes = self._native.execute((path, force), kept, paths, _threads(threads), show)
+                return work(paths, _threads(threads), show)
             except _slipfront.CaseError as error:
                 error.args = (_without_folder(str(error), temporary.path),)
                 raise
-            results = CalibrationResults.read(path, None if folder is None else path)
-        if results.is_refused:
-            notes.append("the model does not make such records, and the intervals promise nothing: `text` says why, and what to look at")
-        for note in notes:
-            warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
-        return results
 
     def _path(self, record: Record, path: Path) -> Path:
         """Path of a record; a record that is given as columns is written there."""
@@ -235,9 +324,16 @@ class CalibrationResults:
         What was found, as the command prints it.
     """
 
-    def __init__(self, folder: Path | None, found: dict[str, Any], posterior: dict[str, npt.NDArray[np.float64]], text: str) -> None:
+    def __init__(
+        self,
+        folder: Path | None,
+        found: dict[str, Any],
+        posterior: dict[str, npt.NDArray[np.float64]],
+        text: str,
+        bands: list[dict[str, list[Any]]],
+    ) -> None:
         self.folder, self.posterior, self.text = folder, posterior, text
-        self._found = found
+        self._found, self._bands = found, bands
         self.intervals = {
             told["key"]: Interval(
                 median=told["median"],
@@ -256,7 +352,15 @@ class CalibrationResults:
         found = json.loads((folder / "calibration.json").read_bytes())
         points = np.loadtxt(folder / "posterior.csv", delimiter=",", skiprows=1, ndmin=2)
         posterior = {told["key"]: points[:, number] for number, told in enumerate(found["unknowns"])}
-        return cls(kept, found, posterior, (folder / "calibration.txt").read_text(encoding="utf-8"))
+        bands = [read_table(folder / f"band-{number}.csv") for number in range(1, len(found["within_band_percent"]) + 1)]
+        return cls(kept, found, posterior, (folder / "calibration.txt").read_text(encoding="utf-8"), bands)
+
+    @property
+    def unknowns(self) -> pd.DataFrame:
+        """A row for each key: its median, the ends of its interval, its unit, whether the records tell it, and whether it belongs to the block."""
+        names = [field.name for field in dataclasses.fields(Interval)]
+        columns = {name: [getattr(interval, name) for interval in self.intervals.values()] for name in names}
+        return frame({"key": list(self.intervals), **columns})
 
     @property
     def undetermined(self) -> list[str]:
@@ -275,9 +379,45 @@ class CalibrationResults:
 
     @property
     def misfit(self) -> dict[str, Any]:
-        """Tests of the records: an interval of their drift as a share of friction, their distance from the training runs, and mean friction
-        in the second half of the record that has it farthest outside of the training, with the least and the largest of the training runs."""
+        """The records beside the training runs: an interval of their drift as a share of friction, their distance from the runs, and mean
+        friction in the second half of the record that has it farthest outside of the training, with the least and the largest of the training
+        runs. `comparison` and `closest` are the tests beside it."""
         return dict(self._found["misfit"])
+
+    @property
+    def comparison(self) -> dict[str, Any]:
+        """The records beside runs of the calibrated model: `rank`, the share of the runs that are at least as far from the others as the
+        records are; `distance` of the records from the runs, over the one that half of the runs exceed; `differs_in`, what the records differ in
+        with the mean square of the differences in standard deviations of the runs, the largest first."""
+        return dict(self._found["comparison"])
+
+    @property
+    def closest(self) -> dict[str, Any] | None:
+        """Differences between the records and the curve of the model that lies closest to them; None where random coefficients make curves of
+        the same keys differ. `noise_ratio` is their root mean square over the noise, `correlation` that of neighbouring values, which is no
+        noise above `most_correlated`, and `share` the part of the records, from their beginning, over which they were compared."""
+        found = self._found["closest"]
+        return None if found is None else dict(found)
+
+    def plot(self, record: int = 1, ax: Axes | None = None) -> Axes:
+        """Draw a record over the band of the calibrated model, as wide as a column of a journal (85 mm): the picture `band-1.png` of the command.
+
+        Parameters
+        ----------
+        record
+            Number of the record, from 1.
+        ax
+            Axes to draw in, in their own style; new ones unless given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from ._plot import plot_band
+
+        if not 1 <= record <= len(self._bands):
+            raise ValueError(f"there is no record {record}: the records of this calibration are 1 to {len(self._bands)}")
+        return plot_band(self._bands[record - 1], ax)
 
     @property
     def case(self) -> Case:
@@ -291,7 +431,7 @@ class CalibrationResults:
         return dict(json.loads(json.dumps(self._found)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return sealed(type(self), self.folder, self._found, self.posterior, self.text)
+        return sealed(type(self), self.folder, self._found, self.posterior, self.text, self._bands)
 
     def __repr__(self) -> str:
         return self.text.rstrip()

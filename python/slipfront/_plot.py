@@ -183,6 +183,30 @@ def _points(curves: dict[str, list[dict[str, Any]]], along: str, quantity: str, 
         ax.legend(frameon=False)
 
 
+def plot_band(band: dict[str, list[Any]], ax: Axes | None) -> Axes:
+    """Draw a record over the band of a calibrated model, as described at `CalibrationResults.plot`."""
+    return drawn(partial(_band, band), 0.75, ax)
+
+
+def _band(band: dict[str, list[Any]], ax: Axes) -> None:
+    titles = list(band)
+    x, record, low, median, high = (np.asarray(column, dtype=float) for column in band.values())
+    (along, x_title), (up, y_title) = _in_unit(titles[0], x), _in_unit(titles[1], high)
+    ax.fill_between(x / along, low / up, high / up, alpha=0.3, linewidth=0)
+    ax.plot(x / along, median / up, label="model, median and 90 %")
+    ax.plot(x / along, record / up, label="record")
+    ax.set_xlabel(x_title)
+    ax.set_ylabel(y_title)
+    ax.legend(frameon=False)
+
+
+def _in_unit(title: str, values: npt.NDArray[np.float64]) -> tuple[float, str]:
+    """The unit that suits the values of a column, and its title with that unit."""
+    name, bracket, unit = title.partition(" (")
+    size, prefix = _unit(float(np.nanmax(np.abs(values), initial=0.0))) if bracket else (1.0, "")
+    return size, f"{name}{bracket}{prefix}{unit}"
+
+
 def _unit(largest: float) -> tuple[float, str]:
     """The power of a thousand that suits a number, and its prefix."""
     prefixes = ("f", "p", "n", "\u00b5", "m", "", "k", "M", "G")

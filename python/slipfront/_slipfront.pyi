@@ -178,6 +178,14 @@ class Calibration:
         threads: int,
         watch: Callable[[int, int], object] | None,
     ) -> list[str]: ...
+    def check(
+        self,
+        folder: Path,
+        training: Path | None,
+        records: list[Path],
+        threads: int,
+        watch: Callable[[int, int], object] | None,
+    ) -> tuple[list[str], str, list[str]]: ...
 
 @final
 class TemporaryParent:

@@ -1,6 +1,6 @@
 //! Calibrations: keys of a case from measured records.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress, SampledRecord};
 use slipfront_study::StudyError;
 
-use crate::errors::study_error;
+use crate::errors::{folder_error, study_error};
 use crate::process::{detached, on_pool};
 
 /// A calibration file.
@@ -53,29 +53,26 @@ impl Calibration {
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Vec<String>> {
         let (folder, force) = folder;
-        let opened = detached(py, || {
-            let records = self.file.read(&records)?;
-            self.file.check_memory(&records, threads)?;
-            let notes = records.iter().flat_map(SampledRecord::notes).collect();
-            let folder = CalibrationFolder::open(&folder, training.as_deref(), &self.file, records, force)?;
-            Ok((folder, notes))
-        })?;
-        let (mut opened, notes) = opened.map_err(|error| study_error(py, &error))?;
-        let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);
-        let find = |stop: &AtomicBool| {
-            opened.find(stop, &mut |now| {
-                *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(*now);
-            })
-        };
-        let mut show = |py: Python<'_>| {
-            let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
-            match (&watch, now) {
-                (Some(watch), Some(now)) => watch.call1(py, (now.runs, now.of)).map(drop),
-                _ => Ok(()),
-            }
-        };
-        on_pool(py, threads, find, &mut show)?;
+        let (mut opened, notes) = self.open(py, &folder, force, training.as_deref(), &records, threads)?;
+        with_progress(py, threads, watch.as_ref(), |stop, show| opened.find(stop, show))?;
         Ok(notes)
+    }
+
+    /// Tests whether the model can have made the records, and returns the reasons for which it cannot, the
+    /// numbers of the tests as JSON, and sentences about lines of the records that were passed over.
+    fn check(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        training: Option<PathBuf>,
+        records: Vec<PathBuf>,
+        threads: usize,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<(Vec<String>, String, Vec<String>)> {
+        let (mut opened, notes) = self.open(py, &folder, false, training.as_deref(), &records, threads)?;
+        let found = with_progress(py, threads, watch.as_ref(), |stop, show| opened.check(stop, show))?;
+        let tests = serde_json::to_string(&found).map_err(folder_error)?;
+        Ok((found.reasons(), tests, notes))
     }
 }
 
@@ -89,4 +86,47 @@ impl Calibration {
             file: file.map_err(|error| study_error(py, &error))?,
         })
     }
+
+    /// The results folder for these records, and sentences about lines of these that were passed over.
+    fn open(
+        &self,
+        py: Python<'_>,
+        folder: &Path,
+        force: bool,
+        training: Option<&Path>,
+        records: &[PathBuf],
+        threads: usize,
+    ) -> PyResult<(CalibrationFolder, Vec<String>)> {
+        let opened = detached(py, || {
+            let records = self.file.read(records)?;
+            self.file.check_memory(&records, threads)?;
+            let notes = records.iter().flat_map(SampledRecord::notes).collect();
+            let folder = CalibrationFolder::open(folder, training, &self.file, records, force)?;
+            Ok((folder, notes))
+        })?;
+        opened.map_err(|error| study_error(py, &error))
+    }
+}
+
+/// Does some work of a calibration, and tells `watch` how far it is.
+fn with_progress<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    watch: Option<&Py<PyAny>>,
+    work: impl FnOnce(&AtomicBool, &mut dyn FnMut(&CalibrationProgress)) -> Result<T, StudyError> + Send,
+) -> PyResult<T> {
+    let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);
+    let work = |stop: &AtomicBool| {
+        work(stop, &mut |now| {
+            *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(*now);
+        })
+    };
+    let mut show = |py: Python<'_>| {
+        let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match (watch, now) {
+            (Some(watch), Some(now)) => watch.call1(py, (now.runs, now.of)).map(drop),
+            _ => Ok(()),
+        }
+    };
+    on_pool(py, threads, work, &mut show)
 }

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -117,3 +118,68 @@ def test_errors_name_no_hidden_file() -> None:
     with pytest.warns(UserWarning) as told:
         calibration().fit({**measured, "force_n": -measured["force_n"]}, progress=False)
     assert any("the mean friction of record 1 is negative: `y_factor = -1`" in str(one.message) for one in told)
+
+
+def test_results_are_a_table_and_a_picture(tmp_path: Path) -> None:
+    fit = calibration().fit(record(), progress=False)
+    table = fit.unknowns.set_index("key")
+    assert list(table.columns) == ["median", "low", "high", "unit", "is_determined", "belongs_to_block"]
+    for key, interval in fit.intervals.items():
+        row = table.loc[key]
+        assert (row["median"], row["low"], row["high"]) == (interval.median, interval.low, interval.high)
+    assert table["is_determined"].all() and not table["belongs_to_block"].any()
+    # Nothing of the picture is in a folder that is gone, and a pickle has it too.
+    for results in (fit, pickle.loads(pickle.dumps(fit))):
+        ax = results.plot()
+        assert (ax.get_xlabel(), ax.get_ylabel()) == ("time (ns)", "friction force (\u00b5N)")
+        median, drawn = (np.asarray(line.get_ydata()) for line in ax.get_lines())
+        (band,) = ax.collections
+        low, high = (end(np.asarray(band.get_paths()[0].vertices)[:, 1]) for end in (np.min, np.max))
+        assert low < median.min() and median.max() < high and len(drawn) == len(median)
+        same = ax.figure.subplots()
+        assert results.plot(1, same) is same
+        plt.close("all")
+    with pytest.raises(ValueError, match="there is no record 2: the records of this calibration are 1 to 1"):
+        fit.plot(2)
+
+
+def test_a_record_is_checked_alone() -> None:
+    made, measured = calibration(next=[{"drive": {"v_star": 0.05}}]), record()
+    check = made.check(measured, progress=False)
+    assert not check.is_refused and check.reasons == []
+    shown: list[tuple[int, int]] = []
+    assert made.check(measured, progress=lambda *now: shown.append(now)) == check
+    assert all(now == (0, 0) for now in shown)
+    # The runs of the next experiment alone are left.
+    fit = made.fit(measured, progress=lambda *now: shown.append(now))
+    assert shown[-1] == (200, 200)
+    assert (check.misfit, check.comparison, check.closest) == (fit.misfit, fit.comparison, fit.closest)
+    assert 0 <= check.comparison["rank"] <= 1
+    foreign = made.check({**measured, "force_n": 100 * measured["force_n"]}, progress=False)
+    assert foreign.is_refused and any("of the training runs" in reason for reason in foreign.reasons)
+
+
+def test_an_instrument_stands_before_the_record(tmp_path: Path) -> None:
+    measured = record()
+    plain = calibration().fit(measured, progress=False)
+    doubled = {**measured, "force_n": 2 * measured["force_n"]}
+    fit = calibration(instrument={"gain": 2, "range": ["-1 N", "1 N"]}).fit(doubled, folder=tmp_path / "doubled", progress=False)
+    assert "[instrument]\ngain = 2\nrange = " in (tmp_path / "doubled/calibration.toml").read_text()
+    for key, interval in plain.intervals.items():
+        # What is twice as large in all runs is the same to the estimate, but for rounding.
+        assert fit.intervals[key].median == pytest.approx(interval.median, rel=1e-6)
+    unknowns = {"instrument.gain": (1, 3), "drive.stiffness_star": (0.3, 0.9)}
+    case = {**SLIDER, "friction": {"sigma_static_star": 0, "sigma_kinetic_star": 0}}
+    gain = sf.Calibration(case, unknowns, noise=0.01, runs=200, finer_runs=0, instrument={"offset": "0 N"})
+    series = sf.run(sf.Case(case).replace({"drive.stiffness_star": 0.7, "output.series": 1}), progress=False).series
+    force = 2 * np.asarray(series["friction_force_n"])
+    force += np.random.default_rng(5).normal(0, 0.01 * force.mean(), len(force))
+    found = gain.fit((series["time_s"], force), progress=False)
+    interval = found.intervals["instrument.gain"]
+    assert interval.is_determined and interval.median == pytest.approx(2, rel=0.05)
+    # Without random coefficients the same keys always make the same curve.
+    assert found.closest is not None and found.closest["noise_ratio"] > 0
+    with pytest.raises(sf.CaseError, match="cuttoff"):
+        calibration(instrument={"cuttoff": "20 Hz"}).check(measured, progress=False)
+    with pytest.raises(ValueError, match="path of a calibration file alone"):
+        sf.Calibration("fit.toml", instrument={"gain": 2})

@@ -3,10 +3,8 @@
 use serde::Serialize;
 
 use crate::calibration::Estimate;
-use crate::closest::Closest;
 use crate::intervals::Distribution;
-use crate::misfit::Misfit;
-use crate::predicted::Comparison;
+use crate::record_check::RecordCheck;
 use crate::unknowns::Unknown;
 
 /// Probability of the intervals.
@@ -24,11 +22,8 @@ pub(crate) struct Findings {
     /// Pairs of unknowns that are determined only together.
     pub(crate) pairs: Vec<CoupledUnknowns>,
     /// Tests of whether the model can have made the records.
-    pub(crate) misfit: Misfit,
-    /// The records beside runs of the calibrated model.
-    pub(crate) comparison: Comparison,
-    /// The closest curve, where the unknowns determine it.
-    pub(crate) closest: Option<Closest>,
+    #[serde(flatten)]
+    pub(crate) check: RecordCheck,
     /// The instrument and the records.
     pub(crate) instrument: InstrumentFindings,
     /// Whether the model cannot have made the records.

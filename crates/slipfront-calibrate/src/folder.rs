@@ -18,6 +18,7 @@ use crate::findings::{
     CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
 };
 use crate::predicted::{PREDICTED, Predicted};
+use crate::record_check::RecordCheck;
 use crate::report::{FOUND, Report};
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Curves, SetUp};
@@ -109,6 +110,27 @@ impl FittedRecords {
             calibration,
             estimate,
         }
+    }
+
+    /// Points that are drawn from the estimate.
+    fn sample(&self, points: usize) -> Vec<Vec<f64>> {
+        self.calibration.sample(&self.estimate, points)
+    }
+
+    /// Runs of the calibrated model, and what they and the training say of the records.
+    fn check(
+        &self,
+        set_up: &SetUp,
+        noise: f64,
+        stop: &AtomicBool,
+    ) -> Result<(Predicted, RecordCheck), StudyError> {
+        let predicted = Predicted::run(set_up, self.sample(PREDICTED), noise, stop)?;
+        let check = RecordCheck {
+            misfit: self.estimate.misfit.clone(),
+            comparison: predicted.compare(&self.curves),
+            closest: closest(set_up, predicted.points(), &self.curves, noise, stop)?,
+        };
+        Ok((predicted, check))
     }
 }
 
@@ -285,9 +307,8 @@ impl CalibrationFolder {
             Err(reason) => OnFinerBlocks::Impossible(reason),
         };
         let next = self.weigh(&mut work, further, &training, &told)?;
-        let sample = |points| told.calibration.sample(estimate, points);
-        let predicted = Predicted::run(&set_up, sample(PREDICTED), keys.noise, stop)?;
-        let (bands, comparison) = (predicted.bands(), predicted.compare(&told.curves));
+        let (predicted, check) = told.check(&set_up, keys.noise, stop)?;
+        let bands = predicted.bands();
         let points = predicted.points()[..AT_HALF_STEP].to_vec();
         let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop)?;
         let moved = told
@@ -296,19 +317,14 @@ impl CalibrationFolder {
         for (told, (unknown, moved)) in unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved)) {
             told.hold_against_half_step(unknown, moved);
         }
-        let closest = closest(&set_up, predicted.points(), &told.curves, keys.noise, stop)?;
         let within = bands.iter().zip(&told.curves);
         let findings = Findings {
             runs: keys.runs as usize,
             noise: keys.noise,
             pairs: pairs(&set_up, estimate),
-            is_refused: estimate.misfit.is_refused()
-                || comparison.is_refused()
-                || closest.is_some_and(|closest| closest.is_refused()),
+            is_refused: check.is_refused(),
             within_band_percent: within.map(|(band, curve)| band.holds_percent(curve)).collect(),
-            misfit: estimate.misfit.clone(),
-            comparison,
-            closest,
+            check,
             instrument: self.instrument(&set_up)?,
             unknowns,
             finer,
@@ -321,9 +337,33 @@ impl CalibrationFolder {
             set_up: &set_up,
             findings: &findings,
         };
-        let text = report.write(&told.curves, &bands, &sample(SAMPLE))?;
+        let text = report.write(&told.curves, &bands, &told.sample(SAMPLE))?;
         batch.place(Others::Go)?;
         Ok(text)
+    }
+
+    /// Trains, and makes the tests of [`Self::find`] of whether the model can have made the records. Training
+    /// runs are kept, and no findings are written.
+    ///
+    /// # Errors
+    /// When runs cannot be made or kept, and after a stop.
+    pub fn check(
+        &mut self,
+        stop: &AtomicBool,
+        watch: &mut dyn FnMut(&CalibrationProgress),
+    ) -> Result<RecordCheck, StudyError> {
+        let CalibrationKeys { runs, noise, .. } = self.file.keys;
+        let set_up = self.set_up.clone();
+        let mut work = RunCounter {
+            stop,
+            watch,
+            ended: 0,
+            of: self.n_missing(&Ok(None), &[])?,
+        };
+        let training = self.train(&mut work, CalibrationStage::Training, &set_up, runs)?;
+        let told = FittedRecords::of(&training, &set_up, &self.records, noise);
+        let (_, check) = told.check(&set_up, noise, stop)?;
+        Ok(check)
     }
 
     /// What the instrument passes, and what of it the records need.

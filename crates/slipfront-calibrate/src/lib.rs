@@ -19,6 +19,7 @@ mod intervals;
 mod misfit;
 mod normals;
 mod predicted;
+mod record_check;
 mod report;
 mod sample_points;
 mod scaling;
@@ -34,6 +35,7 @@ pub use folder::{CALIBRATIONS, CalibrationFolder, CalibrationProgress, Calibrati
 pub use intervals::Distribution;
 pub use misfit::Misfit;
 pub use predicted::{Comparison, Predicted};
+pub use record_check::RecordCheck;
 pub use sample_points::SamplePoints;
 pub use set_up::{Conditions, Curves, SetUp};
 pub use training::{KeepRuns, Training, TrainingRun};

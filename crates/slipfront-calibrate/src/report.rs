@@ -8,7 +8,6 @@ use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
-use crate::closest::Closest;
 use crate::findings::{Findings, InstrumentFindings, OnFinerBlocks, UnknownEstimate};
 use crate::predicted::{Band, PREDICTED};
 use crate::set_up::{Conditions, SetUp};
@@ -258,87 +257,25 @@ fn row(told: &UnknownEstimate) -> Vec<String> {
 
 /// Reasons for which the records are none of the model.
 fn refusal(found: &Findings) -> String {
-    let mut reasons = Vec::new();
-    let [low, high] = found.misfit.drift;
-    if found.misfit.has_drift {
-        let [low, high] = [low, high].map(|drift| four_digits(100.0 * drift));
-        reasons.push(format!("friction drifts by {low} to {high} % over the records"));
-    }
-    if found.misfit.distance > 1.0 {
-        reasons.push(format!(
-            "they are {} times as far from the training runs as 99.5 % of these are from each other",
-            four_digits(found.misfit.distance)
-        ));
-    }
-    reasons.extend(
-        found
-            .closest
-            .filter(Closest::is_refused)
-            .map(|closest| differences(&closest)),
-    );
-    if found.comparison.is_refused() {
-        let names = found.comparison.differs_in.iter().take(2).map(|(name, _)| *name);
-        reasons.push(format!(
-            "they differ from runs of the calibrated model, most in {}",
-            names.collect::<Vec<_>>().join(" and ")
-        ));
-    }
-    if found.misfit.is_outside() {
-        let [level, low, high] = found.misfit.level;
-        let (which, of) = if level > high {
-            ("largest", high)
-        } else {
-            ("least", low)
-        };
-        reasons.push(format!(
-            "mean friction in the second half of a record is {} times the {which} of the training runs",
-            four_digits(level / of)
-        ));
-    }
     format!(
         "The model does not make such records: {}. Of its own records it refuses some 4 %. Correct a drift of the sensor, describe its filter \
          in [instrument], look whether law, units, mount and noise are those of the experiment, and widen the ranges; the intervals below \
          promise nothing.",
-        reasons.join("; ")
+        found.check.reasons().join("; ")
     )
-}
-
-/// The differences from the closest curve, in words.
-fn differences(closest: &Closest) -> String {
-    let part = match closest.share {
-        1.0 => String::new(),
-        share => format!(" over the first {} of the records", one_over(share)),
-    };
-    let size = format!(
-        "the closest curve that was found differs{part} by {:.1} times the noise",
-        closest.noise_ratio
-    );
-    if closest.is_correlated() {
-        format!(
-            "{size}, and neighbouring values differ in the same way (correlation {:.2}, of white noise less than {:.2})",
-            closest.correlation, closest.most_correlated
-        )
-    } else {
-        size
-    }
-}
-
-/// A share such as 1/8.
-fn one_over(share: f64) -> String {
-    format!("1/{}", (1.0 / share).round())
 }
 
 /// What was looked at and does not speak against the model.
 fn accepted(found: &Findings) -> String {
-    let [low, high] = found.misfit.drift.map(|drift| four_digits(100.0 * drift));
-    let closest = match &found.closest {
+    let [low, high] = found.check.misfit.drift.map(|drift| four_digits(100.0 * drift));
+    let closest = match &found.check.closest {
         Some(closest) => format!(
             "the closest curve differs from them by {:.2} times the noise, which is white (correlation {:.2})",
             closest.noise_ratio, closest.correlation
         ),
         None => format!(
             "they are as near to runs of the calibrated model as these are to each other (of which {:.0} % are farther away)",
-            100.0 * found.comparison.rank
+            100.0 * found.check.comparison.rank
         ),
     };
     format!(

@@ -83,7 +83,7 @@ enum Command {
     Family(commands::family::FamilyCommand),
     Paper(commands::paper::PaperCommand),
     Texture(commands::texture::TextureCommand),
-    Plot(commands::plot::PlotCommand),
+    Plot(Box<commands::plot::PlotCommand>),
     Movie(commands::movie::MovieCommand),
     Lab(commands::lab::LabCommand),
     Verify(commands::verify::VerifyCommand),

@@ -11,6 +11,7 @@ use slipfront_case::arrays::extension;
 use slipfront_case::case::PROGRAM;
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_plot::{Picture, PictureSize};
+use slipfront_run::instrument::{Instrument, InstrumentKeys};
 use slipfront_run::measured::{Column, Correction, Measure, MeasuredError, MeasuredRecord};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
@@ -36,6 +37,7 @@ use crate::threads::set_threads;
   slipfront plot results/circle results/groove_across -o results/overlay
   slipfront plot results/circle --units si --against displacement -o results/newtons
   slipfront plot results/circle --data force.csv --x time_s --y force_n
+  slipfront plot results/circle --data force.csv --x time_s --y force_n --instrument rig.toml
   slipfront plot results/a results/b --width 120 --height 90 --font-size 10 --name smooth --name textured -o both
   slipfront plot results/circle --field traction -o results/traction
   slipfront plot results/circle --field kymograph -o results/kymograph")]
@@ -114,6 +116,11 @@ pub(crate) struct PlotCommand {
     /// best, if nothing else fits about as well]
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
+    /// Draw the curves as an instrument writes them, and compare the record with that: the table
+    /// `[instrument]` of this file, such as a calibration file. Marks of instants and peaks, which are
+    /// those of friction itself, are left out
+    #[arg(long, value_name = "FILE", requires = "data")]
+    instrument: Option<PathBuf>,
     /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a
     /// field alone]
     #[arg(short, long, value_name = "DIR")]
@@ -279,7 +286,8 @@ impl PlotCommand {
                 return Err(Failure::input(anyhow::anyhow!(sentence)));
             }
             (_, Some(path)) => {
-                let measured = self.measured(path).map_err(Failure::input)?;
+                let mut measured = self.measured(path).map_err(Failure::input)?;
+                measured.instrument = self.instrument(measured.record.of)?;
                 for note in measured.record.notes() {
                     print_message(&format!("note: {note}\n"));
                 }
@@ -316,7 +324,19 @@ impl PlotCommand {
             label: path.display().to_string(),
             record,
             shift: self.shift,
+            instrument: None,
         })
+    }
+
+    /// The instrument that wrote a record of this quantity.
+    fn instrument(&self, friction: Measure) -> Result<Option<Instrument>, Failure> {
+        let Some(path) = &self.instrument else {
+            return Ok(None);
+        };
+        let keys = InstrumentKeys::load(path).map_err(Failure::input)?;
+        let made = keys.instrument(friction);
+        let named = made.map_err(|error| Failure::input(anyhow::anyhow!("{}: {error}", path.display())));
+        named.map(Some)
     }
 
     /// The fit of a measured record to each run, in words.

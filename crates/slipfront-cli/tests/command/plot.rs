@@ -231,6 +231,69 @@ fn a_measured_record_finds_its_place() {
     assert!(said.contains("leave `--units star` out"), "{said}");
 }
 
+/// A record that a filter has smoothed is the curve as that filter writes it, and not the curve itself.
+#[test]
+fn a_filtered_record_is_compared_with_filtered_curves() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    let (times, forces) = (
+        column(&workspace, "a", "time_s"),
+        column(&workspace, "a", "friction_force_n"),
+    );
+    let (constant, offset) = (times.last().unwrap() / 20.0, 2e-6);
+    // Exact for a force that is straight between its values: F = f + g t gives
+    // x = F - constant g + C exp(-t/constant).
+    let mut filtered = forces[0];
+    let mut rows = format!("{:e},{:e}\n", times[0], filtered + offset);
+    for k in 1..times.len() {
+        let step = times[k] - times[k - 1];
+        let lag = constant * (forces[k] - forces[k - 1]) / step;
+        filtered = forces[k] - lag + (filtered - forces[k - 1] + lag) * (-step / constant).exp();
+        rows += &format!("{:e},{:e}\n", times[k], filtered + offset);
+    }
+    workspace.write("filtered.csv", format!("t [s],F [N]\n{rows}"));
+    let rig = format!("[instrument]\nfilter = 'first_order'\ntime = '{constant:e} s'\noffset = '2 uN'\n");
+    workspace.write("rig.toml", &rig);
+    let line = "plot a --data filtered.csv --x t --y F --shift 0";
+    let misfit = |said: &str| -> String {
+        let found = said
+            .lines()
+            .find_map(|line| line.strip_prefix("  a: RMS misfit "));
+        let (misfit, _) = found.and_then(|rest| rest.split_once(" over ")).unwrap();
+        misfit.to_owned()
+    };
+    let said = workspace.succeed(&format!("{line} --instrument rig.toml -o as_written"));
+    // Rounding of forces of some uN in some thousand steps.
+    assert!(misfit(&said).ends_with(" aN"), "{said}");
+    let said = workspace.succeed(&format!("{line} -o as_it_is"));
+    // Most of it is the offset.
+    assert!(misfit(&said).ends_with(" uN"), "{said}");
+    // Instants such as C are marked on friction itself.
+    assert!(svg(&workspace, "as_it_is").contains(">C<") && !svg(&workspace, "as_written").contains(">C<"));
+
+    let said = workspace.fail("plot a --instrument rig.toml", 2);
+    assert!(said.contains("--data <FILE>"), "{said}");
+    workspace.write("none.toml", "[base]\n");
+    let said = workspace.fail(&format!("{line} --instrument none.toml -o none"), 2);
+    assert!(
+        said.contains("none.toml: there is no table [instrument]"),
+        "{said}"
+    );
+    workspace.write("wrong.toml", "[instrument]\ngain = 0\n");
+    let said = workspace.fail(&format!("{line} --instrument wrong.toml -o none"), 2);
+    assert!(said.contains("wrong.toml: `gain` of the instrument: "), "{said}");
+    workspace.succeed("run small.toml --set drive.loading=held -o held");
+    let held = line.replace(" a ", " held ");
+    let said = workspace.fail(&format!("{held} --instrument rig.toml -o none"), 2);
+    assert!(
+        said.contains("the drive of held is held and has no time while blocks slide"),
+        "{said}"
+    );
+    assert!(!workspace.exists("none"));
+    workspace.write("offset.toml", "[instrument]\noffset = '1 uN'\n");
+    workspace.succeed(&format!("{held} --instrument offset.toml -o of_held"));
+}
+
 /// Size, letters, titles and names are as asked for: in the SVG in millimetres, in the PNG in pixels of 300
 /// dots per inch.
 #[test]

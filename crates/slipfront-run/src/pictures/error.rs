@@ -52,7 +52,7 @@ pub enum RunPictureError {
     },
 }
 
-/// A measured record that has no clear place on the curves of runs.
+/// A measured record that cannot be compared with the curves of runs, or has no clear place on them.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum RecordError {
@@ -89,4 +89,10 @@ pub enum RecordError {
         one: String,
         other: String,
     },
+    #[error(
+        "the drive of {} is held and has no time while blocks slide, and load cells, filters and samplings need one: run the case without \
+        `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone",
+        .0.display()
+    )]
+    HeldDrive(PathBuf),
 }

@@ -10,6 +10,7 @@ use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, Kinetic
 use super::error::{RecordError, RunPictureError};
 pub use super::record_fit::Misfit;
 use super::record_fit::{Points, ends, fitting_shifts, misfit, rival};
+use crate::instrument::Instrument;
 use crate::measured::{Measure, MeasuredRecord};
 use crate::names::{SERIES, SUMMARY};
 use crate::run_files::RunFiles;
@@ -46,6 +47,8 @@ pub struct OverlaidRecord {
     /// Shift of the record's times or displacements, in SI units; if none is given, the shift with which it
     /// fits the first run best.
     pub shift: Option<f64>,
+    /// The instrument that wrote the record, if the curves are to be drawn as it writes them.
+    pub instrument: Option<Instrument>,
 }
 
 /// Fit of a measured record to runs, in SI units.
@@ -109,6 +112,8 @@ struct DrawnRun {
     folder: PathBuf,
     summary: Summary,
     rows: Vec<[f64; 4]>,
+    /// Whether an instrument has written the friction of the rows.
+    is_recorded: bool,
 }
 
 /// Factors of the numbers of a run, and the names of the axes.
@@ -157,18 +162,25 @@ pub fn overlay(
     })
 }
 
-/// Draws the friction curves of run folders and a measured record over each other, in SI units.
+/// Draws the friction curves of run folders and a measured record over each other, in SI units. Curves that
+/// an instrument has written have no marks, which are those of friction itself.
 ///
 /// # Errors
-/// As for [`overlay`]; when the record has less than a tenth of the shorter of both in common with every
-/// curve, and when a shift that is not given could be one or another.
+/// As for [`overlay`]; when an instrument needs the time of a drive that is held; when the record has less
+/// than a tenth of the shorter of both in common with every curve, and when a shift that is not given could
+/// be one or another.
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
     measured: &OverlaidRecord,
     look: &FrictionLook,
 ) -> Result<Overlay, RunPictureError> {
-    let runs = DrawnRun::read_all(folders)?;
+    let mut runs = DrawnRun::read_all(folders)?;
+    if let Some(instrument) = &measured.instrument {
+        for run in &mut runs {
+            run.pass(instrument, measured.record.of)?;
+        }
+    }
     let scale = in_si(&runs, against, measured.record.of)?;
     let mut curves = scale.curves(&runs);
     let [along, up] = scale.prefixes;
@@ -331,6 +343,34 @@ impl DrawnRun {
             rows: series::read_rows(&run.file(SERIES)?, SERIES, row)?,
             folder: run.path().to_owned(),
             summary,
+            is_recorded: false,
+        })
+    }
+
+    /// Replaces friction by what an instrument writes.
+    fn pass(&mut self, instrument: &Instrument, of: Measure) -> Result<(), RunPictureError> {
+        // The times of a held drive count only while it moves.
+        if self.summary.drive_steps.is_some() && instrument.has_memory() {
+            return Err(Box::new(RecordError::HeldDrive(self.folder.clone())).into());
+        }
+        let (time_unit, unit) = (self.si()?.time_unit_s, self.friction_unit(of)?);
+        let time: Vec<f64> = self.rows.iter().map(|row| time_unit * row[0]).collect();
+        let friction: Vec<f64> = self.rows.iter().map(|row| unit * row[2]).collect();
+        let written = instrument.record(&time, &friction);
+        for (row, written) in self.rows.iter_mut().zip(written) {
+            row[2] = written / unit;
+        }
+        self.is_recorded = true;
+        Ok(())
+    }
+
+    /// Friction with mu* = 1: N, or N m for a rotation; 1 for a coefficient.
+    fn friction_unit(&self, of: Measure) -> Result<f64, RunPictureError> {
+        let si = self.si()?;
+        Ok(match si.static_torque_n_m {
+            _ if of == Measure::Coefficient => si.stress_unit_pa / si.pressure_pa,
+            Some(torque) => torque / self.summary.static_friction_star,
+            None => si.stress_unit_pa * si.area_m2,
         })
     }
 
@@ -366,11 +406,20 @@ impl DrawnRun {
             Against::Displacement => along * self.path_at(time_star),
         };
         let column = |k: usize, factor: f64| self.rows.iter().map(|row| factor * row[k]).collect();
+        let label = self.folder.display().to_string();
+        let marked = if self.is_recorded {
+            FrictionCurve {
+                label,
+                ..FrictionCurve::default()
+            }
+        } else {
+            marked_curve(label, &self.summary)
+        };
         let mut curve = FrictionCurve {
             x: column(against as usize, along),
             friction: column(2, up),
             sliding_percent: column(3, 1.0),
-            ..marked_curve(self.folder.display().to_string(), &self.summary)
+            ..marked
         };
         curve.first_slip = curve.first_slip.map(x);
         curve.peak = curve.peak.map(|(time, mu)| (x(time), up * mu));
@@ -457,12 +506,7 @@ fn in_si(runs: &[DrawnRun], against: Against, measure: Measure) -> Result<Scale,
             Against::Time => si.time_unit_s,
             Against::Displacement => si.displacement_unit_m,
         };
-        let up = match si.static_torque_n_m {
-            _ if measure == Measure::Coefficient => si.stress_unit_pa / si.pressure_pa,
-            Some(torque) => torque / run.summary.static_friction_star,
-            None => si.stress_unit_pa * si.area_m2,
-        };
-        factors.push([along, up]);
+        factors.push([along, run.friction_unit(measure)?]);
     }
     let largest = |column: usize, axis: usize| {
         let sizes = runs.iter().zip(&factors).flat_map(|(run, factors)| {
