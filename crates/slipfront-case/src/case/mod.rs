@@ -6,6 +6,7 @@ mod coarse;
 mod coefficients;
 mod derived;
 mod drive;
+mod few_blocks;
 mod files;
 mod groups;
 mod inputs;

@@ -339,6 +339,7 @@ impl Case {
             }
         }
         warnings.extend(self.correlation_warning());
+        warnings.extend(self.few_random_blocks());
         let mean = surface.mean_pressure();
         if self.file.load.pressure_field.is_some() && differs(mean, 1.0) {
             warnings.push(format!(
