@@ -73,8 +73,8 @@ impl Report<'_> {
             .collect()
     }
 
-    /// Notes on the calibrated case that matter for what it says of an experiment: a slider that is no sheet under
-    /// its texture, and few blocks with random coefficients; each for the first record that has it.
+    /// Notes on the calibrated case that matter for what it says of an experiment: a slider that is no sheet
+    /// under its texture, and few blocks with random coefficients; each for the first record that has it.
     fn notes_on_case(&self) -> Result<String, StudyError> {
         let medians = self.medians();
         let records = self.set_up.conditions.iter();

@@ -17,6 +17,7 @@ mod output;
 mod ranks;
 mod runnable;
 mod slider;
+mod stick_slip;
 mod textures;
 mod time_plan;
 mod topography;

@@ -41,7 +41,7 @@ fn few_blocks_that_draw_their_coefficients_are_noted() {
     );
 }
 
-/// What counts is the number of blocks in contact: 6 x 6 of which half are textured are 18.
+/// Textured blocks do not count: 6 x 6 of which half are textured are 18.
 #[test_case("slider.blocks = [5, 5]", false)]
 #[test_case("slider.blocks = [4, 6]", true)]
 #[test_case("slider.blocks = [6, 6]", false)]
@@ -50,8 +50,8 @@ fn blocks_in_contact_count(text: &str, is_noted: bool) {
     assert_eq!(note(text).is_some(), is_noted);
 }
 
-/// A spread other than the default was given, and so was a correlation length; rate and state draws nothing, and
-/// springs in contact have no kinetic coefficient.
+/// A spread other than the default was given, and so was a correlation length; rate and state draws nothing,
+/// and springs in contact have no kinetic coefficient.
 #[test]
 fn coefficients_that_are_not_drawn_by_default_have_no_note() {
     for keys in [

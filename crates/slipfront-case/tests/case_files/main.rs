@@ -20,6 +20,7 @@ mod lengths;
 mod ranks;
 mod reference;
 mod round_trip;
+mod stick_slip;
 mod texture_files;
 
 use std::fs;

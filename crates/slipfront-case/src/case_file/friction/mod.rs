@@ -233,8 +233,8 @@ impl Friction {
         }
     }
 
-    /// Spreads with which coefficients are drawn, and which coefficients these are; none of coefficients that a
-    /// file gives, or that the law does not have.
+    /// Spreads with which coefficients are drawn, and which coefficients these are; none of coefficients that
+    /// a file gives, or that the law does not have.
     fn spreads(&self) -> Vec<(&'static str, f64)> {
         let of_static = self.has_static_coefficient() && self.mu_static_field.is_none();
         let of_kinetic = self.has_kinetic_coefficient() && self.mu_kinetic_field.is_none();
