@@ -4,6 +4,7 @@ use std::io::Write;
 
 use slipfront_base::number_format::{count, four_digits, in_print, si_prefix, with_si_prefix};
 use slipfront_base::text::{COLUMNS, note, wrapped};
+use slipfront_case::case::Case;
 use slipfront_plot::{Picture, PictureError, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
@@ -51,7 +52,7 @@ impl Report<'_> {
         }
         let case = self.case()?;
         self.batch.write(CASE, |to| to.write_all(case.as_bytes()))?;
-        let text = in_words(self.findings) + &self.thickness()?;
+        let text = in_words(self.findings) + &self.notes_on_case()?;
         self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
         Ok(text)
     }
@@ -71,17 +72,18 @@ impl Report<'_> {
             .collect()
     }
 
-    /// A note on the first record whose texture makes the calibrated slider a bulk body and no sheet; nothing
-    /// where there is none.
-    fn thickness(&self) -> Result<String, StudyError> {
+    /// Notes on the calibrated case that matter for what it says of an experiment: a slider that is no sheet
+    /// under its texture, and few blocks with random coefficients; each for the first record that has it.
+    fn notes_on_case(&self) -> Result<String, StudyError> {
         let medians = self.medians();
-        for conditions in &self.set_up.conditions {
-            let case = self.set_up.case(&medians, 0, conditions)?;
-            if let Some(sentence) = case.thick_for_texture() {
-                return Ok(note(&sentence, COLUMNS));
-            }
-        }
-        Ok(String::new())
+        let records = self.set_up.conditions.iter();
+        let cases: Vec<Case> = records
+            .map(|conditions| self.set_up.case(&medians, 0, conditions))
+            .collect::<Result<_, _>>()?;
+        let of_kind = |kind: fn(&Case) -> Option<String>| cases.iter().find_map(kind);
+        let sentences = [of_kind(Case::thick_for_texture), of_kind(Case::few_random_blocks)];
+        let notes = sentences.iter().flatten();
+        Ok(notes.map(|sentence| note(sentence, COLUMNS)).collect())
     }
 
     /// A record and the band of the calibrated model, as a table and as a picture.

@@ -448,6 +448,65 @@ fn a_key_of_the_instrument_may_be_unknown() {
     );
 }
 
+/// The block of the case that is written has the coefficients that are told: a single one draws none.
+#[test]
+fn the_block_of_the_written_case_has_the_medians() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    write_record(&record);
+    let found = |name: &str, friction: &str| {
+        let out = folder.path().join(name);
+        let keys = format!("{BASE}{friction}{KEYS}").replace("[6, 6]", "[1, 1]");
+        let keys = keys.replace(
+            "'drive.stiffness_star' = [0.3, 0.9]",
+            "'friction.r_star' = [0.3, 0.9]",
+        );
+        let mut fit = open(&out, None, &file(&keys), std::slice::from_ref(&record), false).unwrap();
+        let text = find(&mut fit, 2).unwrap();
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let case = Case::parse(
+            &fs::read_to_string(out.join("case.toml")).unwrap(),
+            "found",
+            "",
+            &[],
+        )
+        .unwrap();
+        let [mu_static, r_star] = [0, 1].map(|number| told(&numbers(&out), number)[0]);
+        let surface = &case.model.surface;
+        let of_block = [
+            surface.mean_static_coefficient(),
+            surface.mean_kinetic_coefficient(),
+        ];
+        (
+            text,
+            [
+                of_block[0] / mu_static - 1.0,
+                of_block[1] / (r_star * mu_static) - 1.0,
+            ],
+        )
+    };
+    let (text, differences) = found(
+        "even",
+        "friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n",
+    );
+    assert!(!text.contains("at random"), "{text}");
+    // A median is written as a share of its range and back.
+    assert!(
+        differences.iter().all(|difference| difference.abs() < 1e-12),
+        "{differences:?}"
+    );
+    // The block has drawn another coefficient, as the text says.
+    let (text, differences) = found("drawn", "");
+    assert!(
+        text.contains("note: 1 block in contact draws its static and kinetic coefficients at random"),
+        "{text}"
+    );
+    assert!(
+        differences.iter().all(|difference| difference.abs() > 1e-3),
+        "{differences:?}"
+    );
+}
+
 /// A file or record that cannot be calibrated is refused with its key.
 #[test]
 fn what_cannot_be_calibrated_is_refused() {

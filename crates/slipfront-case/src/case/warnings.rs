@@ -339,6 +339,7 @@ impl Case {
             }
         }
         warnings.extend(self.correlation_warning());
+        warnings.extend(self.few_random_blocks());
         let mean = surface.mean_pressure();
         if self.file.load.pressure_field.is_some() && differs(mean, 1.0) {
             warnings.push(format!(
@@ -346,6 +347,7 @@ impl Case {
             ));
         }
         warnings.extend(friction_warning(&self.model));
+        warnings.extend(self.coarse_for_stick_slip());
         warnings.extend(self.unresolved_lengths());
         let [mean_static, mean_kinetic] = means;
         if mean_kinetic >= mean_static {

@@ -10,6 +10,7 @@ mod reference_page;
 mod bad;
 mod bulk;
 mod coarse;
+mod few_blocks;
 mod good;
 mod heights;
 mod hostile;
@@ -19,6 +20,7 @@ mod lengths;
 mod ranks;
 mod reference;
 mod round_trip;
+mod stick_slip;
 mod texture_files;
 
 use std::fs;

@@ -233,16 +233,30 @@ impl Friction {
         }
     }
 
+    /// Spreads with which coefficients are drawn, and which coefficients these are; none of coefficients that
+    /// a file gives, or that the law does not have.
+    fn spreads(&self) -> Vec<(&'static str, f64)> {
+        let of_static = self.has_static_coefficient() && self.mu_static_field.is_none();
+        let of_kinetic = self.has_kinetic_coefficient() && self.mu_kinetic_field.is_none();
+        let of_static = of_static.then_some(("static", self.sigma_static_star));
+        let of_kinetic = of_kinetic.then_some(("kinetic", self.sigma_kinetic_star));
+        of_static.into_iter().chain(of_kinetic).collect()
+    }
+
+    /// The [spreads](Self::spreads) that have their default, where no correlation length is given. A printed
+    /// case has all keys: whether one was given is not known.
+    pub(crate) fn default_spreads(&self) -> Vec<(&'static str, f64)> {
+        let mut spreads = self.spreads();
+        spreads.retain(|(_, sigma_star)| self.correlation_length.is_none() && *sigma_star == DEFAULT_SIGMA);
+        spreads
+    }
+
     /// Lengths of friction that equal the length of a block because no key gives them.
     pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = LengthOfABlock> {
         let falls_at_once =
             self.has_kinetic_coefficient() && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
-        let is_drawn = |field: &Option<String>, sigma: f64| field.is_none() && sigma > 0.0;
-        let draws_static =
-            self.has_static_coefficient() && is_drawn(&self.mu_static_field, self.sigma_static_star);
-        let draws_kinetic =
-            self.has_kinetic_coefficient() && is_drawn(&self.mu_kinetic_field, self.sigma_kinetic_star);
-        let drawn_by_block = self.correlation_length.is_none() && (draws_static || draws_kinetic);
+        let draws = self.spreads().iter().any(|(_, sigma_star)| *sigma_star > 0.0);
+        let drawn_by_block = self.correlation_length.is_none() && draws;
         let slip = falls_at_once.then_some(LengthOfABlock {
             length: "the slip over which strength is lost",
             key: "friction.slip_weakening",
