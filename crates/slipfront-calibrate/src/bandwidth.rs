@@ -21,9 +21,9 @@ pub(crate) fn noise_share(record: &MeasuredRecord) -> f64 {
     noise(&record.y) / mean(&record.y).abs()
 }
 
-/// Frequency in Hz of a swing over the whole range of friction that changes as fast as a record over time does at
-/// most: `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by more than
-/// noise can; none if it never does.
+/// Frequency in Hz of a swing over the whole range of friction that changes as fast as a record over time
+/// does at most: `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by
+/// more than noise can; none if it never does.
 pub(crate) fn fastest_swing(record: &MeasuredRecord) -> Option<f64> {
     let (x, y) = (&record.x, &record.y);
     let [low, high] = quantiles(y, [0.0, 1.0]);
@@ -62,9 +62,9 @@ mod tests {
         }
     }
 
-    /// A swing of 14 Hz and amplitude 0.1 about 0.5, every millisecond. Its rate over 8 ms, in which it exceeds
-    /// the noise twelve times, is that at the steepest place but for (2 pi 14 0.004)^2/6 = 2 %, and noise adds
-    /// some 3 standard deviations over such a change.
+    /// A swing of 14 Hz and amplitude 0.1 about 0.5, every millisecond. Its rate over 8 ms, in which it
+    /// exceeds the noise twelve times, is that at the steepest place but for (2 pi 14 0.004)^2/6 = 2 %, and
+    /// noise adds some 3 standard deviations over such a change.
     #[test]
     fn a_swing_has_its_frequency_and_its_noise() {
         let swing = |k: usize| 0.5 + 0.1 * (std::f64::consts::TAU * 0.014 * k as f64).sin();
@@ -78,7 +78,8 @@ mod tests {
         );
         let frequency = fastest_swing(&found).unwrap();
         assert!((frequency / 14.0 - 1.0).abs() < 0.3, "{frequency}");
-        // 2000 values tell a deviation to 2 %; curvature of the swing adds to it, 0.1 (2 pi 0.014)^2 to 0.012.
+        // 2000 values tell a deviation to 2 %; curvature of the swing adds to it, 0.1 (2 pi 0.014)^2 to
+        // 0.012.
         let share = noise_share(&found);
         assert!((share / 0.01 - 1.0).abs() < 0.1, "{share}");
     }

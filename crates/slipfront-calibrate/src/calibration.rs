@@ -132,8 +132,8 @@ impl Calibration {
         }
     }
 
-    /// How far the median of every unknown moves from some records to others of the same unknowns: the median of
-    /// all pairs, as a share of the range.
+    /// How far the median of every unknown moves from some records to others of the same unknowns: the median
+    /// of all pairs, as a share of the range.
     pub(crate) fn moved(&self, from: &[Curves], to: &[Curves]) -> Vec<f64> {
         let medians = |records: &Curves| -> Vec<f64> {
             let found = self.estimate(records).distributions;

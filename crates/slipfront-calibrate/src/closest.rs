@@ -14,12 +14,12 @@ use crate::normals::{Stream, draws};
 use crate::set_up::{Curves, SetUp};
 use crate::summaries::deviation;
 
-/// Largest ratio of the differences from the closest curve to the noise that the file states: intervals for less
-/// noise are too narrow.
+/// Largest ratio of the differences from the closest curve to the noise that the file states: intervals for
+/// less noise are too narrow.
 const MOST_NOISE: f64 = 1.2;
 
-/// Standard errors by which differences of neighbouring values may be correlated. Noise is by more than half of
-/// them, one time in 40, and a search that ends near the closest curve leaves the rest.
+/// Standard errors by which differences of neighbouring values may be correlated. Noise is by more than half
+/// of them, one time in 40, and a search that ends near the closest curve leaves the rest.
 const MOST_CORRELATED: f64 = 4.0;
 
 /// Ratio of differences to noise over a part of the records with which a search goes on to the next part.
@@ -85,7 +85,8 @@ impl Closest {
         }
     }
 
-    /// Whether another search ended at the same distance over the same part, so that no further one is needed.
+    /// Whether another search ended at the same distance over the same part, so that no further one is
+    /// needed.
     fn agrees_with(&self, other: &Self) -> bool {
         let apart = (self.noise_ratio - other.noise_ratio).abs();
         self.share == other.share && apart < SAME * other.noise_ratio
@@ -98,8 +99,8 @@ impl Closest {
 }
 
 /// Looks for the closest curve among those of the unknowns that an estimate has drawn; none where random
-/// coefficients make curves of the same unknowns differ. A search ends where the differences are noise. `noise` is
-/// that of a value of the records, as a share of their mean friction.
+/// coefficients make curves of the same unknowns differ. A search ends where the differences are noise.
+/// `noise` is that of a value of the records, as a share of their mean friction.
 ///
 /// # Errors
 /// When a run cannot be made, and after a stop.
@@ -233,14 +234,15 @@ mod tests {
     #[test]
     fn noise_passes_and_a_wave_does_not() {
         let noise: Vec<f64> = normals(Stream::Noise, 1, 0).take(4000).collect();
-        let plain = Closest::of(&[noise.clone()], 1.0);
+        let plain = Closest::of(std::slice::from_ref(&noise), 1.0);
         assert!(
             !plain.is_refused() && (plain.noise_ratio - 1.0).abs() < 0.1,
             "{plain:?}"
         );
         let more: Vec<f64> = noise.iter().map(|e| 1.5 * e).collect();
         assert!(Closest::of(&[more], 1.0).is_noisier());
-        // The mean square of the wave is 0.32, which makes the correlation 0.24, and the noise 1.15 times as much.
+        // The mean square of the wave is 0.32, which makes the correlation 0.24, and the noise 1.15 times as
+        // much.
         let wave = noise
             .iter()
             .enumerate()

@@ -37,13 +37,13 @@ pub(crate) struct Findings {
     pub(crate) version: &'static str,
 }
 
-/// What the instrument passes, and what of it the records need.
+/// Frequencies that the instrument passes and that the records have, and their noise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct InstrumentFindings {
     /// Frequency up to which the instrument passes friction; none without filter, load cell and sampling.
     pub(crate) bandwidth_hz: Option<f64>,
-    /// Frequency of a swing over the range of the record that changes as fast as the record does at most; none
-    /// of records over displacement, or of noise alone.
+    /// Frequency of a swing over the range of the record that changes as fast as the record does at most;
+    /// none of records over displacement, or of noise alone.
     pub(crate) fastest_swing_hz: Option<f64>,
     /// Noise of every record, by how its values scatter about their neighbours, % of mean friction.
     pub(crate) noise_percent: Vec<f64>,
@@ -116,8 +116,8 @@ impl UnknownEstimate {
         }
     }
 
-    /// Adds the median at half the time step, by the share of the range by which records of half the step move the
-    /// estimate.
+    /// Adds the median at half the time step, by the share of the range by which records of half the step
+    /// move the estimate.
     pub(crate) fn hold_against_half_step(&mut self, unknown: &Unknown, moved: f64) {
         let [low, high] = self.interval;
         self.at_half_step = unknown.at(unknown.share_of(self.median) - moved);

@@ -366,7 +366,7 @@ impl CalibrationFolder {
         Ok(check)
     }
 
-    /// What the instrument passes, and what of it the records need.
+    /// Frequencies that the instrument passes and that the records have, and their noise.
     fn instrument(&self, set_up: &SetUp) -> Result<InstrumentFindings, StudyError> {
         let middle = set_up.middle();
         let instrument = set_up.instrument(&middle, &set_up.conditions[0]);

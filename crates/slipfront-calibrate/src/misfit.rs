@@ -88,8 +88,8 @@ fn drift_at(share: f64) -> f64 {
 }
 
 impl Check {
-    /// Learns drift from the training runs, each with a drift of its own; of every record there are the places,
-    /// and the unit of friction in its summaries.
+    /// Learns drift from the training runs, each with a drift of its own; of every record there are the
+    /// places, and the unit of friction in its summaries.
     pub(crate) fn learn(
         training: &Training,
         grids: &[SamplePoints],

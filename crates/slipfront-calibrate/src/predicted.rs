@@ -1,5 +1,5 @@
-//! Predictions of the calibrated model for the records: runs at points that are drawn from the estimate, and how
-//! the records compare with them.
+//! Predictions of the calibrated model for the records: runs at points that are drawn from the estimate, and
+//! how the records compare with them.
 
 use std::sync::atomic::AtomicBool;
 
@@ -52,8 +52,8 @@ pub struct Comparison {
     pub rank: f64,
     /// Distance of the records from the runs, over the one that half of the runs exceed.
     pub distance: f64,
-    /// The groups of numbers in which the records differ most from the runs: names in words, and the mean square
-    /// of their distances in standard deviations of the runs.
+    /// The groups of numbers in which the records differ most from the runs: names in words, and the mean
+    /// square of their distances in standard deviations of the runs.
     pub differs_in: Vec<(&'static str, f64)>,
 }
 
@@ -172,8 +172,8 @@ impl Predicted {
         (rows.collect(), self.numbers(records, None))
     }
 
-    /// The numbers of some curves, in groups: those of every record, and its distance from the nearest runs but
-    /// for the one of this number.
+    /// The numbers of some curves, in groups: those of every record, and its distance from the nearest runs
+    /// but for the one of this number.
     fn numbers(&self, curves: &[Vec<f64>], but_for: Option<usize>) -> Vec<Vec<f64>> {
         let mut groups = Vec::new();
         for (record, curve) in curves.iter().enumerate() {

@@ -267,7 +267,7 @@ fn refusal(found: &Findings) -> String {
     )
 }
 
-/// What was looked at and does not speak against the model.
+/// Results of the tests, where none speaks against the model.
 fn accepted(found: &Findings) -> String {
     let [low, high] = found.check.misfit.drift.map(|drift| four_digits(100.0 * drift));
     let closest = match &found.check.closest {

@@ -93,8 +93,8 @@ impl SamplePoints {
         self.averages(&record.x, &record.y)
     }
 
-    /// The curve of a run in the form of a record, as an instrument writes it; none if the run ends before, or its
-    /// friction is a torque.
+    /// The curve of a run in the form of a record, as an instrument writes it; none if the run ends before,
+    /// or its friction is a torque.
     pub(crate) fn curve(&self, curve: &RunCurve, instrument: Option<&Instrument>) -> Option<Vec<f64>> {
         let x = curve.along(self.along);
         // What rounding makes of the end of a run is not missed.
@@ -126,8 +126,8 @@ impl SamplePoints {
         Self { range, ..self }
     }
 
-    /// Standard deviation of the noise of a curve at the places, where that of a value of the record is a share of
-    /// the mean.
+    /// Standard deviation of the noise of a curve at the places, where that of a value of the record is a
+    /// share of the mean.
     pub(crate) fn deviation(&self, curve: &[f64], noise: f64) -> f64 {
         let share = noise / (self.merged as f64).sqrt();
         share * curve.iter().sum::<f64>().abs() / curve.len() as f64

@@ -50,8 +50,8 @@ impl SetUp {
         of_case.map(|(unknown, &share)| unknown.set_to(share)).collect()
     }
 
-    /// The instrument at these shares of the ranges, for the record of these conditions; none if the file has no
-    /// such table, and no key of it is unknown.
+    /// The instrument at these shares of the ranges, for the record of these conditions; none if the file has
+    /// no such table, and no key of it is unknown.
     ///
     /// # Errors
     /// When its keys are not valid there.

@@ -124,8 +124,8 @@ impl Unknown {
         }
     }
 
-    /// The key of the table `[instrument]` that is unknown, and its value at a share of the range; none for a key
-    /// of the case.
+    /// The key of the table `[instrument]` that is unknown, and its value at a share of the range; none for a
+    /// key of the case.
     pub(crate) fn of_instrument(&self, share: f64) -> Option<(&str, toml::Value)> {
         Some((self.key.strip_prefix("instrument.")?, self.written(share)))
     }

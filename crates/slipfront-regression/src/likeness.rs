@@ -14,8 +14,8 @@ const MOST: f64 = 1e3;
 /// How far a vector lies from a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distance {
-    /// Share of the vectors of the sample that lie at least as far from the others, with the vector itself as one
-    /// of them.
+    /// Share of the vectors of the sample that lie at least as far from the others, with the vector itself as
+    /// one of them.
     pub rank: f64,
     /// Mahalanobis distance of the vector, over the one that half of the sample exceeds.
     pub ratio: f64,
@@ -111,7 +111,7 @@ impl Fit {
     fn factor_of_spread(&self) -> Factor {
         let p = self.centre.len();
         let largest = (0..p).map(|j| self.spread[j * p + j]).fold(1e-100, f64::max);
-        factor(self.spread.clone(), 1e-9 * largest)
+        factor(&self.spread, 1e-9 * largest)
     }
 
     fn scaled(&self, vector: &[f64]) -> Vec<f64> {
@@ -129,7 +129,7 @@ impl Fit {
             (0..p * p).map(entry).sum()
         };
         let entry = |at: usize| self.residuals[at] + WIDENED * effect(at / d, at % d);
-        factor((0..d * d).map(entry).collect(), 1e-6)
+        factor(&(0..d * d).map(entry).collect::<Vec<f64>>(), 1e-6)
     }
 
     /// Square of the Mahalanobis distance, `z' V^-1 z`.
@@ -142,11 +142,11 @@ impl Fit {
 }
 
 /// Cholesky factor of a positive matrix, whose diagonal gets as much more as rounding makes necessary.
-fn factor(matrix: Vec<f64>, added: f64) -> Factor {
+fn factor(matrix: &[f64], added: f64) -> Factor {
     let n = matrix.len().isqrt();
     let mut more = added;
     loop {
-        if let Some(factor) = Factor::of(matrix.clone(), std::iter::repeat_n(more, n)) {
+        if let Some(factor) = Factor::of(matrix.to_vec(), std::iter::repeat_n(more, n)) {
             return factor;
         }
         more = (10.0 * more).max(1e-12);
@@ -159,8 +159,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Distance of a vector from a sample, of which every vector has parameters.
 ///
-/// The sample is divided into ten parts. The vectors of a part are held against the others, and so is the vector
-/// that is judged, of which the median counts.
+/// The sample is divided into ten parts. The vectors of a part are held against the others, and so is the
+/// vector that is judged, of which the median counts.
 ///
 /// # Panics
 /// If the sample has fewer than twenty vectors.

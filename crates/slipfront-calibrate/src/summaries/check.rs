@@ -1,7 +1,7 @@
-//! What a record is checked by: numbers that the estimate does not use.
+//! Numbers by which a record is checked, which the estimate does not use.
 //!
-//! `d_i` are second differences `y_(i-1) - 2 y_i + y_(i+1)`, a slip is a fall of s3 by more than a quarter of its
-//! range in the second half, and windows are shares of the record as in [the whole](super):
+//! `d_i` are second differences `y_(i-1) - 2 y_i + y_(i+1)`, a slip is a fall of s3 by more than a quarter of
+//! its range in the second half, and windows are shares of the record as in [the whole](super):
 //!
 //! ```text
 //! noise             log of the quantiles of |d_i|/m at 0.5, 0.9 and 0.99
@@ -167,8 +167,8 @@ fn regularity(curve: &Curve, slips: &[[usize; 2]]) -> Vec<f64> {
     found
 }
 
-/// Correlation of two lists of the same length; 0 of fewer than three pairs, and of values that are the same but
-/// for rounding.
+/// Correlation of two lists of the same length; 0 of fewer than three pairs, and of values that are the same
+/// but for rounding.
 fn correlation(one: &[f64], other: &[f64]) -> f64 {
     let is_the_same = |values: &[f64]| deviation(values) < 1e-9 * mean(values).abs();
     if one.len() < 3 || is_the_same(one) || is_the_same(other) {

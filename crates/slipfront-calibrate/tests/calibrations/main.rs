@@ -344,8 +344,8 @@ const BLOCK: &str = "[base]\nslider.blocks = [1, 1]\ndrive.v_star = 0.05\ntime.s
 const OF_BLOCK: &str = "[calibrate]\nx = 't_s'\ny = 'mu_1'\nnoise = 0.01\nruns = 300\nfiner_runs = 0\n\
     unknowns = { 'slider.omega_star' = [0.05, 0.5], 'drive.stiffness_star' = [0.1, 0.4] }\n";
 
-/// A record of the block with an Omega* of 0.2 and a stiffness of 0.25, 400 values over 240 t*, behind a filter
-/// of first order with this time constant in t*, by Euler's method in 50 steps of a value.
+/// A record of the block with an Omega* of 0.2 and a stiffness of 0.25, 400 values over 240 t*, behind a
+/// filter of first order with this time constant in t*, by Euler's method in 50 steps of a value.
 fn write_filtered(path: &Path, constant: f64) {
     let text = "slider = { blocks = [1, 1], omega_star = 0.2 }\ndrive = { v_star = 0.05, stiffness_star = 0.25 }\n\
                 time.step = 0.2\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
@@ -375,8 +375,8 @@ fn write_filtered(path: &Path, constant: f64) {
     fs::write(path, format!("t_s,mu_1\n{}", lines.collect::<String>())).unwrap();
 }
 
-/// The filter of an instrument is part of the model: where the file has it, the intervals are about the truth and
-/// the record passes; a file without it, or with half of it, refuses the record.
+/// The filter of an instrument is part of the model: where the file has it, the intervals are about the truth
+/// and the record passes; a file without it, or with half of it, refuses the record.
 #[test]
 fn a_filter_is_part_of_the_model() {
     let folder = tempfile::tempdir().unwrap();

@@ -9,7 +9,7 @@ use slipfront_case::quantity::{Duration, Mass, Rate, Stiffness};
 use thiserror::Error;
 use toml::Table;
 
-use super::{Filter, Instrument, MOVING_MEAN_CUTOFF};
+use super::chain::{Filter, Instrument, MOVING_MEAN_CUTOFF};
 use crate::measured::Measure;
 
 /// Name of the table in a file.
@@ -32,18 +32,19 @@ key_rows! {
         order: Option<u32> = key("", KeyKind::Special("1 to 10")).without("2"),
         /// Frequency at which the filter leaves 1/sqrt(2) of an amplitude (-3 dB).
         cutoff: Option<Rate> = key("", KeyKind::Special("more than 0")),
-        /// In place of `cutoff`: the time constant of a filter of first order, 1/(2 pi `cutoff`), or the width of
-        /// a moving mean, 0.443/`cutoff`, which ends at the time of the value.
+        /// In place of `cutoff`: the time constant of a filter of first order, 1/(2 pi `cutoff`), or the
+        /// width of a moving mean, 0.443/`cutoff`, which ends at the time of the value.
         time: Option<Duration> = key("", KeyKind::Special("more than 0")),
-        /// Mass between the slider and the load cell, with half of the cell's own: it swings on the `stiffness` of
-        /// the cell.
+        /// Mass between the slider and the load cell, with half of the cell's own: it swings on the
+        /// `stiffness` of the cell.
         mass: Option<Mass> = key("", KeyKind::Special("more than 0")).without("none"),
-        /// Stiffness of the load cell. That of the case's mount, `drive.total_stiffness`, contains it already.
+        /// Stiffness of the load cell, which the mount of the case, `drive.total_stiffness`, contains
+        /// already.
         stiffness: Option<Stiffness> = key("", KeyKind::Special("more than 0")).without("rigid"),
         /// Damping of the load cell over its critical damping.
         damping_ratio: Option<f64> = key("", KeyKind::Special("more than 0, less than 1")).without("0.02"),
-        /// Rate at which values were taken, where the table has more rows than that: each value is held until the
-        /// next one.
+        /// Rate at which values were taken, where the table has more rows than that: each value is held until
+        /// the next one.
         sampling: Option<Rate> = key("", KeyKind::Special("more than 0")).without("that of the rows"),
         /// Factor of the record: its friction over the true one.
         gain: Option<f64> = key("", KeyKind::Special("not 0")).without("1"),
