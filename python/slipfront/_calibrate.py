@@ -76,6 +76,8 @@ class Interval:
         Whether the records tell it.
     belongs_to_block
         Whether it leaves the interval on blocks of half the size, so that it is no value of the material.
+    depends_on_step
+        Whether it leaves the interval at half the time step.
     """
 
     median: float
@@ -84,6 +86,7 @@ class Interval:
     unit: str | None
     is_determined: bool
     belongs_to_block: bool
+    depends_on_step: bool
 
 
 @dataclasses.dataclass(frozen=True)
@@ -342,6 +345,7 @@ class CalibrationResults:
                 unit=told["unit"],
                 is_determined=told["is_determined"],
                 belongs_to_block=told["belongs_to_block"],
+                depends_on_step=told["depends_on_step"],
             )
             for told in found["unknowns"]
         }
@@ -357,7 +361,7 @@ class CalibrationResults:
 
     @property
     def unknowns(self) -> pd.DataFrame:
-        """A row for each key: its median, the ends of its interval, its unit, whether the records tell it, and whether it belongs to the block."""
+        """A row for each key: its median, the ends of its interval, its unit, whether the records tell it, and whether it depends on the block and the step."""
         names = [field.name for field in dataclasses.fields(Interval)]
         columns = {name: [getattr(interval, name) for interval in self.intervals.values()] for name in names}
         return frame({"key": list(self.intervals), **columns})

@@ -123,7 +123,7 @@ def test_errors_name_no_hidden_file() -> None:
 def test_results_are_a_table_and_a_picture(tmp_path: Path) -> None:
     fit = calibration().fit(record(), progress=False)
     table = fit.unknowns.set_index("key")
-    assert list(table.columns) == ["median", "low", "high", "unit", "is_determined", "belongs_to_block"]
+    assert list(table.columns) == ["median", "low", "high", "unit", "is_determined", "belongs_to_block", "depends_on_step"]
     for key, interval in fit.intervals.items():
         row = table.loc[key]
         assert (row["median"], row["low"], row["high"]) == (interval.median, interval.low, interval.high)
