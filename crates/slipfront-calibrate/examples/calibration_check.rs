@@ -7,8 +7,8 @@
 //!
 //! The arguments are the set-up (`one_block`, `lattice` or `rate_and_state`), the number of records of each
 //! kind, and the number of the first record: other numbers are other records. Further arguments name kinds
-//! that count alone, by a part of their name. Records are made apart from the library's instruments: by filters
-//! of this file, and rate and state by an integration of this file. Noise is 1 % of the mean.
+//! that count alone, by a part of their name. Records are made apart from the library's instruments: by
+//! filters of this file, and rate and state by an integration of this file. Noise is 1 % of the mean.
 //!
 //! Prints for every kind: the share of records that is refused, by either part of the check; the share whose
 //! interval misses some truth by more than its half width; the share of those that is refused; and of the
