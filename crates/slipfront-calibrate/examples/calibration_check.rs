@@ -8,12 +8,17 @@
 //! The arguments are the set-up (`one_block`, `lattice` or `rate_and_state`), the number of records of each
 //! kind, and the number of the first record: other numbers are other records. Further arguments name kinds
 //! that count alone, by a part of their name. Records are made apart from the library's instruments: by
-//! filters of this file, and rate and state by an integration of this file. Noise is 1 % of the mean.
+//! filters of this file, and rate and state by an integration apart. Noise is 1 % of the mean.
 //!
 //! Prints for every kind: the share of records that is refused, by either part of the check; the share whose
 //! interval misses some truth by more than its half width; the share of those that is refused; and of the
 //! records that pass, the share of intervals of each unknown that hold the truth. Records "told" are
 //! calibrated by a file that describes their filter.
+
+#[path = "support/random.rs"]
+mod random;
+#[path = "../tests/support/velocity_steps.rs"]
+mod velocity_steps;
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -29,6 +34,9 @@ use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::run_curve_unless;
 use slipfront_study::{Base, StudyFile};
+
+use crate::random::{normal, uniform};
+use crate::velocity_steps::{KEYS, RANGES, SPACING, friction};
 
 /// Standard deviation of the noise, over the mean of friction.
 const NOISE: f64 = 0.01;
@@ -245,7 +253,7 @@ fn record_of(
 ) -> Result<Vec<f64>, String> {
     let conditions = &experiment.set_up.conditions[0];
     let (times, fine) = if experiment.is_rate_and_state {
-        let fine = friction(truth, matches!(change, Change::SlipLaw));
+        let fine = friction(truth, STEPS, matches!(change, Change::SlipLaw));
         let dt = experiment.spacing / STEPS as f64;
         ((0..fine.len()).map(|k| k as f64 * dt).collect(), fine)
     } else {
@@ -325,15 +333,7 @@ fn run(
 
 /// A record of coefficients over time.
 fn measured(x: Vec<f64>, y: Vec<f64>) -> MeasuredRecord {
-    MeasuredRecord {
-        x,
-        y,
-        along: Measure::Time,
-        of: Measure::Coefficient,
-        took: None,
-        footer: None,
-        averaged: None,
-    }
+    MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient)
 }
 
 /// A low-pass of first order with this cutoff in Hz.
@@ -482,83 +482,19 @@ fn lattice() -> Result<Experiment, Box<dyn Error>> {
     Ok(made)
 }
 
-/// Coefficient of steady sliding at the speed [`V_0`], by which forces are scaled.
-const MU_0: f64 = 0.6;
-const V_0: f64 = 0.005;
-const STIFFNESS: f64 = 1.0;
-const SPEEDS: [(f64, f64); 5] = [
-    (0.005, 600.0),
-    (0.0015, 1400.0),
-    (0.005, 1800.0),
-    (0.0015, 2600.0),
-    (0.005, 2800.0),
-];
-/// Time t* from one value of a record to the next.
-const SPACING: f64 = 8.0;
 /// Steps of the integration from one value of a record to the next.
 const STEPS: usize = 16;
-const RANGES: [[f64; 2]; 3] = [[0.005, 0.03], [0.005, 0.03], [0.3, 3.0]];
-
-/// Friction of a block without inertia under rate and state, with the law of ageing or of slip, by Runge and
-/// Kutta's method:
-///
-/// ```text
-/// dF/dt = k (V(t) - v),   v = V_0 exp((F - mu_0 - b ln(V_0 theta/D_c))/a)
-/// ageing dtheta/dt = 1 - v theta/D_c,   slip dtheta/dt = -v theta/D_c ln(v theta/D_c)
-/// ```
-fn friction(truth: &[f64], is_slip_law: bool) -> Vec<f64> {
-    let value = |j: usize| RANGES[j][0] + truth[j] * (RANGES[j][1] - RANGES[j][0]);
-    let (a, b, d_c) = (value(0) / MU_0, value(1) / MU_0, value(2));
-    let dt = SPACING / STEPS as f64;
-    let rates = |[force, state]: [f64; 2], drive: f64| {
-        let v = V_0 * ((force - 1.0 - b * (V_0 * state / d_c).ln()) / a).exp();
-        let ratio = v * state / d_c;
-        let evolution = if is_slip_law {
-            -ratio * ratio.ln()
-        } else {
-            1.0 - ratio
-        };
-        [STIFFNESS * (drive - v), evolution]
-    };
-    let moved = |from: [f64; 2], rate: [f64; 2], dt: f64| [from[0] + dt * rate[0], from[1] + dt * rate[1]];
-    let mut now = [0.0, d_c / V_0];
-    let mut values = vec![0.0];
-    for (drive, until) in SPEEDS {
-        while values.len() as f64 * dt < until + 0.5 * dt {
-            let k1 = rates(now, drive);
-            let k2 = rates(moved(now, k1, 0.5 * dt), drive);
-            let k3 = rates(moved(now, k2, 0.5 * dt), drive);
-            let k4 = rates(moved(now, k3, dt), drive);
-            let mean = |i: usize| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
-            now = moved(now, [mean(0), mean(1)], dt);
-            values.push(MU_0 * now[0]);
-        }
-    }
-    values
-}
 
 /// Steps of speed of one block under rate and state.
 fn rate_and_state() -> Result<Experiment, Box<dyn Error>> {
-    let mut program: Vec<String> = SPEEDS
-        .iter()
-        .map(|(v, until)| format!("{{ v_star = {v}, until_star = {until} }}"))
-        .collect();
-    program.push(format!("{{ v_star = {} }}", SPEEDS[4].0));
-    let text = format!(
-        "[base]\nslider = {{ blocks = [1, 1], omega_star = 0 }}\n\
-         drive = {{ program = [{}], total_stiffness_star = {STIFFNESS} }}\n\
-         friction = {{ law = 'rate_and_state', mu_static = {MU_0}, a = 0.01, b = 0.01, d_c_star = 1, v_0_star = {V_0} }}\n\
-         time = {{ step = 0.4, duration_star = 2900 }}",
-        program.join(", ")
-    );
-    let unknowns = ["friction.a", "friction.b", "friction.d_c_star"]
+    let unknowns = KEYS
         .into_iter()
         .zip(RANGES)
         .map(|(key, [from, to])| Unknown::new(key, from, to, false))
         .collect::<Result<_, _>>()?;
     let time = Case::parse("", "unit", "", &[])?.scales.time();
-    let count = friction(&[0.5; 3], false).len().div_ceil(STEPS);
-    let mut made = experiment(base(&text)?, unknowns, count, SPACING * time)?;
+    let count = friction(&[0.5; 3], STEPS, false).len().div_ceil(STEPS);
+    let mut made = experiment(velocity_steps::base()?, unknowns, count, SPACING * time)?;
     made.is_rate_and_state = true;
     made.kinds = COMMON.to_vec();
     made.kinds.extend([
@@ -568,27 +504,4 @@ fn rate_and_state() -> Result<Experiment, Box<dyn Error>> {
         kind("lag of a displacement of 0.3", Change::Lag(60.0 * time)),
     ]);
     Ok(made)
-}
-
-/// Pseudorandom bits (SplitMix64), unrelated to those of training.
-fn bits(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
-fn unit_interval(state: &mut u64) -> f64 {
-    ((bits(state) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-}
-
-fn normal(state: &mut u64) -> f64 {
-    let radius = (-2.0 * unit_interval(state).ln()).sqrt();
-    radius * (std::f64::consts::TAU * unit_interval(state)).cos()
-}
-
-fn uniform(record: usize, count: usize) -> Vec<f64> {
-    let mut state = (record as u64 + 1).wrapping_mul(0xAEF1_7502_108E_F2D9);
-    (0..count).map(|_| unit_interval(&mut state)).collect()
 }

@@ -11,6 +11,9 @@
 //! and Smirnov). Then the share of records that the check refuses, as they are and with a drift, and
 //! processor times. The third number is that of the first record: other numbers are other records.
 
+#[path = "support/random.rs"]
+mod random;
+
 use std::collections::HashMap;
 use std::error::Error;
 use std::path::Path;
@@ -24,6 +27,8 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_study::{Base, StudyFile};
+
+use crate::random::{normal, uniform};
 
 /// Values of a record, one per t*.
 const VALUES: usize = 399;
@@ -113,15 +118,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
         Unknown::new("drive.stiffness_star", 0.2625, 0.525, true)?,
     ];
     let x: Vec<f64> = (0..VALUES).map(|k| k as f64 * time).collect();
-    let record = MeasuredRecord {
-        y: x.clone(),
-        x,
-        along: Measure::Time,
-        of: Measure::Coefficient,
-        took: None,
-        footer: None,
-        averaged: None,
-    };
+    let record = MeasuredRecord::new(x.clone(), x, Measure::Time, Measure::Coefficient);
     let grid = SamplePoints::of(&record).ok_or("no grid")?;
     let conditions = vec![Conditions {
         overrides: Vec::<Override>::new(),
@@ -152,25 +149,6 @@ fn records_of(set_up: &SetUp, truths: &[Vec<f64>], first: usize) -> Result<Vec<V
     Ok(curves.ok_or("given up")?.into_iter().flatten().collect())
 }
 
-/// Pseudorandom bits (SplitMix64), unrelated to those of training.
-fn bits(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
-fn unit_interval(state: &mut u64) -> f64 {
-    ((bits(state) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-}
-
-/// Positions of the unknowns of a record in their ranges.
-fn uniform(record: usize, count: usize) -> Vec<f64> {
-    let mut state = (record as u64 + 1).wrapping_mul(0xAEF1_7502_108E_F2D9);
-    (0..count).map(|_| unit_interval(&mut state)).collect()
-}
-
 /// A record with noise of a share of its mean, and a drift of a share of friction over it.
 fn noisy(curve: &[f64], noise: f64, drift: f64, record: usize) -> Vec<f64> {
     let mut state = (record as u64 + 7).wrapping_mul(0xE703_7ED1_A0B4_28DB) ^ noise.to_bits();
@@ -178,11 +156,7 @@ fn noisy(curve: &[f64], noise: f64, drift: f64, record: usize) -> Vec<f64> {
     let last = (curve.len() - 1) as f64;
     let values = curve.iter().enumerate();
     values
-        .map(|(i, y)| {
-            let radius = (-2.0 * unit_interval(&mut state).ln()).sqrt();
-            let normal = radius * (std::f64::consts::TAU * unit_interval(&mut state)).cos();
-            y * (1.0 + drift * i as f64 / last) + deviation * normal
-        })
+        .map(|(i, y)| y * (1.0 + drift * i as f64 / last) + deviation * normal(&mut state))
         .collect()
 }
 

@@ -51,15 +51,8 @@ mod tests {
     use crate::normals::{Stream, normals};
 
     fn record(y: Vec<f64>) -> MeasuredRecord {
-        MeasuredRecord {
-            x: (0..y.len()).map(|k| 1e-3 * k as f64).collect(),
-            y,
-            along: Measure::Time,
-            of: Measure::Coefficient,
-            took: None,
-            footer: None,
-            averaged: None,
-        }
+        let x = (0..y.len()).map(|k| 1e-3 * k as f64).collect();
+        MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient)
     }
 
     /// A swing of 14 Hz and amplitude 0.1 about 0.5, every millisecond. Its rate over 8 ms, in which it

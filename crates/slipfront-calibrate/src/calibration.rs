@@ -287,15 +287,7 @@ mod tests {
 
     fn grid_of(of: Measure) -> SamplePoints {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
-        let record = MeasuredRecord {
-            y: x.clone(),
-            x,
-            along: Measure::Time,
-            of,
-            took: None,
-            footer: None,
-            averaged: None,
-        };
+        let record = MeasuredRecord::new(x.clone(), x, Measure::Time, of);
         SamplePoints::of(&record).unwrap()
     }
 

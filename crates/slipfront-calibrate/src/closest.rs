@@ -160,31 +160,43 @@ impl Search<'_> {
     fn from(&self, set_up: &SetUp, number: usize) -> Result<Closest, StudyError> {
         let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);
         let mut draws = draws(Stream::Closest, number, 0);
-        let mut last = None;
-        for share in PARTS {
-            let part = set_up.beginning(share);
-            let is_done = |best: &Closest| match share {
-                1.0 => !best.is_refused(),
-                _ => best.noise_ratio < NEAR,
-            };
-            let mut best = self.generation(&part, share, &mut adaptation, &mut draws)?;
-            let mut idle = 0;
-            while idle < PATIENCE && !is_done(&best) {
-                let next = self.generation(&part, share, &mut adaptation, &mut draws)?;
-                idle += 1;
-                if next.noise_ratio < (1.0 - PROGRESS) * best.noise_ratio {
-                    idle = 0;
-                }
-                if next.noise_ratio < best.noise_ratio {
-                    best = next;
-                }
-            }
-            last = Some(best);
+        let [first, longer @ ..] = PARTS;
+        let mut best = self.over(set_up, first, &mut adaptation, &mut draws)?;
+        for share in longer {
             if best.noise_ratio > NEAR {
                 break;
             }
+            best = self.over(set_up, share, &mut adaptation, &mut draws)?;
         }
-        Ok(last.unwrap_or_else(|| Closest::of(&[], 0.0)))
+        Ok(best)
+    }
+
+    /// The closest curve over the first part of the records, from where a search stands.
+    fn over(
+        &self,
+        set_up: &SetUp,
+        share: f64,
+        adaptation: &mut Adaptation,
+        draws: &mut Draws,
+    ) -> Result<Closest, StudyError> {
+        let part = set_up.beginning(share);
+        let is_done = |best: &Closest| match share {
+            1.0 => !best.is_refused(),
+            _ => best.noise_ratio < NEAR,
+        };
+        let mut best = self.generation(&part, share, adaptation, draws)?;
+        let mut idle = 0;
+        while idle < PATIENCE && !is_done(&best) {
+            let next = self.generation(&part, share, adaptation, draws)?;
+            idle += 1;
+            if next.noise_ratio < (1.0 - PROGRESS) * best.noise_ratio {
+                idle = 0;
+            }
+            if next.noise_ratio < best.noise_ratio {
+                best = next;
+            }
+        }
+        Ok(best)
     }
 
     /// The closest curve of the next generation over the first part of the records.

@@ -89,15 +89,8 @@ mod tests {
     fn doubts_of(start: f64, noise: f64, curve: impl Fn(f64) -> f64) -> Vec<String> {
         let x: Vec<f64> = (0..200).map(|k| start + 0.01 * f64::from(k)).collect();
         let noise = |k: usize| noise * ((k * 7919 % 200) as f64 / 100.0 - 1.0);
-        let record = MeasuredRecord {
-            y: x.iter().enumerate().map(|(k, x)| curve(*x) + noise(k)).collect(),
-            x,
-            along: Measure::Time,
-            of: Measure::Coefficient,
-            took: None,
-            footer: None,
-            averaged: None,
-        };
+        let y = x.iter().enumerate().map(|(k, x)| curve(*x) + noise(k)).collect();
+        let record = MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient);
         let grid = SamplePoints::of(&record).unwrap();
         doubts(&record, &grid, 0.01, Path::new("r.csv"))
     }

@@ -38,6 +38,10 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
 /// Table of the file that describes the measuring chain.
 const INSTRUMENT: &str = "instrument";
 
+/// Why an instrument with memory does not go with a held drive.
+const HELD_DRIVE: &str = "a held drive has no time while blocks slide, and load cells, filters and samplings need one: remove \
+                          `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone";
+
 /// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of
 /// four, more are a system of equations that memory is too small for.
 const RUNS: [u32; 2] = [200, 5000];
@@ -396,16 +400,8 @@ impl CalibrationFile {
         for number in 0..set_up.conditions.len() {
             let instrument = set_up.instrument(&middle, &set_up.conditions[number]);
             let instrument = instrument.map_err(|error| in_instrument(error.to_string()))?;
-            let conditions = &mut set_up.conditions[number];
             let range = instrument.as_ref().and_then(Instrument::range);
-            conditions.grid = conditions.grid.clone().bounded_by(range);
-            let case = set_up.case(&middle, 0, &set_up.conditions[number]);
-            let case = case.map_err(|error| self.project.found_in("unknowns", error))?;
-            if case.model.drive.is_held() && instrument.is_some_and(|instrument| instrument.has_memory()) {
-                let sentence = "a held drive has no time while blocks slide, and load cells, filters and samplings need one: remove \
-                                `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone";
-                return Err(in_instrument(sentence.to_owned()).into());
-            }
+            set_up.conditions[number].grid.bound_by(range);
         }
         for conditions in &set_up.conditions {
             for unknown in 0..middle.len() {
@@ -413,9 +409,13 @@ impl CalibrationFile {
                     let mut shares = middle.clone();
                     shares[unknown] = end;
                     let instrument = set_up.instrument(&shares, conditions);
-                    instrument.map_err(|error| in_instrument(error.to_string()))?;
+                    let instrument = instrument.map_err(|error| in_instrument(error.to_string()))?;
                     let case = set_up.case(&shares, 0, conditions);
                     let case = case.map_err(|error| self.project.found_in("unknowns", error))?;
+                    let has_memory = instrument.is_some_and(|instrument| instrument.has_memory());
+                    if has_memory && case.model.drive.is_held() {
+                        return Err(in_instrument(HELD_DRIVE.to_owned()).into());
+                    }
                     let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
                     if steps > MAX_STEPS {
                         return Err(self.too_long(&case, steps).into());

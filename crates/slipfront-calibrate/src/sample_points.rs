@@ -121,15 +121,15 @@ impl SamplePoints {
         }
     }
 
-    /// The places for records that an instrument bounds.
-    pub(crate) fn bounded_by(self, range: Option<[f64; 2]>) -> Self {
-        Self { range, ..self }
+    /// Keeps the values at the places within the range of an instrument.
+    pub(crate) fn bound_by(&mut self, range: Option<[f64; 2]>) {
+        self.range = range;
     }
 
     /// Standard deviation of the noise of a curve at the places, where that of a value of the record is a
     /// share of the mean.
     pub(crate) fn deviation(&self, curve: &[f64], noise: f64) -> f64 {
-        let share = noise / (self.merged as f64).sqrt();
+        let share = noise * self.noise_share();
         share * curve.iter().sum::<f64>().abs() / curve.len() as f64
     }
 
@@ -182,15 +182,7 @@ mod tests {
     fn record(count: usize) -> MeasuredRecord {
         let x: Vec<f64> = (0..count).map(|k| 0.5 * k as f64).collect();
         let y = x.iter().map(|x| 3.0 * x).collect();
-        MeasuredRecord {
-            x,
-            y,
-            along: Measure::Time,
-            of: Measure::Coefficient,
-            took: None,
-            footer: None,
-            averaged: None,
-        }
+        MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient)
     }
 
     #[test]
@@ -212,15 +204,7 @@ mod tests {
 
     #[test]
     fn what_has_no_length_has_no_grid() {
-        let still = MeasuredRecord {
-            x: vec![1.0; 100],
-            y: vec![1.0; 100],
-            along: Measure::Time,
-            of: Measure::Force,
-            took: None,
-            footer: None,
-            averaged: None,
-        };
+        let still = MeasuredRecord::new(vec![1.0; 100], vec![1.0; 100], Measure::Time, Measure::Force);
         assert_eq!(SamplePoints::of(&still), None);
         assert_eq!(SamplePoints::of(&record(MIN_VALUES - 1)), None);
     }

@@ -102,15 +102,7 @@ mod tests {
         let unit = Case::parse("", "unit", "", &[]).unwrap().scales.displacement();
         let conditions = [0.1, 0.2].map(|speed| {
             let x: Vec<f64> = (0..50).map(|k| path * unit * f64::from(k) / 49.0).collect();
-            let record = MeasuredRecord {
-                y: x.clone(),
-                x,
-                along: Measure::Displacement,
-                of: Measure::Force,
-                took: None,
-                footer: None,
-                averaged: None,
-            };
+            let record = MeasuredRecord::new(x.clone(), x, Measure::Displacement, Measure::Force);
             Conditions {
                 overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],
                 grid: SamplePoints::of(&record).unwrap(),

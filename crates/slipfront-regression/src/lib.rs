@@ -8,10 +8,10 @@ mod dense;
 mod fit;
 #[cfg(test)]
 mod for_tests;
-mod likeness;
 mod parameters;
 mod regression;
+mod sample_distance;
 
 pub use dense::squared_distances;
-pub use likeness::{Distance, distance_from};
 pub use regression::{Prediction, Regression};
+pub use sample_distance::{Distance, distance_from};

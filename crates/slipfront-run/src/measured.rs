@@ -230,6 +230,19 @@ impl Measure {
 }
 
 impl MeasuredRecord {
+    /// A record of these numbers, read from no table.
+    pub fn new(x: Vec<f64>, y: Vec<f64>, along: Measure, of: Measure) -> Self {
+        Self {
+            x,
+            y,
+            along,
+            of,
+            took: None,
+            footer: None,
+            averaged: None,
+        }
+    }
+
     /// Reads two columns of a table of text; its layout is [found](TableLayout::find) where `options` do not
     /// state it. Empty lines, and those that begin with `#`, count as none; lines without numbers at the end
     /// are passed over, and named. The first column is along times or displacements; times of the day are
@@ -294,15 +307,10 @@ impl MeasuredRecord {
         }
         let layout = TableLayout::find(&head, options).map_err(failed)?;
         let mut record = Self {
-            x: Vec::new(),
-            y: Vec::new(),
-            along,
-            of: Measure::Force,
             took: layout
                 .took()
                 .map(|took| format!("{}: {took}", display_path(path))),
-            footer: None,
-            averaged: None,
+            ..Self::new(Vec::new(), Vec::new(), along, Measure::Force)
         };
         let Found {
             places,

@@ -203,20 +203,20 @@ impl Simulation {
     fn step_with(&mut self, energies: bool) {
         self.clock = self.snapshot().next_clock();
         self.observed = false;
-        let speed_before = self.totals.velocity_square.sqrt();
+        let speed_square_before = self.totals.velocity_square;
         self.totals = self.engine.step(&self.model, &self.clock, energies);
-        self.clock.rest = self.rest(speed_before);
+        self.clock.rest = self.rest(speed_square_before);
         self.measure();
     }
 
     /// How a held drive finds rest from this step on: by force, once the drive has stood for so long that it
     /// would stand for ever over blocks that hardly move, and in all steps after that.
-    fn rest(&self, speed_before: f64) -> Rest {
+    fn rest(&self, speed_square_before: f64) -> Rest {
         if self.clock.rest == Rest::Exact && !self.stands_too_long() {
             return Rest::Exact;
         }
-        let at_rest =
-            self.force_of_motion(speed_before) < FORCE_AT_REST * self.model.surface.mean_static_force();
+        let at_rest = self.force_of_motion(speed_square_before.sqrt())
+            < FORCE_AT_REST * self.model.surface.mean_static_force();
         match self.clock.rest {
             Rest::Exact if !at_rest => Rest::Exact,
             _ => Rest::ByForce { at_rest },
@@ -246,7 +246,9 @@ impl Simulation {
 
     /// Whether the drive has stood for longer than any slip takes to end.
     fn stands_too_long(&self) -> bool {
-        self.clock.standing as f64 * self.clock.dt_star > self.model.longest_stop()
+        let standing = self.clock.standing;
+        // Other drives never stand, and their steps need no limit.
+        standing > 0 && standing as f64 * self.clock.dt_star > self.model.longest_stop()
     }
 
     fn measure(&mut self) {

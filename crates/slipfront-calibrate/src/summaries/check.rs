@@ -13,7 +13,7 @@
 //! shape of a slip   y around the steepest step of a slip, mean of all, over m
 //! ```
 
-use super::curve::{Curve, LEAST, deviation, log, quantiles};
+use super::curve::{Curve, LEAST, deviation, log, log_power, quantiles};
 use slipfront_study::statistics::mean;
 
 /// Names of the groups of numbers, in words.
@@ -52,28 +52,10 @@ const BANDS: [f64; 9] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0];
 
 fn spectrum(curve: &Curve) -> Vec<f64> {
     let half = &curve.y[curve.y.len() / 2..];
-    let n = half.len();
-    let turn = std::f64::consts::TAU / n as f64;
-    let windowed: Vec<f64> = half
-        .iter()
-        .enumerate()
-        .map(|(i, y)| (y / curve.level - 1.0) * (0.5 - 0.5 * libm::cos(turn * i as f64)))
-        .collect();
-    let power = |k: usize| {
-        let (mut re, mut im) = (0.0, 0.0);
-        for (i, value) in windowed.iter().enumerate() {
-            let angle = turn * ((i * k) % n) as f64;
-            re += value * libm::cos(angle);
-            im += value * libm::sin(angle);
-        }
-        (re * re + im * im) / n as f64
-    };
-    let ends = BANDS.map(|share| (0.5 * share * n as f64) as usize);
-    let bands = ends.windows(2).map(|band| {
-        let all = (band[0]..band[1].max(band[0] + 1)).map(power);
-        libm::log(mean(&all.collect::<Vec<_>>()) + LEAST * LEAST)
-    });
-    bands.collect()
+    let e: Vec<f64> = half.iter().map(|y| y - curve.level).collect();
+    let ends = BANDS.map(|share| (0.5 * share * e.len() as f64) as usize);
+    let bands = ends.windows(2).map(|band| band[0]..band[1].max(band[0] + 1));
+    log_power(&e, curve.level, bands)
 }
 
 fn range(y: &[f64]) -> Vec<f64> {

@@ -1,5 +1,7 @@
 //! A curve of friction, with quantities and functions that several of its summaries need.
 
+use std::ops::Range;
+
 use slipfront_study::statistics::mean;
 
 /// Lower bound of ratios, and of friction in its unit, before their logarithm is taken.
@@ -86,6 +88,35 @@ pub(crate) fn deviation(values: &[f64]) -> f64 {
         .map(|value| (value - middle) * (value - middle))
         .sum();
     (squares / values.len() as f64).sqrt()
+}
+
+/// Logarithm of the mean power of a curve of `n` values in bands of frequencies, in periods over the curve:
+/// of `|E_k|^2/(n m^2)`, where `E_k` are Fourier coefficients of the differences `e` from the mean `m` under
+/// a window of Hann.
+pub(super) fn log_power(e: &[f64], m: f64, bands: impl Iterator<Item = Range<usize>>) -> Vec<f64> {
+    let n = e.len();
+    let turn = std::f64::consts::TAU / n as f64;
+    let (cosines, sines): (Vec<f64>, Vec<f64>) = (0..n)
+        .map(|i| turn * i as f64)
+        .map(|x| (libm::cos(x), libm::sin(x)))
+        .unzip();
+    let windowed: Vec<f64> = e
+        .iter()
+        .zip(&cosines)
+        .map(|(e, c)| e * (0.5 - 0.5 * c) / m)
+        .collect();
+    let power = |k: usize| {
+        let (mut re, mut im) = (0.0, 0.0);
+        let mut place = 0;
+        for e in &windowed {
+            re += e * cosines[place];
+            im += e * sines[place];
+            place = (place + k) % n;
+        }
+        (re * re + im * im) / n as f64
+    };
+    let mean = |band: Range<usize>| band.clone().map(power).sum::<f64>() / band.len() as f64;
+    bands.map(|band| libm::log(mean(band) + LEAST * LEAST)).collect()
 }
 
 /// The logarithm of a ratio, which is bounded from below by [`LEAST`].

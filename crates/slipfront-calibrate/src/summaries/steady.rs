@@ -14,7 +14,7 @@
 //! quantiles of s3/m            at 0.02, 0.1, 0.9, 0.98
 //! ```
 
-use super::curve::{Curve, LEAST, deviation, log, quantiles, running_mean};
+use super::curve::{Curve, deviation, log, log_power, quantiles, running_mean};
 use slipfront_study::statistics::mean;
 
 pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
@@ -45,42 +45,13 @@ pub(super) fn summaries(curve: &Curve) -> Vec<f64> {
         moment(&e, cube) / cube(scatter),
         log(moment(&e, |e| e * cube(e)) / (scatter * cube(scatter))),
     ]);
-    found.extend(bands(&e, m));
+    found.extend(log_power(&e, m, BANDS.windows(2).map(|band| band[0]..band[1])));
     found.extend(quantiles(smooth, [0.02, 0.1, 0.9, 0.98]).map(|value| value / m));
     found
 }
 
 /// First frequencies of the bands of the spectrum, in periods over the half of the record.
 const BANDS: [usize; 11] = [1, 3, 5, 7, 9, 12, 16, 22, 30, 45, 70];
-
-/// Logarithm of the mean power in every band but the last, which ends the one before it.
-fn bands(e: &[f64], m: f64) -> Vec<f64> {
-    let n = e.len();
-    let turn = std::f64::consts::TAU / n as f64;
-    let (cosines, sines): (Vec<f64>, Vec<f64>) = (0..n)
-        .map(|i| turn * i as f64)
-        .map(|x| (libm::cos(x), libm::sin(x)))
-        .unzip();
-    let windowed: Vec<f64> = e
-        .iter()
-        .zip(&cosines)
-        .map(|(e, c)| e * (0.5 - 0.5 * c) / m)
-        .collect();
-    let power = |k: usize| {
-        let (mut re, mut im) = (0.0, 0.0);
-        let mut place = 0;
-        for e in &windowed {
-            re += e * cosines[place];
-            im += e * sines[place];
-            place = (place + k) % n;
-        }
-        (re * re + im * im) / n as f64
-    };
-    let bands = BANDS
-        .windows(2)
-        .map(|band| (band[0]..band[1]).map(power).sum::<f64>() / (band[1] - band[0]) as f64);
-    bands.map(|mean| libm::log(mean + LEAST * LEAST)).collect()
-}
 
 fn cube(value: f64) -> f64 {
     value * value * value

@@ -1,17 +1,13 @@
 //! Rate and state of a block that is pulled at steps of speed: a calibration beside a fit of maximum
 //! likelihood, which shares nothing with it.
 //!
-//! Records come from the equations of the laboratory, without inertia, in units in which the normal force is
-//! 1:
-//!
-//! ```text
-//! dF/dt = k (V(t) - v),   v = V_0 exp((F - mu_0 - b ln(V_0 theta/D_c))/a),   dtheta/dt = 1 - v theta/D_c
-//! ```
-//!
-//! They are integrated here by Runge and Kutta's method, and fitted by Gauss and Newton's.
+//! Records come from the equations of the laboratory, which `velocity_steps` integrates by Runge and Kutta's
+//! method, and are fitted here by Gauss and Newton's.
+
+#[path = "../support/velocity_steps.rs"]
+mod velocity_steps;
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use chacha20::ChaCha8Rng;
@@ -19,75 +15,31 @@ use chacha20::rand_core::{Rng, SeedableRng};
 use slipfront_calibrate::{Calibration, Conditions, SamplePoints, SetUp, Training, Unknown};
 use slipfront_case::case::Case;
 use slipfront_run::measured::{Measure, MeasuredRecord};
-use slipfront_study::StudyFile;
 
-/// Coefficient of steady sliding at [`V_0`], and coefficient by which slipfront scales forces.
-const MU_0: f64 = 0.6;
-const V_0: f64 = 0.005;
-/// Stiffness of the drive spring: stiff enough for stable sliding anywhere in the ranges, (b - a)/(mu_0 D_c)
-/// < 0.14.
-const STIFFNESS: f64 = 1.0;
-/// Speeds of the drive, each until a time t* at which a value of a record stands and a step of a run ends.
-/// They are so low that inertia, of the order of V sqrt(k), is lost in the noise.
-const SPEEDS: [(f64, f64); 5] = [
-    (0.005, 600.0),
-    (0.0015, 1400.0),
-    (0.005, 1800.0),
-    (0.0015, 2600.0),
-    (0.005, 2800.0),
-];
-/// Time t* from one value of a record to the next.
-const SPACING: f64 = 8.0;
+use self::velocity_steps::{KEYS, RANGES, SPACING};
+
 /// Standard deviation of the noise, over the mean of friction.
 const NOISE: f64 = 0.01;
-/// Ranges of a, b and D_c.
-const RANGES: [[f64; 2]; 3] = [[0.005, 0.03], [0.005, 0.03], [0.3, 3.0]];
 
-/// Friction of a block with these a, b and D_c at every [`SPACING`].
-fn friction([a, b, d_c]: [f64; 3]) -> Vec<f64> {
-    // The fastest rate is k V/(a/mu_0) = 0.6 per t*: a step of 1 is off by 0.6^5/120 of what changes, 6e-4.
+/// Friction of a block at these shares of the ranges, at every value of a record.
+fn friction(shares: [f64; 3]) -> Vec<f64> {
     const STEPS: usize = 8;
-    let dt = SPACING / STEPS as f64;
-    let (a, b) = (a / MU_0, b / MU_0);
-    let rates = |[force, state]: [f64; 2], drive: f64| {
-        let v = V_0 * ((force - 1.0 - b * (V_0 * state / d_c).ln()) / a).exp();
-        [STIFFNESS * (drive - v), 1.0 - v * state / d_c]
-    };
-    let moved = |from: [f64; 2], rate: [f64; 2], dt: f64| [from[0] + dt * rate[0], from[1] + dt * rate[1]];
-    let mut now = [0.0, d_c / V_0];
-    let mut values = vec![0.0];
-    for (drive, until) in SPEEDS {
-        while values.len() as f64 * SPACING <= until {
-            for _ in 0..STEPS {
-                let k1 = rates(now, drive);
-                let k2 = rates(moved(now, k1, 0.5 * dt), drive);
-                let k3 = rates(moved(now, k2, 0.5 * dt), drive);
-                let k4 = rates(moved(now, k3, dt), drive);
-                let mean = |i: usize| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
-                now = moved(now, [mean(0), mean(1)], dt);
-            }
-            values.push(MU_0 * now[0]);
-        }
-    }
-    values
+    let fine = velocity_steps::friction(&shares, STEPS, false);
+    fine.into_iter().step_by(STEPS).collect()
 }
 
 /// Estimate of maximum likelihood from a record with normal noise of this standard deviation, and the half
 /// width of each interval of 90 %, `1.645 sqrt(s^2 (J^T J)^-1)`, both as shares of the ranges.
 fn most_likely(record: &[f64], noise: f64) -> [[f64; 2]; 3] {
-    let curve = |shares: [f64; 3]| {
-        let value = |j: usize| RANGES[j][0] + shares[j] * (RANGES[j][1] - RANGES[j][0]);
-        friction([value(0), value(1), value(2)])
-    };
     let squares = |curve: &[f64]| -> f64 { curve.iter().zip(record).map(|(f, y)| (y - f).powi(2)).sum() };
     let mut shares = [0.5; 3];
-    let mut found = curve(shares);
+    let mut found = friction(shares);
     for _ in 0..30 {
         const STEP: f64 = 1e-4;
         let slopes: [Vec<f64>; 3] = std::array::from_fn(|j| {
             let mut beside = shares;
             beside[j] += STEP;
-            let beside = curve(beside);
+            let beside = friction(beside);
             beside.iter().zip(&found).map(|(b, f)| (b - f) / STEP).collect()
         });
         let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
@@ -101,7 +53,7 @@ fn most_likely(record: &[f64], noise: f64) -> [[f64; 2]; 3] {
         let mut share = 1.0;
         let (next, there) = loop {
             let next: [f64; 3] = std::array::from_fn(|j| (shares[j] + share * step[j]).clamp(-0.15, 1.3));
-            let there = curve(next);
+            let there = friction(next);
             if squares(&there) <= squares(&found) || share < 1e-3 {
                 break (next, there);
             }
@@ -128,40 +80,16 @@ fn inverse(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
 }
 
 fn set_up() -> SetUp {
-    let mut program: Vec<String> = SPEEDS
-        .iter()
-        .map(|(v, until)| format!("{{ v_star = {v}, until_star = {until} }}"))
-        .collect();
-    program.push(format!("{{ v_star = {} }}", SPEEDS[4].0));
-    let text = format!(
-        "[base]\nslider = {{ blocks = [1, 1], omega_star = 0 }}\n\
-         drive = {{ program = [{}], total_stiffness_star = {STIFFNESS} }}\n\
-         friction = {{ law = 'rate_and_state', mu_static = {MU_0}, a = 0.01, b = 0.01, d_c_star = 1, v_0_star = {V_0} }}\n\
-         time = {{ step = 0.4, duration_star = 2900 }}",
-        program.join(", ")
-    );
-    let base = StudyFile::parse(&text, "base", "base", Path::new(""))
-        .unwrap_or_else(|error| panic!("{error}"))
-        .base;
-    let keys = ["friction.a", "friction.b", "friction.d_c_star"];
-    let unknowns = keys
+    let unknowns = KEYS
         .into_iter()
         .zip(RANGES)
         .map(|(key, [from, to])| Unknown::new(key, from, to, false).unwrap());
     let time = Case::parse("", "unit", "", &[]).unwrap().scales.time();
-    let count = friction([0.01, 0.01, 1.0]).len();
+    let count = friction([0.5; 3]).len();
     let x: Vec<f64> = (0..count).map(|k| time * SPACING * k as f64).collect();
-    let record = MeasuredRecord {
-        y: x.clone(),
-        x,
-        along: Measure::Time,
-        of: Measure::Coefficient,
-        took: None,
-        footer: None,
-        averaged: None,
-    };
+    let record = MeasuredRecord::new(x.clone(), x, Measure::Time, Measure::Coefficient);
     SetUp {
-        base,
+        base: velocity_steps::base().unwrap(),
         unknowns: unknowns.collect(),
         conditions: vec![Conditions {
             overrides: Vec::new(),
@@ -189,7 +117,7 @@ fn rate_and_state_agrees_with_maximum_likelihood() {
         .unwrap_or_else(|error| panic!("{error}"));
     let grids = [set_up.conditions[0].grid.clone()];
     // Values of a record are not averaged, so that it is a curve as it stands.
-    assert_eq!(grids[0].places().len(), friction([0.01, 0.01, 1.0]).len());
+    assert_eq!(grids[0].places().len(), friction([0.5; 3]).len());
     let calibration = Calibration::new(&training, &grids, NOISE);
     let mut draws = ChaCha8Rng::from_seed(*b"records of a block at two speeds");
     let mut uniform = || (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
@@ -199,8 +127,7 @@ fn rate_and_state_agrees_with_maximum_likelihood() {
     for _ in 0..RECORDS {
         // Away from the ends of the ranges, where a calibration knows what a likelihood does not.
         let truth: [f64; 3] = std::array::from_fn(|_| 0.2 + 0.6 * uniform());
-        let value = |j: usize| RANGES[j][0] + truth[j] * (RANGES[j][1] - RANGES[j][0]);
-        let plain = friction([value(0), value(1), value(2)]);
+        let plain = friction(truth);
         let noise = NOISE * plain.iter().sum::<f64>() / plain.len() as f64;
         let mut normal =
             || (-2.0 * (1.0 - uniform()).ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
