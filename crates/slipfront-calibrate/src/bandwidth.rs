@@ -21,6 +21,20 @@ pub(crate) fn noise_share(record: &MeasuredRecord) -> f64 {
     noise(&record.y) / mean(&record.y).abs()
 }
 
+/// Standard errors of the noise of a record by which it has to be less than the stated one to count as less.
+const CERTAIN: f64 = 3.0;
+
+/// Standard deviation of the noise, over mean friction, that a record lacks to have as much as is stated: 0
+/// where it has as much but for chance. The deviation of n values has a relative error of about 1/sqrt(n).
+pub(crate) fn missing_noise(record: &MeasuredRecord, stated: f64) -> f64 {
+    let own = noise_share(record);
+    let most = own * (1.0 + CERTAIN / (record.y.len() as f64).sqrt());
+    match most < stated {
+        true => (stated * stated - own * own).sqrt(),
+        false => 0.0,
+    }
+}
+
 /// Frequency in Hz of a swing over the whole range of friction that changes as fast as a record over time
 /// does at most: `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by
 /// more than noise can; none if it never does.
@@ -75,6 +89,20 @@ mod tests {
         // 0.012.
         let share = noise_share(&found);
         assert!((share / 0.01 - 1.0).abs() < 0.1, "{share}");
+    }
+
+    /// 2000 values tell a deviation to 2 %: of 1 % less than 0.94 % lacks something.
+    #[test]
+    fn a_quiet_record_lacks_noise() {
+        let with = |noise: f64| {
+            let normals = normals(Stream::Noise, 1, 0).take(2000);
+            record(normals.map(|z| 0.5 * (1.0 + noise * z)).collect())
+        };
+        assert_eq!(missing_noise(&with(0.0), 0.01), 0.01);
+        assert_eq!(missing_noise(&with(0.01), 0.01), 0.0);
+        assert_eq!(missing_noise(&with(0.03), 0.01), 0.0);
+        let missing = missing_noise(&with(0.006), 0.01);
+        assert!((missing / 0.008 - 1.0).abs() < 0.1, "{missing}");
     }
 
     #[test]

@@ -10,13 +10,14 @@ use slipfront_base::disk::is_same;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::measured::Measure;
 
-use crate::bandwidth::{fastest_swing, noise_share};
+use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
 use crate::calibration::{Calibration, Estimate};
 use crate::closest::closest;
 use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
 use crate::findings::{
     CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
 };
+use crate::normals::{Stream, normals};
 use crate::predicted::{PREDICTED, Predicted};
 use crate::record_check::RecordCheck;
 use crate::report::{FOUND, Report};
@@ -118,16 +119,27 @@ impl FittedRecords {
     }
 
     /// Runs of the calibrated model, and what they and the training say of the records.
+    ///
+    /// A record with less noise than the file states has intervals that are too wide and hold: it is compared
+    /// with the runs as a record with the noise that it lacks.
     fn check(
         &self,
         set_up: &SetUp,
+        records: &[SampledRecord],
         noise: f64,
         stop: &AtomicBool,
     ) -> Result<(Predicted, RecordCheck), StudyError> {
         let predicted = Predicted::run(set_up, self.sample(PREDICTED), noise, stop)?;
+        let as_noisy = records.iter().zip(&self.curves).enumerate();
+        let as_noisy = as_noisy.map(|(number, (record, curve))| {
+            let missing = missing_noise(&record.measured, noise);
+            record
+                .grid
+                .noisy(curve, missing, normals(Stream::Missing, 0, number))
+        });
         let check = RecordCheck {
             misfit: self.estimate.misfit.clone(),
-            comparison: predicted.compare(&self.curves),
+            comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
             closest: closest(set_up, predicted.points(), &self.curves, noise, stop)?,
         };
         Ok((predicted, check))
@@ -307,7 +319,7 @@ impl CalibrationFolder {
             Err(reason) => OnFinerBlocks::Impossible(reason),
         };
         let next = self.weigh(&mut work, further, &training, &told)?;
-        let (predicted, check) = told.check(&set_up, keys.noise, stop)?;
+        let (predicted, check) = told.check(&set_up, &self.records, keys.noise, stop)?;
         let bands = predicted.bands();
         let points = predicted.points()[..AT_HALF_STEP].to_vec();
         let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop)?;
@@ -362,7 +374,7 @@ impl CalibrationFolder {
         };
         let training = self.train(&mut work, CalibrationStage::Training, &set_up, runs)?;
         let told = FittedRecords::of(&training, &set_up, &self.records, noise);
-        let (_, check) = told.check(&set_up, noise, stop)?;
+        let (_, check) = told.check(&set_up, &self.records, noise, stop)?;
         Ok(check)
     }
 

@@ -15,6 +15,8 @@ pub(crate) enum Stream {
     Predicted = 3,
     /// Search of the closest curve.
     Closest = 4,
+    /// Noise that a record lacks.
+    Missing = 5,
 }
 
 /// The numbers of one record of one training run.

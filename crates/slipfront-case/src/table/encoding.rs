@@ -130,7 +130,7 @@ const WINDOWS_1252: [char; 32] = [
 ];
 
 /// Number of bytes that are decoded at once.
-const CHUNK: usize = 1 << 16;
+const CHUNK: u64 = 1 << 16;
 
 /// A text as UTF-8 while it is read. Libraries that decode bring tables of all encodings, which would make
 /// the page's module a tenth larger.
@@ -150,11 +150,7 @@ impl<R: Read> Read for DecodedText<R> {
         while self.taken == self.text.len() {
             (self.taken, self.text) = (0, std::mem::take(&mut self.text));
             self.text.clear();
-            let before = self.bytes.len();
-            self.bytes.resize(before + CHUNK, 0);
-            let read = self.source.read(&mut self.bytes[before..]);
-            self.bytes.truncate(before + *read.as_ref().unwrap_or(&0));
-            let is_end = read? == 0;
+            let is_end = (&mut self.source).take(CHUNK).read_to_end(&mut self.bytes)? == 0;
             self.encoding.decode(&mut self.bytes, &mut self.text, is_end);
             if self.is_start && !self.text.is_empty() {
                 self.is_start = false;

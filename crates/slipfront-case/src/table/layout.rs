@@ -126,6 +126,15 @@ struct Line<'t> {
     number: u64,
     text: &'t str,
     fields: Vec<Cow<'t, str>>,
+    /// Number of fields that are numbers.
+    numbers: usize,
+}
+
+impl Line<'_> {
+    /// Whether at least half of the fields are numbers.
+    fn is_row(&self) -> bool {
+        2 * self.numbers >= self.fields.len()
+    }
 }
 
 /// A way to read a table.
@@ -159,7 +168,12 @@ impl TableLayout {
         let stated = sep_line(text);
         let separators: Vec<char> = match options.separator.or(stated) {
             Some(separator) => vec![separator],
-            None => SEPARATORS.to_vec(),
+            // Separators that the text does not have read it alike: one of them is enough.
+            None => {
+                let absent = SEPARATORS.into_iter().find(|sign| !text.contains(*sign));
+                let is_tried = |sign: &char| text.contains(*sign) || absent == Some(*sign);
+                SEPARATORS.into_iter().filter(is_tried).collect()
+            }
         };
         let mut readings = Vec::new();
         for separator in separators {
@@ -276,18 +290,20 @@ impl Reading {
             .zip(1..)
             .filter(|(text, _)| !text.trim().is_empty() && !text.trim_start().starts_with('#'))
             .filter(|(line, number)| *number > 1 || sep_line(line).is_none())
-            .map(|(text, number)| Line {
-                number,
-                text,
-                fields: trimmed(fields(text, separator).unwrap_or_default()),
+            .map(|(text, number)| {
+                let fields = trimmed(fields(text, separator).unwrap_or_default());
+                Line {
+                    number,
+                    text,
+                    numbers: fields.iter().filter(|field| is_number(field)).count(),
+                    fields,
+                }
             })
             .filter(|line| !line.fields.is_empty())
             .collect();
-        let numbers = |line: &Line| line.fields.iter().filter(|field| is_number(field)).count();
         // Rows are the longest sequence of lines with as many fields, at least half of which are numbers.
-        let is_row = |line: &Line| 2 * numbers(line) >= line.fields.len();
-        let sequences = lines.chunk_by(|a, b| is_row(a) && is_row(b) && a.fields.len() == b.fields.len());
-        let rows = sequences.filter(|lines| is_row(&lines[0])).rev();
+        let sequences = lines.chunk_by(|a, b| a.is_row() && b.is_row() && a.fields.len() == b.fields.len());
+        let rows = sequences.filter(|lines| lines[0].is_row()).rev();
         let longest = rows.max_by_key(|lines| lines.len()).unwrap_or_default();
         let columns = longest.first().map_or(0, |line| line.fields.len());
         // Columns of numbers are those that most of these rows have.
@@ -314,7 +330,7 @@ impl Reading {
         let score = lines[first..]
             .iter()
             .filter(|line| line.fields.len() == columns)
-            .map(|line| 2 * numbers(line) as i64 - line.fields.len() as i64)
+            .map(|line| 2 * line.numbers as i64 - line.fields.len() as i64)
             .sum();
 
         let n_lines = text.lines().count() as u64;
@@ -329,33 +345,30 @@ impl Reading {
             // Names are texts of which there are as many as columns, or more.
             None => (0..first)
                 .rev()
-                .find(|&at| lines[at].fields.len() >= columns && numbers(&lines[at]) == 0)
+                .find(|&at| lines[at].fields.len() >= columns && lines[at].numbers == 0)
                 // Fewer names than columns are an error of the rows, and not a line of an instrument.
                 .or_else(|| {
                     let at = first.checked_sub(1)?;
-                    let are_names =
-                        separator != ' ' && lines[at].fields.len() > 1 && numbers(&lines[at]) == 0;
+                    let are_names = separator != ' ' && lines[at].fields.len() > 1 && lines[at].numbers == 0;
                     are_names.then_some(at)
                 }),
         };
         let has_units = |at: usize| {
             let line = lines.get(at)?;
-            let known = line.fields.iter().filter(|field| is_unit(field)).count();
             // Quantities of an instrument have units that are no matter here, such as those of temperatures.
-            let are_units = line.fields.len() <= columns.max(1)
-                && numbers(line) == 0
-                && 2 * known > line.fields.len()
-                && line
-                    .fields
-                    .iter()
-                    .all(|field| field.chars().count() <= UNIT_MAX_CHARS);
+            let is_short =
+                |field: &Cow<'_, str>| field.chars().take(UNIT_MAX_CHARS + 1).count() <= UNIT_MAX_CHARS;
+            let are_units = line.numbers == 0
+                && line.fields.len() <= columns.max(1)
+                && line.fields.iter().all(is_short)
+                && 2 * line.fields.iter().filter(|field| is_unit(field)).count() > line.fields.len();
             are_units.then_some(at)
         };
         let (names, units) = match names {
             // The nearest line of texts may be that of the units.
             Some(at) if options.header_line.is_none() && at > 0 && has_units(at).is_some() => {
                 let above = &lines[at - 1];
-                match above.fields.len() >= columns && numbers(above) == 0 {
+                match above.fields.len() >= columns && above.numbers == 0 {
                     true => (Some(at - 1), Some(at)),
                     false => (Some(at), None),
                 }
@@ -375,7 +388,7 @@ impl Reading {
         let above = &lines[..names.unwrap_or(first)];
         // What an instrument writes above a matrix has fewer fields, or fewer numbers.
         let is_of_matrix =
-            |line: &Line| 2 * numbers(line) > line.fields.len() && 2 * line.fields.len() >= columns;
+            |line: &Line| 2 * line.numbers > line.fields.len() && 2 * line.fields.len() >= columns;
         let first_of_matrix = lines.iter().position(is_of_matrix).unwrap_or(0);
         let layout = TableLayout {
             encoding,
