@@ -148,6 +148,11 @@ class Calibration:
 
     >>> calibration.check(record, progress=False).is_refused
     False
+
+    How narrow the intervals of a record would be, before there is one:
+
+    >>> calibration.plan(until="10 ns", progress=False)["as planned"]["drive.stiffness_star"] < 0.8
+    True
     """
 
     def __init__(
@@ -240,16 +245,17 @@ class Calibration:
     def check(
         self,
         *records: Record,
+        training: str | os.PathLike[str] | None = None,
         progress: bool | Callable[[int, int], object] | None = None,
         threads: int | None = None,
     ) -> RecordCheck:
         """Test whether the model makes such records, as `fit` does, without blocks of half the size and next experiments.
 
-        Training runs are shared with those fits of this object that are in memory.
+        Training runs are shared with those fits of this object that are in memory, or are kept in a folder.
 
         Parameters
         ----------
-        records, progress, threads
+        records, training, progress, threads
             As of `fit`.
 
         Raises
@@ -263,11 +269,55 @@ class Calibration:
             About lines without numbers at the end of a record.
         """
         temporary = TemporaryFolder()
-        work = partial(self._native.check, temporary.path / self.name, self._training.path)
+        kept = self._training.path if training is None else Path(training)
+        work = partial(self._native.check, temporary.path / self.name, kept)
         reasons, tests, notes = self._watched(records, temporary, progress, threads, work)
         for note in notes:
             warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
         return RecordCheck(reasons, **json.loads(tests))
+
+    def plan(
+        self,
+        *records: Record,
+        until: str | None = None,
+        values: int = 400,
+        progress: bool | Callable[[int, int], object] | None = None,
+        threads: int | None = None,
+    ) -> dict[str, dict[str, float] | str]:
+        """Simulate records before any is measured, and those of longer, slower and faster experiments.
+
+        Parameters
+        ----------
+        records
+            Records at whose times friction is simulated; their values do not count.
+        until, values
+            End of the planned records with its unit, such as ``"20 s"``, and their number of values, in place of `records`.
+        progress, threads
+            As of `fit`.
+
+        Returns
+        -------
+        dict
+            For each experiment the expected width of the interval of 90 % of every unknown, as a share of its range, from 0.8 on that of
+            an unknown that the records do not determine; or the reason why the experiment is not possible.
+
+        Raises
+        ------
+        CaseError
+            When a record cannot be read, or the ranges leave the bounds of the case.
+        """
+        if bool(records) == (until is not None):
+            raise ValueError("give either records or `until`, the end of the planned ones, such as '20 s'")
+        planned = None if until is None else (until, values)
+        work = partial(self._native.plan, planned)
+        found = json.loads(self._watched(records, TemporaryFolder(), progress, threads, work))
+        keys = found["unknowns"]
+        return {
+            experiment["name"]: experiment["impossible"]
+            if experiment["widths"] is None
+            else dict(zip(keys, experiment["widths"], strict=True))
+            for experiment in found["experiments"]
+        }
 
     def _watched(
         self,

@@ -186,6 +186,13 @@ class Calibration:
         threads: int,
         watch: Callable[[int, int], object] | None,
     ) -> tuple[list[str], str, list[str]]: ...
+    def plan(
+        self,
+        until: tuple[str, int] | None,
+        records: list[Path],
+        threads: int,
+        watch: Callable[[int, int], object] | None,
+    ) -> str: ...
 
 @final
 class TemporaryParent:

@@ -74,6 +74,32 @@ impl Calibration {
         let tests = serde_json::to_string(&found).map_err(folder_error)?;
         Ok((found.reasons(), tests, notes))
     }
+
+    /// Simulates records that are planned, until a place with its unit with a number of values or at the times
+    /// of records, and returns the expected widths of the intervals as JSON.
+    fn plan(
+        &self,
+        py: Python<'_>,
+        until: Option<(String, usize)>,
+        records: Vec<PathBuf>,
+        threads: usize,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let grids = detached(py, || match &until {
+            Some((until, values)) => self.file.planned(until, *values),
+            None => Ok(self
+                .file
+                .read(&records)?
+                .iter()
+                .map(SampledRecord::places)
+                .collect()),
+        })?;
+        let grids = grids.map_err(|error| study_error(py, &error))?;
+        let plan = with_progress(py, threads, watch.as_ref(), |stop, show| {
+            self.file.plan(grids, stop, show)
+        })?;
+        serde_json::to_string(&plan).map_err(folder_error)
+    }
 }
 
 impl Calibration {

@@ -34,7 +34,8 @@ def test_a_calibration_has_the_bytes_of_the_command(tmp_path: Path) -> None:
     shown: list[tuple[int, int]] = []
     measured = record()
     fit = calibration().fit(measured, folder=tmp_path / "one", progress=lambda *now: shown.append(now), threads=2)
-    assert shown and shown[-1] == (200, 200)
+    # The runs of the training, of the calibrated model and of half the step.
+    assert shown and shown[-1] == (200 + 120 + 40, 360)
     (tmp_path / "fit.toml").write_bytes((tmp_path / "one/calibration.toml").read_bytes())
     command = [sys.executable, "-m", "slipfront", "calibrate", "fit.toml", "one/record-1.csv", "-o", "two", "--quiet", "--threads", "1"]
     subprocess.run(command, cwd=tmp_path, check=True)
@@ -149,14 +150,36 @@ def test_a_record_is_checked_alone() -> None:
     assert not check.is_refused and check.reasons == []
     shown: list[tuple[int, int]] = []
     assert made.check(measured, progress=lambda *now: shown.append(now)) == check
-    assert all(now == (0, 0) for now in shown)
-    # The runs of the next experiment alone are left.
+    # Those of the calibrated model alone are made again.
+    assert shown[-1] == (120, 120)
+    # Of the trainings that of the next experiment alone is left.
     fit = made.fit(measured, progress=lambda *now: shown.append(now))
-    assert shown[-1] == (200, 200)
+    assert shown[-1] == (200 + 120 + 40, 360)
     assert (check.misfit, check.comparison, check.closest) == (fit.misfit, fit.comparison, fit.closest)
     assert 0 <= check.comparison["rank"] <= 1
     foreign = made.check({**measured, "force_n": 100 * measured["force_n"]}, progress=False)
     assert foreign.is_refused and any("of the training runs" in reason for reason in foreign.reasons)
+
+
+def test_what_a_record_would_show_is_known_before_it_is_measured(tmp_path: Path) -> None:
+    made, measured = calibration(), record()
+    plan = made.plan(until="40 ns", progress=False)
+    planned = plan["as planned"]
+    assert isinstance(planned, dict) and list(planned) == list(UNKNOWNS)
+    assert all(0 < width < 0.1 for width in planned.values())
+    assert {"twice as long", "a third of the speed", "three times the speed"} < set(plan)
+    # Of a record the times alone count.
+    other = made.plan({**measured, "force_n": measured["force_n"] + 1}, progress=False)
+    assert other == made.plan(measured, progress=False)
+    # Runs that are kept are made once.
+    shown: list[tuple[int, int]] = []
+    made.check(measured, training=tmp_path / "kept", progress=False)
+    calibration().check(measured, training=tmp_path / "kept", progress=lambda *now: shown.append(now))
+    assert shown[-1] == (120, 120)
+    with pytest.raises(ValueError, match="give either records or `until`"):
+        made.plan(progress=False)
+    with pytest.raises(sf.CaseError, match="a time is wanted"):
+        made.plan(until="2 um", progress=False)
 
 
 def test_an_instrument_stands_before_the_record(tmp_path: Path) -> None:

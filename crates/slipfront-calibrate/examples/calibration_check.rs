@@ -192,9 +192,9 @@ impl Trained {
         let estimate = calibration.estimate(&values);
         let points = calibration.sample(&estimate, PREDICTED);
         let failed = |error: slipfront_study::StudyError| error.to_string();
-        let predicted = Predicted::run(set_up, points.clone(), NOISE, &go_on).map_err(failed)?;
+        let predicted = Predicted::run(set_up, points.clone(), NOISE, &go_on, &mut |_| {}).map_err(failed)?;
         let comparison = predicted.compare(&values);
-        let closest = closest(set_up, &points, &values, NOISE, &go_on).map_err(failed)?;
+        let closest = closest(set_up, &points, &values, NOISE, &go_on, &mut |_| {}).map_err(failed)?;
         let intervals = estimate
             .distributions
             .iter()

@@ -212,18 +212,30 @@ impl Calibration {
     /// Widths of the intervals of 90 % for records like these, for every unknown, as a share of its range:
     /// the mean over training runs that are left out.
     pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
+        let mut alike: Vec<usize> = (0..of.likeness.len()).collect();
+        alike.sort_by(|&a, &b| of.likeness[b].total_cmp(&of.likeness[a]));
+        alike.truncate(LIKE_AT_LEAST as usize);
+        self.widths_of(&alike)
+    }
+
+    /// Widths of the intervals of 90 % for records over all of the ranges, as [`widths`](Self::widths) gives
+    /// them for some.
+    pub(crate) fn mean_widths(&self) -> Vec<f64> {
+        let runs = self.truths.first().map_or(0, Vec::len);
+        self.widths_of(&Vec::from_iter(0..runs))
+    }
+
+    /// Mean widths of the intervals of 90 % for these training runs, each of them left out.
+    fn widths_of(&self, runs: &[usize]) -> Vec<f64> {
         let all: Vec<_> = self.regressions.iter().zip(&self.truths).collect();
         all.par_iter()
             .map(|(regression, truth)| {
-                let mut alike: Vec<usize> = (0..truth.len()).collect();
-                alike.sort_by(|&a, &b| of.likeness[b].total_cmp(&of.likeness[a]));
-                alike.truncate(LIKE_AT_LEAST as usize);
-                let widths = alike.iter().map(|&run| {
+                let widths = runs.iter().map(|&run| {
                     let [low, high] =
                         Distribution::of(regression, truth, regression.left_out(run)).interval(0.9);
                     high - low
                 });
-                widths.sum::<f64>() / alike.len() as f64
+                widths.sum::<f64>() / runs.len() as f64
             })
             .collect()
     }

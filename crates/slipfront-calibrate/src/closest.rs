@@ -11,6 +11,7 @@ use slipfront_study::draws::Draws;
 use slipfront_study::statistics::mean;
 
 use crate::normals::{Stream, draws};
+use crate::progress::RunsEnded;
 use crate::set_up::{Curves, SetUp};
 use crate::summaries::deviation;
 
@@ -100,7 +101,8 @@ impl Closest {
 
 /// Looks for the closest curve among those of the unknowns that an estimate has drawn; none where random
 /// coefficients make curves of the same unknowns differ. A search ends where the differences are noise.
-/// `noise` is that of a value of the records, as a share of their mean friction.
+/// `noise` is that of a value of the records, as a share of their mean friction; `ended` gets the numbers of
+/// runs as they end.
 ///
 /// # Errors
 /// When a run cannot be made, and after a stop.
@@ -110,6 +112,7 @@ pub fn closest(
     records: &[Vec<f64>],
     noise: f64,
     stop: &AtomicBool,
+    ended: &mut RunsEnded,
 ) -> Result<Option<Closest>, StudyError> {
     let middle = set_up.middle();
     let curves = |seed: u64| Ok::<_, StudyError>(set_up.curves(&middle, seed, stop)?);
@@ -121,12 +124,13 @@ pub fn closest(
         [mean(&values), deviation(&values)]
     };
     let deviations = records.iter().zip(&set_up.conditions);
-    let search = Search {
+    let mut search = Search {
         records,
         deviations: deviations
             .map(|(record, conditions)| conditions.grid.deviation(record, noise))
             .collect(),
         stop,
+        ended,
         begin: (0..set_up.unknowns.len()).map(begin).collect(),
     };
     let mut found: Vec<Closest> = Vec::new();
@@ -146,18 +150,19 @@ pub fn closest(
 }
 
 /// Search for the closest curve.
-struct Search<'a> {
+struct Search<'a, 'e> {
     records: &'a [Vec<f64>],
     /// Standard deviation of the noise of every record.
     deviations: Vec<f64>,
     stop: &'a AtomicBool,
+    ended: &'a mut RunsEnded<'e>,
     /// Mean and standard deviation of every unknown from which a search begins.
     begin: Vec<[f64; 2]>,
 }
 
-impl Search<'_> {
+impl Search<'_, '_> {
     /// The closest curve of the search of this number.
-    fn from(&self, set_up: &SetUp, number: usize) -> Result<Closest, StudyError> {
+    fn from(&mut self, set_up: &SetUp, number: usize) -> Result<Closest, StudyError> {
         let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);
         let mut draws = draws(Stream::Closest, number, 0);
         let [first, longer @ ..] = PARTS;
@@ -173,7 +178,7 @@ impl Search<'_> {
 
     /// The closest curve over the first part of the records, from where a search stands.
     fn over(
-        &self,
+        &mut self,
         set_up: &SetUp,
         share: f64,
         adaptation: &mut Adaptation,
@@ -201,19 +206,24 @@ impl Search<'_> {
 
     /// The closest curve of the next generation over the first part of the records.
     fn generation(
-        &self,
+        &mut self,
         part: &SetUp,
         share: f64,
         adaptation: &mut Adaptation,
         draws: &mut Draws,
     ) -> Result<Closest, StudyError> {
         let drafts: Vec<_> = (0..DRAFTS).map(|_| adaptation.draw(draws)).collect();
-        let judged = drafts.par_iter().with_max_len(1).map(|(normal, numbers)| {
-            let curves = part.curves(&self.point(numbers), 1, self.stop)?;
-            let curves = curves.ok_or(StudyError::Interrupted)?;
-            Ok((self.judge(&curves, share), normal.as_slice()))
+        let points: Vec<Vec<f64>> = drafts.iter().map(|(_, numbers)| self.point(numbers)).collect();
+        let stop = self.stop;
+        let runs = points.par_iter().with_max_len(1).map(|point| {
+            let curves = part.curves(point, 1, stop)?;
+            curves.ok_or(StudyError::Interrupted)
         });
-        let mut ranked: Vec<(Closest, &[f64])> = judged.collect::<Result<_, StudyError>>()?;
+        let curves: Vec<Curves> = runs.collect::<Result<_, StudyError>>()?;
+        (self.ended)(curves.len());
+        let judged = curves.iter().zip(&drafts);
+        let judged = judged.map(|(curves, (normal, _))| (self.judge(curves, share), normal.as_slice()));
+        let mut ranked: Vec<(Closest, &[f64])> = judged.collect();
         ranked.sort_by(|one, other| one.0.noise_ratio.total_cmp(&other.0.noise_ratio));
         let normal: Vec<&[f64]> = ranked.iter().map(|(_, normal)| *normal).collect();
         adaptation.adapt(&normal);

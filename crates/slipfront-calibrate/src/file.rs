@@ -191,6 +191,19 @@ impl CalibrationKeys {
         [&self.x, &self.y]
     }
 
+    /// Quantity of the first column of records.
+    pub(crate) fn along(&self) -> Measure {
+        match self.against {
+            Against::Time => Measure::Time,
+            Against::Displacement => Measure::Displacement,
+        }
+    }
+
+    /// Number of records that the file describes.
+    pub(crate) fn n_records(&self) -> usize {
+        self.records.len().max(1)
+    }
+
     /// How the tables of records are written, as far as the file says.
     fn table(&self) -> TableOptions {
         TableOptions::stated(self.header_line, self.decimal, self.separator)
@@ -351,10 +364,7 @@ impl CalibrationFile {
     fn read_record(&self, number: usize, path: &Path) -> Result<SampledRecord, StudyError> {
         let keys = &self.keys;
         let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit], keys.table());
-        let along = match keys.against {
-            Against::Time => Measure::Time,
-            Against::Displacement => Measure::Displacement,
-        };
+        let along = keys.along();
         let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
         let measured = columns.parse(&bytes, path, along);
         let mut measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
@@ -383,14 +393,24 @@ impl CalibrationFile {
     /// The set-up of the runs for records, on the blocks of the case. Both ends of every range are checked
     /// with the case.
     pub(crate) fn set_up(&self, records: &[SampledRecord]) -> Result<SetUp, StudyError> {
-        let conditions = records.iter().enumerate().map(|(number, record)| Conditions {
+        self.set_up_at(records.iter().map(|record| record.grid.clone()).collect())
+    }
+
+    /// The set-up for records at these places.
+    pub(crate) fn set_up_at(&self, grids: Vec<SamplePoints>) -> Result<SetUp, StudyError> {
+        let conditions = grids.into_iter().enumerate().map(|(number, grid)| Conditions {
             overrides: self.overrides_of(number),
-            grid: record.grid.clone(),
+            grid,
         });
+        self.set_up_under(conditions.collect())
+    }
+
+    /// The set-up under these conditions.
+    pub(crate) fn set_up_under(&self, conditions: Vec<Conditions>) -> Result<SetUp, StudyError> {
         let mut set_up = SetUp {
             base: self.project.base.clone(),
             unknowns: self.unknowns()?,
-            conditions: conditions.collect(),
+            conditions,
             instrument: self.project.table(INSTRUMENT)?.cloned(),
             is_finer: false,
             has_half_step: false,

@@ -19,6 +19,7 @@ use crate::findings::{
 };
 use crate::normals::{Stream, normals};
 use crate::predicted::{PREDICTED, Predicted};
+use crate::progress::{CalibrationProgress, CalibrationStage, RunCounter};
 use crate::record_check::RecordCheck;
 use crate::report::{FOUND, Report};
 use crate::sample_points::SamplePoints;
@@ -49,48 +50,6 @@ struct CalibrationRun {
 
 impl JournalEntry for CalibrationRun {
     const KEYS: &'static [&'static str] = &["curves"];
-}
-
-/// Stage of a calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CalibrationStage {
-    /// Runs of the case over the ranges.
-    Training,
-    /// Runs on blocks of half the size.
-    FinerBlocks,
-    /// Runs of experiments that may be made next.
-    Further,
-}
-
-/// Progress of a calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CalibrationProgress {
-    /// Present stage.
-    pub stage: CalibrationStage,
-    /// Number of runs of this call that have ended.
-    pub runs: usize,
-    /// Number of all runs of this call.
-    pub of: usize,
-}
-
-/// Runs of a calibration in progress.
-struct RunCounter<'a> {
-    stop: &'a AtomicBool,
-    watch: &'a mut dyn FnMut(&CalibrationProgress),
-    ended: usize,
-    of: usize,
-}
-
-impl RunCounter<'_> {
-    /// Shows that `runs` more runs have ended.
-    fn show(&mut self, stage: CalibrationStage, runs: usize) {
-        self.ended += runs;
-        (self.watch)(&CalibrationProgress {
-            stage,
-            runs: self.ended,
-            of: self.of,
-        });
-    }
 }
 
 /// Curves of measured records, and the estimate of a training from them.
@@ -127,9 +86,11 @@ impl FittedRecords {
         set_up: &SetUp,
         records: &[SampledRecord],
         noise: f64,
-        stop: &AtomicBool,
+        work: &mut RunCounter,
     ) -> Result<(Predicted, RecordCheck), StudyError> {
-        let predicted = Predicted::run(set_up, self.sample(PREDICTED), noise, stop)?;
+        let stop = work.stop;
+        let mut ended = |runs| work.show(CalibrationStage::Prediction, runs);
+        let predicted = Predicted::run(set_up, self.sample(PREDICTED), noise, stop, &mut ended)?;
         let as_noisy = records.iter().zip(&self.curves).enumerate();
         let as_noisy = as_noisy.map(|(number, (record, curve))| {
             let missing = missing_noise(&record.measured, noise);
@@ -137,10 +98,12 @@ impl FittedRecords {
                 .grid
                 .noisy(curve, missing, normals(Stream::Missing, 0, number))
         });
+        let mut ended = |runs| work.show(CalibrationStage::Closest, runs);
+        let closest = closest(set_up, predicted.points(), &self.curves, noise, stop, &mut ended)?;
         let check = RecordCheck {
             misfit: self.estimate.misfit.clone(),
             comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
-            closest: closest(set_up, predicted.points(), &self.curves, noise, stop)?,
+            closest,
         };
         Ok((predicted, check))
     }
@@ -291,12 +254,8 @@ impl CalibrationFolder {
         let keys = self.file.keys.clone();
         let set_up = self.set_up.clone();
         let (finer, further) = (self.finer(), self.file.further(&set_up)?);
-        let mut work = RunCounter {
-            stop,
-            watch,
-            ended: 0,
-            of: self.n_missing(&finer, &further)?,
-        };
+        let of = self.n_missing(&finer, &further)? + PREDICTED + AT_HALF_STEP;
+        let mut work = RunCounter::new(stop, of, watch);
         let training = self.train(&mut work, CalibrationStage::Training, &set_up, keys.runs)?;
         let told = FittedRecords::of(&training, &set_up, &self.records, keys.noise);
         let estimate = &told.estimate;
@@ -319,10 +278,11 @@ impl CalibrationFolder {
             Err(reason) => OnFinerBlocks::Impossible(reason),
         };
         let next = self.weigh(&mut work, further, &training, &told)?;
-        let (predicted, check) = told.check(&set_up, &self.records, keys.noise, stop)?;
+        let (predicted, check) = told.check(&set_up, &self.records, keys.noise, &mut work)?;
         let bands = predicted.bands();
         let points = predicted.points()[..AT_HALF_STEP].to_vec();
-        let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop)?;
+        let mut ended = |runs| work.show(CalibrationStage::HalfStep, runs);
+        let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop, &mut ended)?;
         let moved = told
             .calibration
             .moved(&predicted.curves()[..AT_HALF_STEP], half_step.curves());
@@ -366,15 +326,11 @@ impl CalibrationFolder {
     ) -> Result<RecordCheck, StudyError> {
         let CalibrationKeys { runs, noise, .. } = self.file.keys;
         let set_up = self.set_up.clone();
-        let mut work = RunCounter {
-            stop,
-            watch,
-            ended: 0,
-            of: self.n_missing(&Ok(None), &[])?,
-        };
+        let of = self.n_missing(&Ok(None), &[])? + PREDICTED;
+        let mut work = RunCounter::new(stop, of, watch);
         let training = self.train(&mut work, CalibrationStage::Training, &set_up, runs)?;
         let told = FittedRecords::of(&training, &set_up, &self.records, noise);
-        let (_, check) = told.check(&set_up, &self.records, noise, stop)?;
+        let (_, check) = told.check(&set_up, &self.records, noise, &mut work)?;
         Ok(check)
     }
 

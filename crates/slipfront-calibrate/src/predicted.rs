@@ -8,8 +8,10 @@ use serde::Serialize;
 use slipfront_regression::distance_from;
 
 use crate::normals::{Stream, normals};
+use crate::progress::RunsEnded;
 use crate::set_up::{Curves, SetUp};
 use crate::summaries::{checked, checked_groups, level, quantiles};
+use crate::training::AT_ONCE;
 use slipfront_study::{StudyError, TrainingError};
 
 /// Number of the surface of the first run; training draws from 1 on.
@@ -88,7 +90,8 @@ impl Band {
 }
 
 impl Predicted {
-    /// Runs these points of the ranges; `noise` is that of a value, as a share of the mean friction.
+    /// Runs these points of the ranges; `noise` is that of a value, as a share of the mean friction. `ended`
+    /// gets the numbers of runs as they end.
     ///
     /// # Errors
     /// When a run cannot be made, and after a stop.
@@ -97,27 +100,30 @@ impl Predicted {
         points: Vec<Vec<f64>>,
         noise: f64,
         stop: &AtomicBool,
+        ended: &mut RunsEnded,
     ) -> Result<Self, StudyError> {
-        let curves: Vec<Result<Option<Curves>, TrainingError>> = points
-            .par_iter()
-            .enumerate()
-            .with_max_len(1)
-            .map(|(run, point)| {
-                let curves = set_up.curves(point, FIRST_SURFACE + run as u64, stop)?;
-                let with_noise = |curves: Curves| {
-                    let records = curves.iter().zip(&set_up.conditions).enumerate();
-                    let noisy = records.map(|(record, (curve, conditions))| {
-                        conditions
-                            .grid
-                            .noisy(curve, noise, normals(Stream::Predicted, run, record))
-                    });
-                    noisy.collect()
-                };
-                Ok(curves.map(with_noise))
-            })
-            .collect();
-        let curves: Option<Vec<Curves>> = curves.into_iter().collect::<Result<_, _>>()?;
-        let curves = curves.ok_or(StudyError::Interrupted)?;
+        let run = |run: usize| {
+            let curves = set_up.curves(&points[run], FIRST_SURFACE + run as u64, stop)?;
+            let with_noise = |curves: Curves| {
+                let records = curves.iter().zip(&set_up.conditions).enumerate();
+                let noisy = records.map(|(record, (curve, conditions))| {
+                    conditions
+                        .grid
+                        .noisy(curve, noise, normals(Stream::Predicted, run, record))
+                });
+                noisy.collect()
+            };
+            Ok(curves.map(with_noise))
+        };
+        let mut curves = Vec::new();
+        let runs: Vec<usize> = (0..points.len()).collect();
+        for some in runs.chunks(AT_ONCE) {
+            let made = some.par_iter().with_max_len(1).map(|number| run(*number));
+            let made: Vec<Result<Option<Curves>, TrainingError>> = made.collect();
+            let made: Option<Vec<Curves>> = made.into_iter().collect::<Result<_, _>>()?;
+            curves.extend(made.ok_or(StudyError::Interrupted)?);
+            ended(some.len());
+        }
         Ok(Self { points, curves })
     }
 

@@ -44,6 +44,30 @@ impl SamplePoints {
         })
     }
 
+    /// As many equal steps of a planned record of coefficients, from 0 to `end`; none if they are too few, or
+    /// do not go forwards.
+    pub(crate) fn planned(along: Measure, end: f64, count: usize) -> Option<Self> {
+        (count >= MIN_VALUES && end > 0.0).then(|| Self {
+            along,
+            of: Measure::Coefficient,
+            start: 0.0,
+            step: end / (count - 1) as f64,
+            count,
+            merged: count.div_ceil(MAX_VALUES),
+            range: None,
+        })
+    }
+
+    /// The places of a record that is `times` times as long, with as many values in a time.
+    pub(crate) fn longer(&self, times: usize) -> Self {
+        let count = times * self.count;
+        Self {
+            count,
+            merged: count.div_ceil(MAX_VALUES),
+            ..self.clone()
+        }
+    }
+
     /// Quantity of the places.
     pub(crate) fn along(&self) -> Measure {
         self.along

@@ -10,8 +10,8 @@ use crate::set_up::{Curves, SetUp};
 use crate::unknowns::design_point;
 use slipfront_study::{StudyError, TrainingError};
 
-/// Number of runs that are made before they are kept.
-const AT_ONCE: usize = 32;
+/// Number of runs that are made before they are kept and shown.
+pub(crate) const AT_ONCE: usize = 32;
 
 /// A run of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -186,7 +186,10 @@ impl Measure {
     /// # Errors
     /// A sentence on why the text is none.
     pub fn parse(self, text: &str) -> Result<f64, String> {
-        let (number, unit) = text.trim().split_once(' ').unwrap_or((text, ""));
+        let text = text.trim();
+        let is_of_number = |character: char| character.is_ascii_digit() || character == '.';
+        let end = text.rfind(is_of_number).map_or(0, |at| at + 1);
+        let (number, unit) = text.split_once(' ').unwrap_or_else(|| text.split_at(end));
         let number = number.parse::<f64>().ok().filter(|number| number.is_finite());
         match (number, self.factor(unit.trim())) {
             (Some(number), Some(factor)) => Ok(number * factor),

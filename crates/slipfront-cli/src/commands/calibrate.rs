@@ -18,6 +18,7 @@ use crate::threads::{count_from_one, set_threads};
 #[command(after_help = "Examples:
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv --training results/training -o results/first
+  slipfront calibrate cases/calibrations/single_block.toml --dry-run --until \"20 s\"
 
 Stopped in any way, the same command goes on where it was. The folder holds the intervals, a picture of each record beside the
 calibrated model, and a case with the medians.")]
@@ -26,8 +27,18 @@ pub(crate) struct CalibrateCommand {
     #[arg(value_name = "CALIBRATION.toml")]
     calibration: PathBuf,
     /// Records: tables of text (.csv), in the order of `calibrate.records`
-    #[arg(required = true, value_name = "RECORD")]
+    #[arg(required_unless_present = "until", value_name = "RECORD")]
     records: Vec<PathBuf>,
+    /// Simulate records before any is measured, print how narrow the intervals would be, also of longer, slower
+    /// and faster experiments, and write nothing; of records that are given only the times count
+    #[arg(long)]
+    dry_run: bool,
+    /// End of the planned record with its unit, such as "20 s", in place of records
+    #[arg(long, value_name = "PLACE", requires = "dry_run", conflicts_with = "records")]
+    until: Option<String>,
+    /// Number of values of the planned record
+    #[arg(long, value_name = "N", requires = "until", default_value_t = 400)]
+    values: usize,
     /// Folder for the results [default: results/ and the name of the calibration]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -51,6 +62,9 @@ impl CalibrateCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_threads(self.threads)?;
         let file = CalibrationFile::load(&self.calibration).map_err(Failure::input)?;
+        if self.dry_run {
+            return self.plan(&file);
+        }
         let records = file.read(&self.records).map_err(Failure::input)?;
         // A calibration that is invalid, or has no memory, leaves no folder.
         file.check_memory(&records, threads).map_err(Failure::input)?;
@@ -80,5 +94,26 @@ impl CalibrateCommand {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
         folder.expect_own_records().map_err(Failure::running)
+    }
+    /// Prints what records would tell.
+    fn plan(&self, file: &CalibrationFile) -> Result<(), Failure> {
+        let grids = match &self.until {
+            Some(until) => file.planned(until, self.values),
+            None => {
+                let records = file.read(&self.records);
+                records.map(|records| records.iter().map(SampledRecord::places).collect())
+            }
+        };
+        let grids = grids.map_err(Failure::input)?;
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let mut progress = CalibrateProgress::new(self.quiet);
+        let plan = file.plan(grids, &signals.stop, &mut |now| progress.show(now));
+        progress.finish();
+        let plan = plan.map_err(|error| match error {
+            StudyError::Interrupted => Failure::stopped(&signals, anyhow::anyhow!("stopped by a signal")),
+            error => Failure::input(error),
+        })?;
+        print_message(&plan.in_words());
+        Ok(())
     }
 }

@@ -30,6 +30,12 @@ fn text(now: &CalibrationProgress, passed: Duration) -> String {
         CalibrationStage::Training => "training",
         CalibrationStage::FinerBlocks => "blocks of half the size",
         CalibrationStage::Further => "further experiments",
+        CalibrationStage::Prediction => "calibrated model",
+        CalibrationStage::Closest => {
+            return format!("{} runs  search for the closest curve", now.runs);
+        }
+        CalibrationStage::HalfStep => "half the time step",
+        CalibrationStage::Planning => "planned experiments",
     };
     let left = time_left((now.of - now.runs) as u64, now.runs as u64, passed);
     format!("{} of {} runs{left}  {stage}", now.runs, now.of)

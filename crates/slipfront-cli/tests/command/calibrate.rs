@@ -59,6 +59,27 @@ fn a_calibration_is_told_and_found_again() {
 }
 
 /// Runs are kept where the next record at the same times finds them.
+/// Records that are planned need none that was measured, and leave nothing.
+#[test]
+fn a_planned_record_says_what_it_would_show() {
+    let workspace = Workspace::new();
+    workspace.write("fit.toml", FIT);
+    let said = workspace.succeed("calibrate fit.toml --dry-run --until 40ns --quiet");
+    assert!(
+        said.contains("three times the speed") && said.contains("drive.stiffness_star"),
+        "{said}"
+    );
+    assert_eq!(workspace.files(".").len(), 1);
+    for (line, status, sentence) in [
+        ("--dry-run --until 40nm", 2, "a time is wanted"),
+        ("--dry-run --until 40ns --values 39", 2, "40 at the least"),
+        ("--until 40ns", 2, "--dry-run"),
+    ] {
+        let said = workspace.fail(&format!("calibrate fit.toml {line}"), status);
+        assert!(said.contains(sentence), "{line}: {said}");
+    }
+}
+
 #[test]
 fn another_record_needs_no_runs() {
     let workspace = workspace();
