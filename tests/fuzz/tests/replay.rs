@@ -62,6 +62,7 @@ replay! {
     case_file
     case
     study_file
+    calibration_file
     quantity
     npy
     csv_table

@@ -31,23 +31,23 @@ key_rows! {
         /// Order of a Butterworth filter.
         order: Option<u32> = key("", KeyKind::Special("1 to 10")).without("2"),
         /// Frequency at which the filter leaves 1/sqrt(2) of an amplitude (-3 dB).
-        cutoff: Option<Rate> = key("", KeyKind::Special("more than 0")),
+        cutoff: Option<Rate> = key("", KeyKind::Special("1e-18 to 1e18 in SI units")),
         /// In place of `cutoff`: the time constant of a filter of first order, 1/(2 pi `cutoff`), or the
         /// width of a moving mean, 0.443/`cutoff`, which ends at the time of the value.
-        time: Option<Duration> = key("", KeyKind::Special("more than 0")),
+        time: Option<Duration> = key("", KeyKind::Special("1e-18 to 1e18 in SI units")),
         /// Mass between the slider and the load cell, with half of the cell's own: it swings on the
         /// `stiffness` of the cell.
-        mass: Option<Mass> = key("", KeyKind::Special("more than 0")).without("none"),
+        mass: Option<Mass> = key("", KeyKind::Special("1e-18 to 1e18 in SI units")).without("none"),
         /// Stiffness of the load cell, which the mount of the case, `drive.total_stiffness`, contains
         /// already.
-        stiffness: Option<Stiffness> = key("", KeyKind::Special("more than 0")).without("rigid"),
+        stiffness: Option<Stiffness> = key("", KeyKind::Special("1e-18 to 1e18 in SI units")).without("rigid"),
         /// Damping of the load cell over its critical damping.
         damping_ratio: Option<f64> = key("", KeyKind::Special("more than 0, less than 1")).without("0.02"),
         /// Rate at which values were taken, where the table has more rows than that: each value is held until
         /// the next one.
-        sampling: Option<Rate> = key("", KeyKind::Special("more than 0")).without("that of the rows"),
+        sampling: Option<Rate> = key("", KeyKind::Special("1e-18 to 1e18 in SI units")).without("that of the rows"),
         /// Factor of the record: its friction over the true one.
-        gain: Option<f64> = key("", KeyKind::Special("not 0")).without("1"),
+        gain: Option<f64> = key("", KeyKind::Special("not 0; its size 1e-18 to 1e18")).without("1"),
         /// Friction of the record without load: a number in N or 1, or a text such as `"20 mN"`.
         offset: Option<Amount> = key("", KeyKind::Special("")).without("0"),
         /// Least and largest value that the instrument writes, such as `["-5 N", "5 N"]`.
@@ -101,12 +101,20 @@ fn refuse<T>(key: &'static str, why: impl Into<String>) -> Result<T, InstrumentE
     Err(InstrumentError::Key { key, why })
 }
 
-/// A number above 0 and finite.
+/// Bounds of numbers in SI units: far beyond any instrument, and near enough to 1 for a filter of the tenth
+/// order over any time to stay finite.
+const BOUNDS: std::ops::RangeInclusive<f64> = 1e-18..=1e18;
+
+/// A number within the bounds.
 fn positive(key: &'static str, value: f64) -> Result<f64, InstrumentError> {
-    if value > 0.0 && value.is_finite() {
+    if BOUNDS.contains(&value) {
         return Ok(value);
     }
-    refuse(key, format!("{value} in SI units must be more than 0"))
+    let [least, most] = [BOUNDS.start(), BOUNDS.end()];
+    refuse(
+        key,
+        format!("{value:e} in SI units must lie between {least:e} and {most:e}"),
+    )
 }
 
 impl InstrumentKeys {
@@ -144,16 +152,16 @@ impl InstrumentKeys {
             .map(|rate| positive("sampling", rate.si()))
             .transpose()?;
         let gain = self.gain.unwrap_or(1.0);
-        if gain == 0.0 || !gain.is_finite() {
-            return refuse("gain", format!("{gain} leaves nothing of the friction"));
+        if gain == 0.0 {
+            return refuse("gain", "0 leaves nothing of the friction");
         }
+        positive("gain", gain.abs())?;
         let amount = |key: &'static str, amount: &Amount| {
             let value = amount.of(friction).or_else(|why| refuse(key, why))?;
-            if value.is_finite() {
-                Ok(value)
-            } else {
-                refuse(key, format!("{value} is not finite"))
+            if value != 0.0 {
+                positive(key, value.abs())?;
             }
+            Ok(value)
         };
         let offset = self
             .offset

@@ -1,6 +1,7 @@
 //! The targets, a file for each kind of parser.
 
 mod arrays;
+mod calibration;
 mod case;
 mod checkpoint;
 mod fields;
@@ -19,10 +20,11 @@ mod workbook;
 use crate::target::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 22] = [
+pub const TARGETS: [Target; 23] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
+    calibration::CALIBRATION_FILE,
     quantity::QUANTITY,
     arrays::NPY,
     arrays::CSV_TABLE,
