@@ -75,8 +75,8 @@ impl Calibration {
         Ok((found.reasons(), tests, notes))
     }
 
-    /// Simulates records that are planned, until a place with its unit with a number of values or at the times
-    /// of records, and returns the expected widths of the intervals as JSON.
+    /// Simulates records that are planned, until a place with its unit with a number of values or at the
+    /// times of records, and returns the expected widths of the intervals as JSON.
     fn plan(
         &self,
         py: Python<'_>,

@@ -45,7 +45,7 @@ pub struct ExperimentPlan {
 /// An experiment that may be made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlannedExperiment {
-    /// How it differs from the planned one.
+    /// Difference from the planned experiment in words.
     pub name: String,
     /// Expected width of the interval of 90 % of every unknown, as a share of its range: the mean over runs,
     /// each estimated by the others. None if the experiment is not possible.

@@ -29,8 +29,8 @@ pub(crate) struct CalibrateCommand {
     /// Records: tables of text (.csv), in the order of `calibrate.records`
     #[arg(required_unless_present = "until", value_name = "RECORD")]
     records: Vec<PathBuf>,
-    /// Simulate records before any is measured, print how narrow the intervals would be, also of longer, slower
-    /// and faster experiments, and write nothing; of records that are given only the times count
+    /// Simulate records before any is measured, print how narrow the intervals would be, also of longer,
+    /// slower and faster experiments, and write nothing; of records that are given only the times count
     #[arg(long)]
     dry_run: bool,
     /// End of the planned record with its unit, such as "20 s", in place of records

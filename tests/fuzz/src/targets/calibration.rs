@@ -19,7 +19,8 @@ pub(crate) const CALIBRATION_FILE: Target = Target {
     files: &["cases/calibrations/*.toml"],
     dictionary: Some("calibration.dict"),
     max_bytes: 4096,
-    // The case of a calibration may have as many blocks as there is memory for: they are counted and not made.
+    // The case of a calibration may have as many blocks as there is memory for: they are counted and not
+    // made.
     memory: Memory {
         bytes: 512 << 20,
         per_byte: 1024,
