@@ -107,8 +107,8 @@ pub enum MeasuredError {
     TooShort { path: PathBuf, found: usize },
 }
 
-/// Largest steps back of displacements, as shares of the whole path, that are taken for the noise of a sensor:
-/// wherever they are, and where every third of the record has some, which a drive that turns back does not.
+/// Largest steps back of displacements, as shares of the whole path, that are taken for the noise of a
+/// sensor: wherever they are, and where every third of the record has some, unlike a drive that turns back.
 const MOST_NOISE: [f64; 2] = [0.01, 0.05];
 
 /// Length of a day, s.
@@ -740,7 +740,7 @@ mod tests {
         );
     }
 
-    /// Displacements go forwards and back by turns: means over bins keep the friction, which is that of the
+    /// Displacements go forwards and back by turns. Means over bins keep the friction, which is a function of
     /// displacement. A drive that turns back at the end has no noise.
     #[test]
     fn displacements_with_noise_are_averaged_and_others_refused() {
