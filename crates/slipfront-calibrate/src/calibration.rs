@@ -14,7 +14,7 @@ use crate::training::Training;
 
 /// Width of an interval of 90 %, as a share of the range, above which the record does not determine the
 /// unknown.
-const UNDETERMINED: f64 = 0.8;
+pub(crate) const UNDETERMINED: f64 = 0.8;
 
 /// Correlation from which errors of two unknowns make a pair, and least width of both intervals of a pair.
 const OF_A_PAIR: f64 = 0.8;

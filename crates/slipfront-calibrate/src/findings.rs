@@ -134,11 +134,16 @@ impl UnknownEstimate {
 
     /// A value of the unknown, as a text with its unit.
     pub(crate) fn text(&self, value: f64) -> String {
-        let number = slipfront_base::number_format::four_digits(value);
-        match &self.unit {
-            Some(unit) => format!("{number} {unit}"),
-            None => number,
-        }
+        with_unit(value, self.unit.as_deref())
+    }
+}
+
+/// A value with its unit, if it has one.
+pub(crate) fn with_unit(value: f64, unit: Option<&str>) -> String {
+    let number = slipfront_base::number_format::four_digits(value);
+    match unit {
+        Some(unit) => format!("{number} {unit}"),
+        None => number,
     }
 }
 

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
-use slipfront_base::number_format::four_digits;
 use slipfront_base::text::{COLUMNS, wrapped};
 use slipfront_case::case_file::{CaseError, DriveSpeed, Override};
 use slipfront_study::StudyError;
 use slipfront_study::text_table::table;
 
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, UNDETERMINED};
 use crate::file::{CalibrationFile, SampledRecord};
+use crate::findings::with_unit;
 use crate::progress::{CalibrationProgress, CalibrationStage, RunCounter};
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
@@ -25,9 +25,6 @@ const RUNS: usize = 200;
 /// Factor of the path of the drive in a longer experiment, and of its speed in a slower and a faster one.
 const LONGER: usize = 2;
 const SPEED: f64 = 3.0;
-
-/// Width of an interval, as a share of the range, from which the records do not determine an unknown.
-const NOT_DETERMINED: f64 = 0.8;
 
 /// Experiments that may be made, with the intervals that are expected from their records.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -97,12 +94,12 @@ impl ExperimentPlan {
     fn not_determined(&self, unknown: usize, key: &str) -> Option<String> {
         let width = |experiment: &PlannedExperiment| Some(experiment.widths.as_ref()?[unknown]);
         let planned = self.experiments.first().and_then(width)?;
-        if planned < NOT_DETERMINED {
+        if planned < UNDETERMINED {
             return None;
         }
         let determine = self.experiments.iter().skip(1);
         let determine =
-            determine.filter(|experiment| width(experiment).is_some_and(|found| found < NOT_DETERMINED));
+            determine.filter(|experiment| width(experiment).is_some_and(|found| found < UNDETERMINED));
         let names: Vec<&str> = determine.map(|experiment| experiment.name.as_str()).collect();
         let remedy = match names.as_slice() {
             [] => "nor does any other experiment of the table".to_owned(),
@@ -188,12 +185,10 @@ impl CalibrationFile {
                 });
             }
         }
-        let ends = planned.unknowns.iter().map(|unknown| {
-            [0.0, 1.0].map(|share| match unknown.unit() {
-                Some(unit) => format!("{} {unit}", four_digits(unknown.at(share))),
-                None => four_digits(unknown.at(share)),
-            })
-        });
+        let ends = planned
+            .unknowns
+            .iter()
+            .map(|unknown| [0.0, 1.0].map(|share| with_unit(unknown.at(share), unknown.unit())));
         Ok(ExperimentPlan {
             ranges: ends.collect(),
             unknowns: planned
@@ -309,7 +304,7 @@ mod tests {
         // The force of the spring 0.53 V* t reaches 1, the static one, at 18.9.
         let rest = plan(&case, &format!("{} s", 5.0 * unit)).unwrap();
         assert!(
-            width(&rest, 0, 0) < 0.1 && width(&rest, 0, 1) > NOT_DETERMINED,
+            width(&rest, 0, 0) < 0.1 && width(&rest, 0, 1) > UNDETERMINED,
             "{rest:?}"
         );
         let text = rest.in_words();
