@@ -12,7 +12,8 @@
 //!
 //! Prints for every kind: the share of records that is refused, by either part of the check; the share whose
 //! interval misses some truth by more than its half width; the share of those that is refused; and of the
-//! records that pass, the share of intervals of each unknown that hold the truth. Records "told" are
+//! records that pass, the root mean square of what differs from the closest curve beyond the noise, in units
+//! of the noise, and the share of intervals of each unknown that hold the truth. Records "told" are
 //! calibrated by a file that describes their filter.
 
 #[path = "support/random.rs"]
@@ -27,7 +28,8 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use slipfront_calibrate::{
-    Calibration, Conditions, Predicted, SamplePoints, SetUp, Training, Unknown, closest,
+    Calibration, CalibrationStage, Closest, Conditions, Predicted, RunMaker, SamplePoints, SetUp, Training,
+    Unknown, closest,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
@@ -119,7 +121,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         unknowns.join(", ")
     );
     println!(
-        "kind                          refused compared  closest   misses   caught   held, of those that pass, %  differs most in"
+        "kind                          refused compared  closest   misses   caught  beyond   held, of those that pass, %  differs most in"
     );
     let is_wanted =
         |kind: &str| kinds.is_empty() || kinds.iter().any(|wanted| kind.contains(wanted.as_str()));
@@ -163,7 +165,12 @@ impl Trained {
             instrument,
             ..experiment.set_up.clone()
         };
-        let training = Training::run(&set_up, experiment.runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
+        let training = Training::run(
+            &mut RunMaker::new(&go_on, 0, &mut |_| {}),
+            CalibrationStage::Training,
+            &set_up,
+            experiment.runs,
+        )?;
         let grids: Vec<SamplePoints> = set_up.conditions.iter().map(|one| one.grid.clone()).collect();
         Ok(Self {
             calibration: Calibration::new(&training, &grids, NOISE),
@@ -177,6 +184,8 @@ struct Judged {
     by_comparison: bool,
     by_closest: bool,
     misses: bool,
+    /// Ratio of the differences from the closest curve to the noise, where that was looked for.
+    noise_ratio: Option<f64>,
     /// Whether the interval of every unknown holds the truth.
     held: Vec<bool>,
     differs: &'static str,
@@ -192,9 +201,12 @@ impl Trained {
         let estimate = calibration.estimate(&values);
         let points = calibration.sample(&estimate, PREDICTED);
         let failed = |error: slipfront_study::StudyError| error.to_string();
-        let predicted = Predicted::run(set_up, points.clone(), NOISE, &go_on, &mut |_| {}).map_err(failed)?;
+        let mut watch = |_: &_| {};
+        let maker = &mut RunMaker::new(&go_on, 0, &mut watch);
+        let stage = CalibrationStage::Prediction;
+        let predicted = Predicted::run(maker, stage, set_up, points.clone(), NOISE).map_err(failed)?;
         let comparison = predicted.compare(&values);
-        let closest = closest(set_up, &points, &values, NOISE, &go_on, &mut |_| {}).map_err(failed)?;
+        let closest = closest(maker, set_up, &points, &values, NOISE).map_err(failed)?;
         let intervals = estimate
             .distributions
             .iter()
@@ -207,12 +219,13 @@ impl Trained {
             })
             .unzip();
         let by_comparison = comparison.is_refused();
-        let by_closest = closest.is_some_and(|closest| closest.is_refused());
+        let by_closest = closest.as_ref().is_some_and(Closest::is_refused);
         Ok(Judged {
             is_refused: estimate.misfit.is_refused() || by_comparison || by_closest,
             by_comparison,
             by_closest,
             misses: misses.contains(&true),
+            noise_ratio: closest.map(|closest| closest.noise_ratio),
             held,
             differs: comparison.differs_in[0].0,
         })
@@ -228,18 +241,26 @@ fn report(kind: &str, judged: &[Judged]) {
     let passing: Vec<&Judged> = judged.iter().filter(|one| !one.is_refused).collect();
     let held = (0..judged[0].held.len()).map(|j| format!("{:5.1}", share(&passing, &|one| one.held[j])));
     let held = held.collect::<Vec<_>>().join(" ");
+    let ratios: Vec<f64> = passing.iter().filter_map(|one| one.noise_ratio).collect();
+    let mean_square = ratios.iter().map(|ratio| ratio * ratio).sum::<f64>() / ratios.len() as f64;
+    let beyond = if ratios.is_empty() {
+        "-".to_owned()
+    } else {
+        format!("{:.2}", (mean_square - 1.0).max(0.0).sqrt())
+    };
     let mut counts: HashMap<&str, usize> = HashMap::new();
     for one in judged.iter().filter(|one| one.by_comparison) {
         *counts.entry(one.differs).or_default() += 1;
     }
     let most = counts.into_iter().max_by_key(|(name, count)| (*count, *name));
     println!(
-        "{kind:28} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} %   {held:28} {}",
+        "{kind:28} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:>7}   {held:28} {}",
         share(&all, &|one| one.is_refused),
         share(&all, &|one| one.by_comparison),
         share(&all, &|one| one.by_closest),
         share(&all, &|one| one.misses),
         share(&missing, &|one| one.is_refused),
+        beyond,
         most.map_or("", |(name, _)| name)
     );
 }
@@ -442,9 +463,29 @@ fn one_block() -> Result<Experiment, Box<dyn Error>> {
             told: "filter = 'first_order'\ncutoff = '10 Hz'",
         },
         Kind {
+            name: "10 Hz, half of it told",
+            change: low_pass(10.0),
+            told: "filter = 'first_order'\ncutoff = '5 Hz'",
+        },
+        Kind {
+            name: "10 Hz, twice of it told",
+            change: low_pass(10.0),
+            told: "filter = 'first_order'\ncutoff = '20 Hz'",
+        },
+        Kind {
             name: "mean over 0.1 s, told",
             change: Change::Mean(0.1),
             told: "filter = 'moving_mean'\ntime = '0.1 s'",
+        },
+        Kind {
+            name: "mean, half of it told",
+            change: Change::Mean(0.1),
+            told: "filter = 'moving_mean'\ntime = '0.05 s'",
+        },
+        Kind {
+            name: "mean, twice of it told",
+            change: Change::Mean(0.1),
+            told: "filter = 'moving_mean'\ntime = '0.2 s'",
         },
         kind(
             "ageing",

@@ -14,14 +14,14 @@
 #[path = "support/random.rs"]
 mod random;
 
-use std::collections::HashMap;
 use std::error::Error;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use slipfront_calibrate::{
-    Calibration, Conditions, Curves, Estimate, SamplePoints, SetUp, Training, Unknown,
+    Calibration, CalibrationStage, Conditions, Curves, Estimate, RunMaker, SamplePoints, SetUp, Training,
+    Unknown,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
@@ -48,7 +48,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (set_up, unit) = set_up()?;
     let began = processor_seconds()?;
     let go_on = AtomicBool::new(false);
-    let training = Training::run(&set_up, runs, HashMap::new(), &mut |_| Ok(()), &go_on)?;
+    let training = Training::run(
+        &mut RunMaker::new(&go_on, 0, &mut |_| {}),
+        CalibrationStage::Training,
+        &set_up,
+        runs,
+    )?;
     let trained = processor_seconds()? - began;
     println!("training: {runs} runs in {trained:.1} s of processor time");
     let truths: Vec<Vec<f64>> = (first..first + records)

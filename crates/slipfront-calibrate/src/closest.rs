@@ -1,9 +1,6 @@
 //! The curve of the model that lies closest to records, where the unknowns determine it: without random
 //! coefficients there is one whose difference from a good record is noise.
 
-use std::sync::atomic::AtomicBool;
-
-use rayon::prelude::*;
 use serde::Serialize;
 use slipfront_study::StudyError;
 use slipfront_study::adaptation::Adaptation;
@@ -11,9 +8,13 @@ use slipfront_study::draws::Draws;
 use slipfront_study::statistics::mean;
 
 use crate::normals::{Stream, draws};
-use crate::progress::RunsEnded;
+use crate::progress::CalibrationStage;
+use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, SetUp};
 use crate::summaries::deviation;
+
+/// Number of the surface of the first run; all surfaces are alike.
+const FIRST_SURFACE: u64 = 1;
 
 /// Largest ratio of the differences from the closest curve to the noise that the file states: intervals for
 /// less noise are too narrow.
@@ -101,22 +102,23 @@ impl Closest {
 
 /// Looks for the closest curve among those of the unknowns that an estimate has drawn; none where random
 /// coefficients make curves of the same unknowns differ. A search ends where the differences are noise.
-/// `noise` is that of a value of the records, as a share of their mean friction; `ended` gets the numbers of
-/// runs as they end.
+/// `noise` is that of a value of the records, as a share of their mean friction.
 ///
 /// # Errors
-/// When a run cannot be made, and after a stop.
+/// When a run cannot be made or kept, and after a stop.
 pub fn closest(
+    maker: &mut RunMaker,
     set_up: &SetUp,
     drawn: &[Vec<f64>],
     records: &[Vec<f64>],
     noise: f64,
-    stop: &AtomicBool,
-    ended: &mut RunsEnded,
 ) -> Result<Option<Closest>, StudyError> {
-    let middle = set_up.middle();
-    let curves = |seed: u64| Ok::<_, StudyError>(set_up.curves(&middle, seed, stop)?);
-    if curves(1)? != curves(2)? {
+    let middle = [set_up.middle(), set_up.middle()];
+    let two_surfaces = maker.curves(
+        CalibrationStage::Closest,
+        &Runs::new(set_up, &middle, FIRST_SURFACE),
+    )?;
+    if two_surfaces[0] != two_surfaces[1] {
         return Ok(None);
     }
     let begin = |j: usize| {
@@ -129,8 +131,7 @@ pub fn closest(
         deviations: deviations
             .map(|(record, conditions)| conditions.grid.deviation(record, noise))
             .collect(),
-        stop,
-        ended,
+        maker,
         begin: (0..set_up.unknowns.len()).map(begin).collect(),
     };
     let mut found: Vec<Closest> = Vec::new();
@@ -150,12 +151,11 @@ pub fn closest(
 }
 
 /// Search for the closest curve.
-struct Search<'a, 'e> {
+struct Search<'a, 'm> {
     records: &'a [Vec<f64>],
     /// Standard deviation of the noise of every record.
     deviations: Vec<f64>,
-    stop: &'a AtomicBool,
-    ended: &'a mut RunsEnded<'e>,
+    maker: &'a mut RunMaker<'m>,
     /// Mean and standard deviation of every unknown from which a search begins.
     begin: Vec<[f64; 2]>,
 }
@@ -214,13 +214,8 @@ impl Search<'_, '_> {
     ) -> Result<Closest, StudyError> {
         let drafts: Vec<_> = (0..DRAFTS).map(|_| adaptation.draw(draws)).collect();
         let points: Vec<Vec<f64>> = drafts.iter().map(|(_, numbers)| self.point(numbers)).collect();
-        let stop = self.stop;
-        let runs = points.par_iter().with_max_len(1).map(|point| {
-            let curves = part.curves(point, 1, stop)?;
-            curves.ok_or(StudyError::Interrupted)
-        });
-        let curves: Vec<Curves> = runs.collect::<Result<_, StudyError>>()?;
-        (self.ended)(curves.len());
+        let runs = Runs::new(part, &points, FIRST_SURFACE);
+        let curves = self.maker.curves(CalibrationStage::Closest, &runs)?;
         let judged = curves.iter().zip(&drafts);
         let judged = judged.map(|(curves, (normal, _))| (self.judge(curves, share), normal.as_slice()));
         let mut ranked: Vec<(Closest, &[f64])> = judged.collect();

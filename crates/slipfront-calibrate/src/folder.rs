@@ -1,11 +1,11 @@
 //! The results folder of a calibration: its file, copies of the records, the journal of training runs, and
 //! the findings.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
 use std::sync::atomic::AtomicBool;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use slipfront_base::disk::is_same;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::measured::Measure;
@@ -19,14 +19,15 @@ use crate::findings::{
 };
 use crate::normals::{Stream, normals};
 use crate::predicted::{PREDICTED, Predicted};
-use crate::progress::{CalibrationProgress, CalibrationStage, RunCounter};
+use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::record_check::RecordCheck;
 use crate::report::{FOUND, Report};
+use crate::runs::{KeptRuns, RunMaker};
 use crate::sample_points::SamplePoints;
-use crate::set_up::{Curves, SetUp};
-use crate::training::{Training, TrainingRun};
+use crate::set_up::SetUp;
+use crate::training::Training;
 use slipfront_study::project_folder::{
-    Checksums, Derivation, Given, Journal, JournalEntry, Others, ResultFiles, notes_of_use, read_numbers,
+    Checksums, Derivation, Given, Others, ResultFiles, notes_of_use, read_numbers,
 };
 use slipfront_study::{StudyError, TrainingError};
 
@@ -38,19 +39,6 @@ const AT_HALF_STEP: usize = 40;
 
 /// Number of points that are drawn from the estimate.
 const SAMPLE: usize = 400;
-
-/// A line of the journal.
-#[derive(Serialize, Deserialize)]
-struct CalibrationRun {
-    /// Identity of the set-up.
-    id: String,
-    #[serde(flatten)]
-    run: TrainingRun,
-}
-
-impl JournalEntry for CalibrationRun {
-    const KEYS: &'static [&'static str] = &["curves"];
-}
 
 /// Curves of measured records, and the estimate of a training from them.
 struct FittedRecords {
@@ -86,11 +74,10 @@ impl FittedRecords {
         set_up: &SetUp,
         records: &[SampledRecord],
         noise: f64,
-        work: &mut RunCounter,
+        maker: &mut RunMaker,
     ) -> Result<(Predicted, RecordCheck), StudyError> {
-        let stop = work.stop;
-        let mut ended = |runs| work.show(CalibrationStage::Prediction, runs);
-        let predicted = Predicted::run(set_up, self.sample(PREDICTED), noise, stop, &mut ended)?;
+        let points = self.sample(PREDICTED);
+        let predicted = Predicted::run(maker, CalibrationStage::Prediction, set_up, points, noise)?;
         let as_noisy = records.iter().zip(&self.curves).enumerate();
         let as_noisy = as_noisy.map(|(number, (record, curve))| {
             let missing = missing_noise(&record.measured, noise);
@@ -98,8 +85,7 @@ impl FittedRecords {
                 .grid
                 .noisy(curve, missing, normals(Stream::Missing, 0, number))
         });
-        let mut ended = |runs| work.show(CalibrationStage::Closest, runs);
-        let closest = closest(set_up, predicted.points(), &self.curves, noise, stop, &mut ended)?;
+        let closest = closest(maker, set_up, predicted.points(), &self.curves, noise)?;
         let check = RecordCheck {
             misfit: self.estimate.misfit.clone(),
             comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
@@ -114,14 +100,7 @@ impl FittedRecords {
 pub struct CalibrationFolder {
     path: PathBuf,
     files: ResultFiles,
-    /// Journal of the folder, which keeps other processes out, and holds training runs unless another folder
-    /// has them.
-    journal: Journal,
-    /// Training runs that several calibrations share.
-    shared: Option<Journal>,
-    known: HashMap<(String, usize), Curves>,
-    /// Lines of the journals that failed their checksum.
-    pub damaged: usize,
+    kept: KeptRuns,
     file: CalibrationFile,
     records: Vec<SampledRecord>,
     set_up: SetUp,
@@ -135,7 +114,7 @@ pub const CALIBRATIONS: Derivation = Derivation {
 
 /// Calibrates again in another folder from the runs in the journal.
 fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
-    Journal::copy::<CalibrationRun>(folder, other, CALIBRATION.journal)?;
+    KeptRuns::copy(folder, other)?;
     let mut again = CalibrationFolder::again(folder, other)?;
     let kept = again.n_kept();
     again.find(stop, &mut |_| {})?;
@@ -170,37 +149,18 @@ impl CalibrationFolder {
             return Err(StudyError::TrainingInResults { path });
         }
         file.set_up(&records)?;
-        let is_used = CALIBRATION.is_used(path)?;
-        // A folder that another process works in is met before a new one is made.
-        let own = is_used.then(|| CALIBRATION.open_journal(path)).transpose()?;
-        let shared = training.map(|folder| CALIBRATION.open_journal::<CalibrationRun>(folder));
-        let shared = shared.transpose()?;
-        let (journal, mut kept, mut damaged) = match own {
-            Some(own) => own,
-            None => CALIBRATION.open_journal::<CalibrationRun>(path)?,
-        };
+        let kept = KeptRuns::open(path, training)?;
         let given = Given {
             others: contents(&records),
             ..file.project.given()?
         };
         let files = given.place(&CALIBRATION, path, force)?;
-        let shared = shared.map(|(journal, more, more_damaged)| {
-            damaged += more_damaged;
-            kept.extend(more);
-            journal
-        });
         let name = path.join(CALIBRATION.file).display().to_string();
         let file = CalibrationFile::parse(&given.text, &name, file.name(), path)?;
         Ok(Self {
             path: path.to_owned(),
             files,
-            journal,
-            shared,
-            known: kept
-                .into_iter()
-                .map(|kept| ((kept.id, kept.run.run), kept.run.curves))
-                .collect(),
-            damaged,
+            kept,
             set_up: file.set_up(&records)?,
             file,
             records,
@@ -233,12 +193,17 @@ impl CalibrationFolder {
 
     /// Sentences about a folder that has been used before.
     pub fn notes(&self) -> Vec<String> {
-        notes_of_use(self.damaged, self.n_kept())
+        notes_of_use(self.kept.damaged, self.n_kept())
     }
 
-    /// Number of training runs that are known.
+    /// Number of lines of the journals that failed their checksum.
+    pub fn damaged(&self) -> usize {
+        self.kept.damaged
+    }
+
+    /// Number of runs that are known.
     pub fn n_kept(&self) -> usize {
-        self.known.len()
+        self.kept.count()
     }
 
     /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings,
@@ -251,13 +216,26 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<String, StudyError> {
-        let keys = self.file.keys.clone();
-        let set_up = self.set_up.clone();
-        let (finer, further) = (self.finer(), self.file.further(&set_up)?);
-        let of = self.n_missing(&finer, &further)? + PREDICTED + AT_HALF_STEP;
-        let mut work = RunCounter::new(stop, of, watch);
-        let training = self.train(&mut work, CalibrationStage::Training, &set_up, keys.runs)?;
-        let told = FittedRecords::of(&training, &set_up, &self.records, keys.noise);
+        let instrument = self.instrument(&self.set_up)?;
+        let Self {
+            kept,
+            file,
+            records,
+            set_up,
+            ..
+        } = self;
+        let keys = &file.keys;
+        let (runs, noise) = (keys.runs as usize, keys.noise);
+        let (finer, further) = (finer(file, set_up), file.further(set_up)?);
+        let finer_runs = if matches!(finer, Ok(Some(_))) {
+            keys.finer_runs as usize
+        } else {
+            0
+        };
+        let of = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_HALF_STEP;
+        let maker = &mut RunMaker::new(stop, of, watch).with(kept);
+        let training = Training::run(maker, CalibrationStage::Training, set_up, runs)?;
+        let told = FittedRecords::of(&training, set_up, records, noise);
         let estimate = &told.estimate;
         let unknowns = set_up.unknowns.iter().enumerate();
         let mut unknowns: Vec<UnknownEstimate> = unknowns
@@ -265,24 +243,23 @@ impl CalibrationFolder {
             .collect();
         let finer = match finer {
             Ok(Some(finer)) => {
-                let training =
-                    self.train(&mut work, CalibrationStage::FinerBlocks, &finer, keys.finer_runs)?;
-                let there = FittedRecords::of(&training, &finer, &self.records, keys.noise).estimate;
+                let training = Training::run(maker, CalibrationStage::FinerBlocks, &finer, finer_runs)?;
+                let there = FittedRecords::of(&training, &finer, records, noise).estimate;
                 let found = finer.unknowns.iter().zip(&there.distributions);
                 for (told, (unknown, found)) in unknowns.iter_mut().zip(found) {
                     told.hold_against(unknown, found);
                 }
-                OnFinerBlocks::Runs(keys.finer_runs as usize)
+                OnFinerBlocks::Runs(finer_runs)
             }
             Ok(None) => OnFinerBlocks::NotAskedFor,
             Err(reason) => OnFinerBlocks::Impossible(reason),
         };
-        let next = self.weigh(&mut work, further, &training, &told)?;
-        let (predicted, check) = told.check(&set_up, &self.records, keys.noise, &mut work)?;
+        let next = weigh(maker, &set_up.grids(), further, &training, &told, noise)?;
+        let (predicted, check) = told.check(set_up, records, noise, maker)?;
         let bands = predicted.bands();
         let points = predicted.points()[..AT_HALF_STEP].to_vec();
-        let mut ended = |runs| work.show(CalibrationStage::HalfStep, runs);
-        let half_step = Predicted::run(&set_up.at_half_step(), points, keys.noise, stop, &mut ended)?;
+        let half_step = set_up.at_half_step();
+        let half_step = Predicted::run(maker, CalibrationStage::HalfStep, &half_step, points, noise)?;
         let moved = told
             .calibration
             .moved(&predicted.curves()[..AT_HALF_STEP], half_step.curves());
@@ -291,13 +268,13 @@ impl CalibrationFolder {
         }
         let within = bands.iter().zip(&told.curves);
         let findings = Findings {
-            runs: keys.runs as usize,
-            noise: keys.noise,
-            pairs: pairs(&set_up, estimate),
+            runs,
+            noise,
+            pairs: pairs(set_up, estimate),
             is_refused: check.is_refused(),
             within_band_percent: within.map(|(band, curve)| band.holds_percent(curve)).collect(),
             check,
-            instrument: self.instrument(&set_up)?,
+            instrument,
             unknowns,
             finer,
             next,
@@ -306,7 +283,7 @@ impl CalibrationFolder {
         let mut batch = self.files.begin();
         let mut report = Report {
             batch: &mut batch,
-            set_up: &set_up,
+            set_up,
             findings: &findings,
         };
         let text = report.write(&told.curves, &bands, &told.sample(SAMPLE))?;
@@ -324,13 +301,18 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<RecordCheck, StudyError> {
-        let CalibrationKeys { runs, noise, .. } = self.file.keys;
-        let set_up = self.set_up.clone();
-        let of = self.n_missing(&Ok(None), &[])? + PREDICTED;
-        let mut work = RunCounter::new(stop, of, watch);
-        let training = self.train(&mut work, CalibrationStage::Training, &set_up, runs)?;
-        let told = FittedRecords::of(&training, &set_up, &self.records, noise);
-        let (_, check) = told.check(&set_up, &self.records, noise, &mut work)?;
+        let Self {
+            kept,
+            file,
+            records,
+            set_up,
+            ..
+        } = self;
+        let CalibrationKeys { runs, noise, .. } = file.keys;
+        let maker = &mut RunMaker::new(stop, runs as usize + PREDICTED, watch).with(kept);
+        let training = Training::run(maker, CalibrationStage::Training, set_up, runs as usize)?;
+        let told = FittedRecords::of(&training, set_up, records, noise);
+        let (_, check) = told.check(set_up, records, noise, maker)?;
         Ok(check)
     }
 
@@ -356,97 +338,44 @@ impl CalibrationFolder {
                 .collect(),
         })
     }
+}
 
-    /// Trains with each of the further experiments beside the records, and returns how much narrower the
-    /// intervals are.
-    fn weigh(
-        &mut self,
-        work: &mut RunCounter,
-        further: Vec<(String, SetUp)>,
-        training: &Training,
-        told: &FittedRecords,
-    ) -> Result<Vec<Further>, StudyError> {
-        let CalibrationKeys { runs, noise, .. } = self.file.keys;
-        let grids: Vec<SamplePoints> = self.set_up.grids();
-        let widths = told.calibration.widths(&told.estimate);
-        let mut weighed = Vec::new();
-        for (set, further) in further {
-            let more = self.train(work, CalibrationStage::Further, &further, runs)?;
-            let grids = [grids.clone(), further.grids()].concat();
-            let with = Calibration::new(&training.clone().with(more), &grids, noise);
-            let with = with.widths(&told.estimate);
-            weighed.push(Further {
-                set,
-                narrowed_to: with
-                    .iter()
-                    .zip(&widths)
-                    .map(|(with, without)| with / without)
-                    .collect(),
-            });
-        }
-        Ok(weighed)
-    }
-
-    /// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is
-    /// none.
-    fn finer(&self) -> Result<Option<SetUp>, String> {
-        if self.file.keys.finer_runs == 0 {
-            return Ok(None);
-        }
-        self.set_up.finer().map(Some)
-    }
-
-    /// Trains, or goes on from an earlier call.
-    fn train(
-        &mut self,
-        work: &mut RunCounter,
-        stage: CalibrationStage,
-        set_up: &SetUp,
-        runs: u32,
-    ) -> Result<Training, StudyError> {
-        let runs = runs as usize;
-        let id = set_up.identity()?;
-        let of_set_up: HashMap<usize, Curves> = (0..runs)
-            .filter_map(|run| Some((run, self.known.get(&(id.clone(), run))?.clone())))
-            .collect();
-        work.show(stage, 0);
-        let Self {
-            shared,
-            journal,
-            known,
-            ..
-        } = self;
-        let journal = shared.as_mut().unwrap_or(journal);
-        let stop = work.stop;
-        let mut keep = |made: &[TrainingRun]| {
-            journal.append(made.iter().map(|run| CalibrationRun {
-                id: id.clone(),
-                run: run.clone(),
-            }))?;
-            known.extend(made.iter().map(|run| ((id.clone(), run.run), run.curves.clone())));
-            work.show(stage, made.len());
-            Ok(())
-        };
-        Training::run(set_up, runs, of_set_up, &mut keep, stop)
-    }
-
-    /// Number of runs of all set-ups that are not known yet.
-    fn n_missing(
-        &self,
-        finer: &Result<Option<SetUp>, String>,
-        further: &[(String, SetUp)],
-    ) -> Result<usize, StudyError> {
-        let CalibrationKeys { runs, finer_runs, .. } = self.file.keys;
-        let finer = finer.iter().flatten().map(|finer| (finer, finer_runs));
-        let further = further.iter().map(|(_, further)| (further, runs));
-        let all = std::iter::once((&self.set_up, runs)).chain(finer).chain(further);
-        let missing = all.map(|(set_up, runs)| {
-            let id = set_up.identity()?;
-            let is_missing = |run: &usize| !self.known.contains_key(&(id.clone(), *run));
-            Ok((0..runs as usize).filter(is_missing).count())
+/// Trains with each of the further experiments beside the records, and returns how much narrower the
+/// intervals are.
+fn weigh(
+    maker: &mut RunMaker,
+    grids: &[SamplePoints],
+    further: Vec<(String, SetUp)>,
+    training: &Training,
+    told: &FittedRecords,
+    noise: f64,
+) -> Result<Vec<Further>, StudyError> {
+    let widths = told.calibration.widths(&told.estimate);
+    let mut weighed = Vec::new();
+    for (set, further) in further {
+        let more = Training::run(maker, CalibrationStage::Further, &further, training.points.len())?;
+        let grids = [grids, &further.grids()].concat();
+        let with = Calibration::new(&training.clone().with(more), &grids, noise);
+        let with = with.widths(&told.estimate);
+        weighed.push(Further {
+            set,
+            narrowed_to: with
+                .iter()
+                .zip(&widths)
+                .map(|(with, without)| with / without)
+                .collect(),
         });
-        missing.sum()
     }
+    Ok(weighed)
+}
+
+/// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is
+/// none.
+fn finer(file: &CalibrationFile, set_up: &SetUp) -> Result<Option<SetUp>, String> {
+    if file.keys.finer_runs == 0 {
+        return Ok(None);
+    }
+    set_up.finer().map(Some)
 }
 
 /// The part of the findings that decides whether they promise anything.

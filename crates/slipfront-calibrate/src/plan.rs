@@ -1,7 +1,6 @@
 //! Experiments before they are made: how narrow the intervals of the unknowns would be, by records of runs
 //! that are simulated over the ranges.
 
-use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
@@ -13,7 +12,8 @@ use slipfront_study::text_table::table;
 use crate::calibration::{Calibration, UNDETERMINED};
 use crate::file::{CalibrationFile, SampledRecord};
 use crate::findings::with_unit;
-use crate::progress::{CalibrationProgress, CalibrationStage, RunCounter};
+use crate::progress::{CalibrationProgress, CalibrationStage};
+use crate::runs::RunMaker;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
 use crate::summaries::MIN_VALUES;
@@ -147,14 +147,8 @@ impl CalibrationFile {
         experiments.extend(self.others(&planned)?);
         let further = self.further(&planned)?;
         let possible = experiments.iter().filter(|(_, set_up)| set_up.is_ok()).count();
-        let mut work = RunCounter::new(stop, RUNS * (possible + further.len()), watch);
-        let mut train = |set_up: &SetUp| {
-            let mut keep = |made: &[_]| {
-                work.show(CalibrationStage::Planning, made.len());
-                Ok(())
-            };
-            Training::run(set_up, RUNS, HashMap::new(), &mut keep, stop)
-        };
+        let mut maker = RunMaker::new(stop, RUNS * (possible + further.len()), watch);
+        let mut train = |set_up: &SetUp| Training::run(&mut maker, CalibrationStage::Planning, set_up, RUNS);
         let mut found = Vec::new();
         let mut first = None;
         for (name, set_up) in experiments {

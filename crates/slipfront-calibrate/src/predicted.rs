@@ -1,18 +1,16 @@
 //! Predictions of the calibrated model for the records: runs at points that are drawn from the estimate, and
 //! how the records compare with them.
 
-use std::sync::atomic::AtomicBool;
-
 use rayon::prelude::*;
 use serde::Serialize;
 use slipfront_regression::distance_from;
 
 use crate::normals::{Stream, normals};
-use crate::progress::RunsEnded;
+use crate::progress::CalibrationStage;
+use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, SetUp};
 use crate::summaries::{checked, checked_groups, level, quantiles};
-use crate::training::AT_ONCE;
-use slipfront_study::{StudyError, TrainingError};
+use slipfront_study::StudyError;
 
 /// Number of the surface of the first run; training draws from 1 on.
 const FIRST_SURFACE: u64 = 1 << 32;
@@ -90,40 +88,27 @@ impl Band {
 }
 
 impl Predicted {
-    /// Runs these points of the ranges; `noise` is that of a value, as a share of the mean friction. `ended`
-    /// gets the numbers of runs as they end.
+    /// Makes runs at these points of the ranges; `noise` is that of a value, as a share of the mean friction.
     ///
     /// # Errors
-    /// When a run cannot be made, and after a stop.
+    /// When a run cannot be made or kept, and after a stop.
     pub fn run(
+        maker: &mut RunMaker,
+        stage: CalibrationStage,
         set_up: &SetUp,
         points: Vec<Vec<f64>>,
         noise: f64,
-        stop: &AtomicBool,
-        ended: &mut RunsEnded,
     ) -> Result<Self, StudyError> {
-        let run = |run: usize| {
-            let curves = set_up.curves(&points[run], FIRST_SURFACE + run as u64, stop)?;
-            let with_noise = |curves: Curves| {
-                let records = curves.iter().zip(&set_up.conditions).enumerate();
-                let noisy = records.map(|(record, (curve, conditions))| {
-                    conditions
-                        .grid
-                        .noisy(curve, noise, normals(Stream::Predicted, run, record))
-                });
-                noisy.collect()
-            };
-            Ok(curves.map(with_noise))
+        let curves = maker.curves(stage, &Runs::new(set_up, &points, FIRST_SURFACE))?;
+        let with_noise = |(run, curves): (usize, Curves)| {
+            let records = curves.iter().zip(&set_up.conditions).enumerate();
+            let noisy = records.map(|(record, (curve, conditions))| {
+                let normals = normals(Stream::Predicted, run, record);
+                conditions.grid.noisy(curve, noise, normals)
+            });
+            noisy.collect()
         };
-        let mut curves = Vec::new();
-        let runs: Vec<usize> = (0..points.len()).collect();
-        for some in runs.chunks(AT_ONCE) {
-            let made = some.par_iter().with_max_len(1).map(|number| run(*number));
-            let made: Vec<Result<Option<Curves>, TrainingError>> = made.collect();
-            let made: Option<Vec<Curves>> = made.into_iter().collect::<Result<_, _>>()?;
-            curves.extend(made.ok_or(StudyError::Interrupted)?);
-            ended(some.len());
-        }
+        let curves = curves.into_par_iter().enumerate().map(with_noise).collect();
         Ok(Self { points, curves })
     }
 

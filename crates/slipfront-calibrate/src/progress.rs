@@ -1,7 +1,5 @@
 //! Progress of a calibration: the purpose of its runs, and how many have ended.
 
-use std::sync::atomic::AtomicBool;
-
 /// Purpose of runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationStage {
@@ -21,6 +19,16 @@ pub enum CalibrationStage {
     Planning,
 }
 
+impl CalibrationStage {
+    /// Whether the runs of this stage serve all records at the same places, whatever their friction is.
+    pub(crate) fn is_for_any_records(self) -> bool {
+        match self {
+            Self::Training | Self::FinerBlocks | Self::Further | Self::Planning => true,
+            Self::Prediction | Self::Closest | Self::HalfStep => false,
+        }
+    }
+}
+
 /// Progress of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalibrationProgress {
@@ -30,42 +38,4 @@ pub struct CalibrationProgress {
     pub runs: usize,
     /// Number of all runs of this call, as far as it is known.
     pub of: usize,
-}
-
-/// Function that takes the number of runs that have ended since it was called before.
-pub type RunsEnded<'a> = dyn FnMut(usize) + 'a;
-
-/// Runs of a calibration in progress.
-pub(crate) struct RunCounter<'a> {
-    pub(crate) stop: &'a AtomicBool,
-    watch: &'a mut dyn FnMut(&CalibrationProgress),
-    ended: usize,
-    of: usize,
-}
-
-impl<'a> RunCounter<'a> {
-    /// A call of `of` runs.
-    pub(crate) fn new(
-        stop: &'a AtomicBool,
-        of: usize,
-        watch: &'a mut dyn FnMut(&CalibrationProgress),
-    ) -> Self {
-        Self {
-            stop,
-            watch,
-            ended: 0,
-            of,
-        }
-    }
-
-    /// Shows that `runs` more runs have ended.
-    pub(crate) fn show(&mut self, stage: CalibrationStage, runs: usize) {
-        self.ended += runs;
-        self.of = self.of.max(self.ended);
-        (self.watch)(&CalibrationProgress {
-            stage,
-            runs: self.ended,
-            of: self.of,
-        });
-    }
 }

@@ -1,29 +1,14 @@
 //! Training: runs of the model over the ranges of the unknowns, with their curves without noise.
 
-use std::collections::HashMap;
-use std::sync::atomic::AtomicBool;
+use slipfront_study::StudyError;
 
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
+use crate::progress::CalibrationStage;
+use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, SetUp};
 use crate::unknowns::design_point;
-use slipfront_study::{StudyError, TrainingError};
 
-/// Number of runs that are made before they are kept and shown.
-pub(crate) const AT_ONCE: usize = 32;
-
-/// A run of a training.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TrainingRun {
-    /// Number of the run.
-    pub run: usize,
-    /// Friction of every record.
-    pub curves: Curves,
-}
-
-/// Function that takes runs that have ended, in their order.
-pub type KeepRuns<'a> = dyn FnMut(&[TrainingRun]) -> Result<(), StudyError> + 'a;
+/// Number of the surface of the first run.
+const FIRST_SURFACE: u64 = 1;
 
 /// Curves of runs over the ranges of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,37 +20,20 @@ pub struct Training {
 }
 
 impl Training {
-    /// Runs the points of the ranges that are not `known`, each over a surface of its own, on rayon's
-    /// threads; `keep` gets the runs as they end.
+    /// Makes runs at points over the ranges, each over a surface of its own.
     ///
     /// # Errors
-    /// The error of the first run that has one, errors of `keep`, and after a stop.
+    /// When a run cannot be made or kept, and after a stop.
     pub fn run(
+        maker: &mut RunMaker,
+        stage: CalibrationStage,
         set_up: &SetUp,
         runs: usize,
-        mut known: HashMap<usize, Curves>,
-        keep: &mut KeepRuns,
-        stop: &AtomicBool,
     ) -> Result<Self, StudyError> {
         let points: Vec<Vec<f64>> = (0..runs)
             .map(|run| design_point(run, set_up.unknowns.len()))
             .collect();
-        let missing: Vec<usize> = (0..runs).filter(|run| !known.contains_key(run)).collect();
-        for some in missing.chunks(AT_ONCE) {
-            let made: Vec<Result<Option<TrainingRun>, TrainingError>> = some
-                .par_iter()
-                .with_max_len(1)
-                .map(|&run| {
-                    let curves = set_up.curves(&points[run], 1 + run as u64, stop)?;
-                    Ok(curves.map(|curves| TrainingRun { run, curves }))
-                })
-                .collect();
-            let made: Option<Vec<TrainingRun>> = made.into_iter().collect::<Result<_, _>>()?;
-            let made = made.ok_or(StudyError::Interrupted)?;
-            keep(&made)?;
-            known.extend(made.into_iter().map(|made| (made.run, made.curves)));
-        }
-        let curves = (0..runs).filter_map(|run| known.remove(&run)).collect();
+        let curves = maker.curves(stage, &Runs::new(set_up, &points, FIRST_SURFACE))?;
         Ok(Self { points, curves })
     }
 
@@ -81,6 +49,7 @@ impl Training {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+    use std::sync::atomic::AtomicBool;
 
     use slipfront_case::case::Case;
     use slipfront_case::case_file::Override;
@@ -118,43 +87,31 @@ mod tests {
         }
     }
 
-    /// A training on `threads` threads, of which these runs are known.
-    fn trained(
-        set_up: &SetUp,
-        threads: usize,
-        known: HashMap<usize, Curves>,
-    ) -> Result<(Training, Vec<TrainingRun>), StudyError> {
+    /// A training on `threads` threads.
+    fn trained(set_up: &SetUp, threads: usize) -> Result<Training, StudyError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
-        let mut kept = Vec::new();
-        let mut keep = |runs: &[TrainingRun]| {
-            kept.extend_from_slice(runs);
-            Ok(())
-        };
         let go_on = AtomicBool::new(false);
-        let trained = pool.install(|| Training::run(set_up, 6, known, &mut keep, &go_on));
-        Ok((trained?, kept))
+        pool.install(|| {
+            let (mut watch, stage) = (|_: &_| {}, CalibrationStage::Training);
+            Training::run(&mut RunMaker::new(&go_on, 6, &mut watch), stage, set_up, 6)
+        })
     }
 
     #[test]
-    fn threads_and_keeping_do_not_change_a_bit() {
+    fn threads_do_not_change_a_bit() {
         let set_up = set_up([0.4, 0.8], 5.0);
-        let (one, kept) = trained(&set_up, 1, HashMap::new()).unwrap();
-        assert_eq!(one, trained(&set_up, 3, HashMap::new()).unwrap().0);
+        let one = trained(&set_up, 1).unwrap();
+        assert_eq!(one, trained(&set_up, 3).unwrap());
         assert_eq!(one.curves[0].len(), 2);
         assert!(one.curves[0] != one.curves[1] && one.curves[0][0] != one.curves[0][1]);
-        // Runs that are known are not made again.
-        let some = kept.into_iter().step_by(2).map(|run| (run.run, run.curves));
-        let (resumed, made) = trained(&set_up, 3, some.collect()).unwrap();
-        assert_eq!(made.iter().map(|run| run.run).collect::<Vec<_>>(), [1, 3, 5]);
-        assert_eq!(resumed, one);
     }
 
     #[test]
     fn what_cannot_be_run_is_told_with_its_unknowns() {
-        let told = |set_up: &SetUp| trained(set_up, 1, HashMap::new()).unwrap_err().to_string();
+        let told = |set_up: &SetUp| trained(set_up, 1).unwrap_err().to_string();
         // A program of speeds moves the drive as far as its case runs.
         let mut short = set_up([0.5, 1.0], 50.0);
         for conditions in &mut short.conditions {
@@ -176,13 +133,9 @@ mod tests {
     #[test]
     fn a_training_is_given_up_when_it_is_told_so() {
         let stop = AtomicBool::new(true);
-        let ended = Training::run(
-            &set_up([0.4, 0.8], 5.0),
-            6,
-            HashMap::new(),
-            &mut |_| Ok(()),
-            &stop,
-        );
+        let (mut watch, stage) = (|_: &_| {}, CalibrationStage::Training);
+        let mut maker = RunMaker::new(&stop, 6, &mut watch);
+        let ended = Training::run(&mut maker, stage, &set_up([0.4, 0.8], 5.0), 6);
         assert!(matches!(ended, Err(StudyError::Interrupted)));
     }
 }

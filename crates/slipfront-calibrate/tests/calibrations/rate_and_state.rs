@@ -7,12 +7,13 @@
 #[path = "../support/velocity_steps.rs"]
 mod velocity_steps;
 
-use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
-use slipfront_calibrate::{Calibration, Conditions, SamplePoints, SetUp, Training, Unknown};
+use slipfront_calibrate::{
+    Calibration, CalibrationStage, Conditions, RunMaker, SamplePoints, SetUp, Training, Unknown,
+};
 use slipfront_case::case::Case;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 
@@ -113,8 +114,13 @@ fn set_up() -> SetUp {
 fn rate_and_state_agrees_with_maximum_likelihood() {
     let set_up = set_up();
     let go_on = AtomicBool::new(false);
-    let training = Training::run(&set_up, 400, HashMap::new(), &mut |_| Ok(()), &go_on)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let training = Training::run(
+        &mut RunMaker::new(&go_on, 0, &mut |_| {}),
+        CalibrationStage::Training,
+        &set_up,
+        400,
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
     let grids = [set_up.conditions[0].grid.clone()];
     // Values of a record are not averaged, so that it is a curve as it stands.
     assert_eq!(grids[0].places().len(), friction([0.5; 3]).len());

@@ -43,7 +43,7 @@ fn a_calibration_is_told_and_found_again() {
     assert!(others("found") == others("twice"));
     let said = workspace.succeed("verify twice");
     assert!(
-        said.contains("a calibration as its 200 recorded runs give it"),
+        said.contains("a calibration as its 362 recorded runs give it"),
         "{said}"
     );
     workspace.write(

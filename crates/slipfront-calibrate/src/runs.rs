@@ -1,0 +1,205 @@
+//! Runs of a calibration: made on rayon's threads, counted, and kept where there is a journal.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use slipfront_study::project_folder::{Journal, JournalEntry};
+use slipfront_study::{StudyError, TrainingError};
+
+use crate::file::CALIBRATION;
+use crate::progress::{CalibrationProgress, CalibrationStage};
+use crate::set_up::{Curves, SetUp};
+
+/// Number of runs that are made before they are kept and shown.
+const AT_ONCE: usize = 32;
+
+/// A line of the journal.
+#[derive(Serialize, Deserialize)]
+struct CalibrationRun {
+    /// Identity of the run.
+    id: String,
+    /// Friction of every record.
+    curves: Curves,
+}
+
+impl JournalEntry for CalibrationRun {
+    const KEYS: &'static [&'static str] = &["curves"];
+}
+
+/// Runs to be made: points of the ranges, each over a surface of its own.
+pub(crate) struct Runs<'a> {
+    set_up: &'a SetUp,
+    points: &'a [Vec<f64>],
+    first_surface: u64,
+}
+
+impl<'a> Runs<'a> {
+    /// Runs at points of the ranges, which are shares of them; the run of number `k` has the surface
+    /// `first_surface + k`.
+    pub(crate) const fn new(set_up: &'a SetUp, points: &'a [Vec<f64>], first_surface: u64) -> Self {
+        Self {
+            set_up,
+            points,
+            first_surface,
+        }
+    }
+
+    /// Identities of all runs: hashes of what decides their curves.
+    fn identities(&self) -> Result<Vec<String>, StudyError> {
+        let of_set_up = self.set_up.identity()?;
+        let of_run = |(surface, point): (u64, &Vec<f64>)| {
+            let mut hasher = blake3::Hasher::new();
+            hasher.update(of_set_up.as_bytes());
+            hasher.update(&surface.to_le_bytes());
+            for share in point {
+                hasher.update(&share.to_le_bytes());
+            }
+            hasher.finalize().to_hex()[..16].to_owned()
+        };
+        Ok((self.first_surface..).zip(self.points).map(of_run).collect())
+    }
+
+    /// The curves of the run of this number; none after a stop.
+    fn curves(&self, run: usize, stop: &AtomicBool) -> Result<Option<Curves>, TrainingError> {
+        self.set_up
+            .curves(&self.points[run], self.first_surface + run as u64, stop)
+    }
+}
+
+/// Runs that were made before, with the journals to which others are appended.
+#[derive(Debug)]
+pub(crate) struct KeptRuns {
+    /// Journal of the results folder, which keeps other processes out.
+    journal: Journal,
+    /// Journal of training runs that several calibrations share.
+    shared: Option<Journal>,
+    known: HashMap<String, Curves>,
+    /// Lines of the journal that failed their checksum.
+    pub(crate) damaged: usize,
+}
+
+impl KeptRuns {
+    /// Opens the journals of a results folder, and of one of training runs, that no other process works in.
+    pub(crate) fn open(folder: &Path, training: Option<&Path>) -> Result<Self, StudyError> {
+        // A folder that another process works in is met before a new one is made.
+        let is_used = CALIBRATION.is_used(folder)?;
+        let own = is_used.then(|| CALIBRATION.open_journal(folder)).transpose()?;
+        let shared = training.map(|folder| CALIBRATION.open_journal::<CalibrationRun>(folder));
+        let shared = shared.transpose()?;
+        let (journal, mut kept, mut damaged) = match own {
+            Some(own) => own,
+            None => CALIBRATION.open_journal::<CalibrationRun>(folder)?,
+        };
+        let shared = shared.map(|(journal, more, more_damaged)| {
+            damaged += more_damaged;
+            kept.extend(more);
+            journal
+        });
+        Ok(Self {
+            journal,
+            shared,
+            known: kept.into_iter().map(|kept| (kept.id, kept.curves)).collect(),
+            damaged,
+        })
+    }
+
+    /// Copies the journal of a results folder into another.
+    pub(crate) fn copy(folder: &Path, other: &Path) -> Result<(), StudyError> {
+        Journal::copy::<CalibrationRun>(folder, other, CALIBRATION.journal)
+    }
+
+    /// Number of runs.
+    pub(crate) fn count(&self) -> usize {
+        self.known.len()
+    }
+
+    fn keep(&mut self, stage: CalibrationStage, made: Vec<CalibrationRun>) -> Result<(), StudyError> {
+        let shared = self.shared.as_mut().filter(|_| stage.is_for_any_records());
+        shared.unwrap_or(&mut self.journal).append(&made)?;
+        self.known
+            .extend(made.into_iter().map(|made| (made.id, made.curves)));
+        Ok(())
+    }
+}
+
+/// Makes the runs of a calibration.
+pub struct RunMaker<'a> {
+    stop: &'a AtomicBool,
+    watch: &'a mut dyn FnMut(&CalibrationProgress),
+    kept: Option<&'a mut KeptRuns>,
+    ended: usize,
+    of: usize,
+}
+
+impl<'a> RunMaker<'a> {
+    /// Runs of which none is kept, `of` of them beside those of a search for the closest curve.
+    pub fn new(stop: &'a AtomicBool, of: usize, watch: &'a mut dyn FnMut(&CalibrationProgress)) -> Self {
+        Self {
+            stop,
+            watch,
+            kept: None,
+            ended: 0,
+            of,
+        }
+    }
+
+    /// Keeps the runs, and makes none that is kept already.
+    pub(crate) fn with(self, kept: &'a mut KeptRuns) -> Self {
+        Self {
+            kept: Some(kept),
+            ..self
+        }
+    }
+
+    /// The curves of all runs, in their order.
+    ///
+    /// # Errors
+    /// The error of the first run that has one, those of the journal, and after a stop.
+    pub(crate) fn curves(&mut self, stage: CalibrationStage, runs: &Runs) -> Result<Vec<Curves>, StudyError> {
+        let ids = match self.kept {
+            Some(_) => runs.identities()?,
+            None => vec![String::new(); runs.points.len()],
+        };
+        let known = |id: &String| self.kept.as_ref()?.known.get(id).cloned();
+        let mut found: Vec<Option<Curves>> = ids.iter().map(known).collect();
+        let missing: Vec<usize> = (0..found.len()).filter(|run| found[*run].is_none()).collect();
+        self.of = match stage {
+            // How many runs a search takes is not known before.
+            CalibrationStage::Closest => self.of + missing.len(),
+            _ => self.of.saturating_sub(found.len() - missing.len()),
+        };
+        let stop = self.stop;
+        self.show(stage, 0);
+        for some in missing.chunks(AT_ONCE) {
+            let made = some.par_iter().with_max_len(1).map(|run| runs.curves(*run, stop));
+            let made: Vec<Result<Option<Curves>, TrainingError>> = made.collect();
+            let made: Option<Vec<Curves>> = made.into_iter().collect::<Result<_, _>>()?;
+            let made = made.ok_or(StudyError::Interrupted)?;
+            if let Some(kept) = &mut self.kept {
+                let to_keep = some.iter().zip(&made).map(|(run, curves)| CalibrationRun {
+                    id: ids[*run].clone(),
+                    curves: curves.clone(),
+                });
+                kept.keep(stage, to_keep.collect())?;
+            }
+            for (run, curves) in some.iter().zip(made) {
+                found[*run] = Some(curves);
+            }
+            self.show(stage, some.len());
+        }
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// Shows that `runs` more runs have ended.
+    fn show(&mut self, stage: CalibrationStage, runs: usize) {
+        self.ended += runs;
+        (self.watch)(&CalibrationProgress {
+            stage,
+            runs: self.ended,
+            of: self.of,
+        });
+    }
+}
