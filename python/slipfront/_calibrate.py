@@ -97,11 +97,12 @@ class RecordCheck:
     ----------
     reasons
         Sentences that say why it cannot; none if nothing speaks against it.
-    misfit, comparison, closest
+    clipped, misfit, comparison, closest
         Numbers of the tests, as `CalibrationResults` has them.
     """
 
     reasons: list[str]
+    clipped: dict[str, Any] | None
     misfit: dict[str, Any]
     comparison: dict[str, Any]
     closest: dict[str, Any] | None
@@ -430,6 +431,13 @@ class CalibrationResults:
     def is_refused(self) -> bool:
         """Whether the model cannot have made the records: then the intervals promise nothing."""
         return bool(self._found["is_refused"])
+
+    @property
+    def clipped(self) -> dict[str, Any] | None:
+        """Values of a record that are exactly its largest, more of them than chance makes, as those of a sensor at the end of its range: number of
+        the record, from 0, number of the values, and their share. None where there are none, or `range` of the instrument is given."""
+        found = self._found["clipped"]
+        return None if found is None else dict(found)
 
     @property
     def misfit(self) -> dict[str, Any]:

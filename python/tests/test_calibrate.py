@@ -157,6 +157,10 @@ def test_a_record_is_checked_alone() -> None:
     fit = made.fit(measured, progress=lambda *now: shown.append(now))
     assert shown[-1] == (200 + 120 + 2 + 40, 362)
     assert (check.misfit, check.comparison, check.closest) == (fit.misfit, fit.comparison, fit.closest)
+    assert check.clipped is None and fit.clipped is None
+    force = measured["force_n"]
+    clipped = made.check({**measured, "force_n": np.minimum(force, np.quantile(force, 0.9))}, progress=False)
+    assert clipped.clipped is not None and any("end of its range" in reason for reason in clipped.reasons)
     assert 0 <= check.comparison["rank"] <= 1
     foreign = made.check({**measured, "force_n": 100 * measured["force_n"]}, progress=False)
     assert foreign.is_refused and any("of the training runs" in reason for reason in foreign.reasons)

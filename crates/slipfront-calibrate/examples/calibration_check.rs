@@ -28,8 +28,8 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use slipfront_calibrate::{
-    Calibration, CalibrationStage, Closest, Conditions, Predicted, RunMaker, SamplePoints, SetUp, Training,
-    Unknown, closest,
+    Calibration, CalibrationStage, Clipped, Closest, Conditions, Predicted, RunMaker, SamplePoints, SetUp,
+    Training, Unknown, closest,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
@@ -197,7 +197,9 @@ impl Trained {
         let Self { set_up, calibration } = self;
         let truth = uniform(record, set_up.unknowns.len());
         let truth: Vec<f64> = truth.iter().map(|u| 0.1 + 0.8 * u).collect();
-        let values = [record_of(experiment, change, &truth, record)?];
+        let measured = record_of(experiment, change, &truth, record)?;
+        let clipped = Clipped::of(0, &measured);
+        let values = [set_up.conditions[0].grid.record(&measured)];
         let estimate = calibration.estimate(&values);
         let points = calibration.sample(&estimate, PREDICTED);
         let failed = |error: slipfront_study::StudyError| error.to_string();
@@ -221,7 +223,7 @@ impl Trained {
         let by_comparison = comparison.is_refused();
         let by_closest = closest.as_ref().is_some_and(Closest::is_refused);
         Ok(Judged {
-            is_refused: estimate.misfit.is_refused() || by_comparison || by_closest,
+            is_refused: clipped.is_some() || estimate.misfit.is_refused() || by_comparison || by_closest,
             by_comparison,
             by_closest,
             misses: misses.contains(&true),
@@ -265,14 +267,13 @@ fn report(kind: &str, judged: &[Judged]) {
     );
 }
 
-/// A record of this truth, changed, with noise, in the form in which it is compared.
+/// A record of this truth, changed, with noise.
 fn record_of(
     experiment: &Experiment,
     change: Change,
     truth: &[f64],
     record: usize,
-) -> Result<Vec<f64>, String> {
-    let conditions = &experiment.set_up.conditions[0];
+) -> Result<MeasuredRecord, String> {
     let (times, fine) = if experiment.is_rate_and_state {
         let fine = friction(truth, STEPS, matches!(change, Change::SlipLaw));
         let dt = experiment.spacing / STEPS as f64;
@@ -326,7 +327,7 @@ fn record_of(
         let bound = sorted[(quantile * last) as usize];
         y.iter_mut().for_each(|y| *y = y.min(bound));
     }
-    Ok(conditions.grid.record(&measured(x, y)))
+    Ok(measured(x, y))
 }
 
 /// Times and friction of every step of a run of this truth.

@@ -11,7 +11,7 @@ const CHANGE: f64 = 12.0;
 /// Standard deviation of the noise of a record, by its second differences: it is 1/sqrt(6) of theirs where
 /// friction is straight over three values, and half of those of a normal distribution exceed 0.6745 standard
 /// deviations.
-fn noise(y: &[f64]) -> f64 {
+pub(crate) fn noise(y: &[f64]) -> f64 {
     let second = y.windows(3).map(|y| (y[0] - 2.0 * y[1] + y[2]).abs());
     quantiles(&second.collect::<Vec<_>>(), [0.5])[0] / (0.6745 * 6.0_f64.sqrt())
 }

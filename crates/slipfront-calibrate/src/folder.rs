@@ -12,6 +12,7 @@ use slipfront_run::measured::Measure;
 
 use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
 use crate::calibration::{Calibration, Estimate};
+use crate::clipping::Clipped;
 use crate::closest::closest;
 use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
 use crate::findings::{
@@ -86,7 +87,14 @@ impl FittedRecords {
                 .noisy(curve, missing, normals(Stream::Missing, 0, number))
         });
         let closest = closest(maker, set_up, predicted.points(), &self.curves, noise)?;
+        let clipped = || {
+            let records = records.iter().enumerate();
+            records
+                .filter_map(|(number, record)| Clipped::of(number, &record.measured))
+                .next()
+        };
         let check = RecordCheck {
+            clipped: if set_up.has_range() { None } else { clipped() },
             misfit: self.estimate.misfit.clone(),
             comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
             closest,

@@ -10,6 +10,7 @@
 
 mod bandwidth;
 mod calibration;
+mod clipping;
 mod closest;
 mod doubts;
 mod file;
@@ -32,6 +33,7 @@ mod training;
 mod unknowns;
 
 pub use calibration::{Calibration, Estimate, Pair};
+pub use clipping::Clipped;
 pub use closest::{Closest, closest};
 pub use file::{CalibrationFile, CalibrationKeys, SampledRecord};
 pub use folder::{CALIBRATIONS, CalibrationFolder};

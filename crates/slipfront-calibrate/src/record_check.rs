@@ -3,6 +3,7 @@
 use serde::Serialize;
 use slipfront_base::number_format::four_digits;
 
+use crate::clipping::Clipped;
 use crate::closest::Closest;
 use crate::misfit::Misfit;
 use crate::predicted::Comparison;
@@ -10,6 +11,8 @@ use crate::predicted::Comparison;
 /// Tests of whether the model can have made the records.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordCheck {
+    /// Values at the end of the range of a sensor, where the file has no range.
+    pub clipped: Option<Clipped>,
     /// The records beside the runs of the training.
     pub misfit: Misfit,
     /// The records beside runs of the calibrated model.
@@ -21,7 +24,8 @@ pub struct RecordCheck {
 impl RecordCheck {
     /// Whether the model cannot have made the records.
     pub fn is_refused(&self) -> bool {
-        self.misfit.is_refused()
+        self.clipped.is_some()
+            || self.misfit.is_refused()
             || self.comparison.is_refused()
             || self.closest.is_some_and(|closest| closest.is_refused())
     }
@@ -29,6 +33,15 @@ impl RecordCheck {
     /// Reasons for which the model cannot have made the records; none where it can.
     pub fn reasons(&self) -> Vec<String> {
         let mut reasons = Vec::new();
+        if let Some(clipped) = &self.clipped {
+            reasons.push(format!(
+                "{} values of record {}, {} % of them, are exactly its largest, as those of a sensor at the end of its range, \
+                 which `range` in [instrument] describes",
+                clipped.values,
+                clipped.record + 1,
+                four_digits(100.0 * clipped.share)
+            ));
+        }
         let [low, high] = self.misfit.drift;
         if self.misfit.has_drift {
             let [low, high] = [low, high].map(|drift| four_digits(100.0 * drift));
@@ -100,6 +113,7 @@ mod tests {
     /// Results of records of the model.
     fn passed() -> RecordCheck {
         RecordCheck {
+            clipped: None,
             misfit: Misfit {
                 drift: [-0.01, 0.02],
                 has_drift: false,
@@ -135,6 +149,16 @@ mod tests {
             assert!(check.is_refused() && reasons.len() == 1, "{words}: {reasons:?}");
             assert!(reasons[0].contains(words), "{words}: {reasons:?}");
         };
+        refuse(
+            |check| {
+                check.clipped = Some(Clipped {
+                    record: 0,
+                    values: 20,
+                    share: 0.05,
+                });
+            },
+            "20 values of record 1, 5 % of them, are exactly its largest",
+        );
         refuse(
             |check| check.misfit.has_drift = true,
             "friction drifts by -1 to 2 %",

@@ -1,4 +1,7 @@
-//! Equal steps of time or displacement at which a record and the curves of training are compared.
+//! Times or displacements of a record, at which it and the curves of runs are compared: values between those
+//! of a record would have less noise than these.
+
+use std::sync::Arc;
 
 use slipfront_run::instrument::Instrument;
 use slipfront_run::measured::{Measure, MeasuredRecord};
@@ -17,10 +20,8 @@ pub struct SamplePoints {
     along: Measure,
     /// Quantity at the places: force or coefficient.
     of: Measure,
-    start: f64,
-    step: f64,
-    /// Number of values of the record.
-    count: usize,
+    /// Places of the values of the record, which never fall.
+    x: Arc<[f64]>,
     /// Number of values that are averaged to one.
     merged: usize,
     /// Least and largest value that the instrument writes.
@@ -28,43 +29,60 @@ pub struct SamplePoints {
 }
 
 impl SamplePoints {
-    /// As many equal steps as a record has values, from its first to its last; none for a record that is too
-    /// short or stands still.
+    /// The places of the values of a record; none for a record that is too short or stands still.
     pub fn of(record: &MeasuredRecord) -> Option<Self> {
-        let (count, start, end) = (record.x.len(), *record.x.first()?, *record.x.last()?);
-        let step = (end - start) / (count - 1).max(1) as f64;
-        (count >= MIN_VALUES && step > 0.0).then_some(Self {
-            along: record.along,
-            of: record.of,
-            start,
-            step,
-            count,
-            merged: count.div_ceil(MAX_VALUES),
-            range: None,
-        })
+        Self::at(record.along, record.of, record.x.clone())
     }
 
     /// As many equal steps of a planned record of coefficients, from 0 to `end`; none if they are too few, or
     /// do not go forwards.
     pub(crate) fn planned(along: Measure, end: f64, count: usize) -> Option<Self> {
-        (count >= MIN_VALUES && end > 0.0).then(|| Self {
+        let step = end / (count.max(2) - 1) as f64;
+        Self::at(
             along,
-            of: Measure::Coefficient,
-            start: 0.0,
-            step: end / (count - 1) as f64,
-            count,
-            merged: count.div_ceil(MAX_VALUES),
+            Measure::Coefficient,
+            (0..count).map(|k| k as f64 * step).collect(),
+        )
+    }
+
+    fn at(along: Measure, of: Measure, x: Vec<f64>) -> Option<Self> {
+        (x.len() >= MIN_VALUES && x.last() > x.first()).then(|| Self {
+            along,
+            of,
+            merged: x.len().div_ceil(MAX_VALUES),
+            x: x.into(),
             range: None,
         })
     }
 
-    /// The places of a record that is `times` times as long, with as many values in a time.
+    /// The places of a record that is `times` times as long, with as many values in a time: these places,
+    /// one behind the other.
     pub(crate) fn longer(&self, times: usize) -> Self {
-        let count = times * self.count;
+        let again = self.end() + self.mean_step() - self.x[0];
+        let x = (0..times).flat_map(|part| self.x.iter().map(move |x| x + part as f64 * again));
         Self {
-            count,
-            merged: count.div_ceil(MAX_VALUES),
+            merged: (times * self.x.len()).div_ceil(MAX_VALUES),
+            x: x.collect(),
             ..self.clone()
+        }
+    }
+
+    fn mean_step(&self) -> f64 {
+        (self.end() - self.x[0]) / (self.x.len() - 1) as f64
+    }
+
+    /// Adds all that decides the values at the places to a hash.
+    pub(crate) fn add_to(&self, hasher: &mut blake3::Hasher) {
+        let Self {
+            along,
+            of,
+            x,
+            merged,
+            range,
+        } = self;
+        hasher.update(format!("{along:?}{of:?}{merged}{range:?}").as_bytes());
+        for place in x.iter() {
+            hasher.update(&place.to_le_bytes());
         }
     }
 
@@ -82,20 +100,19 @@ impl SamplePoints {
     pub(crate) fn slower(&self, times: f64) -> Self {
         let times = if self.along == Measure::Time { times } else { 1.0 };
         Self {
-            start: times * self.start,
-            step: times * self.step,
+            x: self.x.iter().map(|x| times * x).collect(),
             ..self.clone()
         }
     }
 
     /// The last place.
     pub fn end(&self) -> f64 {
-        self.start + (self.count - 1) as f64 * self.step
+        self.x.last().copied().unwrap_or(f64::NAN)
     }
 
     /// Number of averages, which are the values of a curve.
     pub(crate) fn n_values(&self) -> usize {
-        self.count / self.merged
+        self.x.len() / self.merged
     }
 
     /// Standard deviation of the noise of an average over that of a value.
@@ -105,16 +122,12 @@ impl SamplePoints {
 
     /// Places of the averages.
     pub fn places(&self) -> Vec<f64> {
-        let merged = self.merged;
-        let middle = 0.5 * (merged - 1) as f64;
-        (0..self.n_values())
-            .map(|k| self.start + ((k * merged) as f64 + middle) * self.step)
-            .collect()
+        self.merge(&self.x)
     }
 
-    /// A record in equal steps, averaged over neighbours.
+    /// The values of a record with these places, averaged over neighbours.
     pub fn record(&self, record: &MeasuredRecord) -> Vec<f64> {
-        self.averages(&record.x, &record.y)
+        self.merge(&record.y)
     }
 
     /// The curve of a run in the form of a record, as an instrument writes it; none if the run ends before,
@@ -122,7 +135,7 @@ impl SamplePoints {
     pub(crate) fn curve(&self, curve: &RunCurve, instrument: Option<&Instrument>) -> Option<Vec<f64>> {
         let x = curve.along(self.along);
         // What rounding makes of the end of a run is not missed.
-        if *x.last()? < self.end() - 0.5 * self.step {
+        if *x.last()? < self.end() - 0.5 * self.mean_step() {
             return None;
         }
         let unit = match self.of {
@@ -140,7 +153,7 @@ impl SamplePoints {
     pub(crate) fn beginning(&self, share: f64) -> Self {
         let values = (share * self.n_values() as f64) as usize;
         Self {
-            count: self.merged * values.max(1),
+            x: self.x[..self.merged * values.max(1)].into(),
             ..self.clone()
         }
     }
@@ -174,27 +187,28 @@ impl SamplePoints {
         values
     }
 
-    /// Means over neighbours of y at equal steps, interpolated between the places x, which never fall.
+    /// Means over neighbours of y, interpolated between the values at x, which never fall.
     fn averages(&self, x: &[f64], y: &[f64]) -> Vec<f64> {
         let mut after = 0;
-        let values: Vec<f64> = (0..self.count)
-            .map(|k| {
-                let place = self.start + k as f64 * self.step;
-                while after + 1 < x.len() && x[after] < place {
-                    after += 1;
-                }
-                let before = after.saturating_sub(1);
-                if x[after] <= place || x[after] == x[before] {
-                    return y[after];
-                }
-                let share = ((place - x[before]) / (x[after] - x[before])).max(0.0);
-                y[before] + share * (y[after] - y[before])
-            })
-            .collect();
-        let merged = self.merged;
-        let means = values.chunks_exact(merged);
+        let values = self.x.iter().map(|&place| {
+            while after + 1 < x.len() && x[after] < place {
+                after += 1;
+            }
+            let before = after.saturating_sub(1);
+            if x[after] <= place || x[after] == x[before] {
+                return y[after];
+            }
+            let share = ((place - x[before]) / (x[after] - x[before])).max(0.0);
+            y[before] + share * (y[after] - y[before])
+        });
+        self.merge(&values.collect::<Vec<_>>())
+    }
+
+    /// Means over neighbours.
+    fn merge(&self, values: &[f64]) -> Vec<f64> {
+        let means = values.chunks_exact(self.merged);
         means
-            .map(|chunk| chunk.iter().sum::<f64>() / merged as f64)
+            .map(|chunk| chunk.iter().sum::<f64>() / self.merged as f64)
             .collect()
     }
 }
@@ -209,11 +223,28 @@ mod tests {
         MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient)
     }
 
+    /// Values between those of a record would have less noise than these.
     #[test]
-    fn a_record_in_equal_steps_is_itself() {
-        let record = record(50);
+    fn a_record_is_itself_whatever_its_steps_are() {
+        let mut record = record(50);
+        for (k, x) in record.x.iter_mut().enumerate() {
+            *x += 0.1 * (k as f64).sin();
+        }
         let grid = SamplePoints::of(&record).unwrap();
         assert_eq!((grid.places(), grid.record(&record)), (record.x, record.y));
+    }
+
+    #[test]
+    fn a_longer_record_goes_on_in_its_steps() {
+        let grid = SamplePoints::planned(Measure::Time, 9.9, 100).unwrap().longer(2);
+        let places = grid.places();
+        assert!(
+            places.len() == 200
+                && places
+                    .iter()
+                    .enumerate()
+                    .all(|(k, x)| (x - 0.1 * k as f64).abs() < 1e-12)
+        );
     }
 
     #[test]

@@ -75,6 +75,13 @@ impl SetUp {
             .map(Some)
     }
 
+    /// Whether the instrument has a range beyond which it clips.
+    pub(crate) fn has_range(&self) -> bool {
+        self.instrument
+            .as_ref()
+            .is_some_and(|table| table.contains_key("range"))
+    }
+
     /// The grids of the records.
     pub(crate) fn grids(&self) -> Vec<SamplePoints> {
         self.conditions.iter().map(|one| one.grid.clone()).collect()
@@ -217,7 +224,7 @@ impl SetUp {
         let middle = self.middle();
         for conditions in &self.conditions {
             hasher.update(physics(&self.case(&middle, 0, conditions)?, None)?.as_bytes());
-            hasher.update(format!("{:?}", conditions.grid).as_bytes());
+            conditions.grid.add_to(&mut hasher);
         }
         hasher.update(format!("{:?}{:?}", self.unknowns, self.instrument).as_bytes());
         Ok(hasher.finalize().to_hex()[..16].to_owned())

@@ -173,6 +173,20 @@ fn the_reference_has_the_keys_of_the_struct() {
     });
 }
 
+/// The example is not refused: its last value comes sooner than the others do, as a logger leaves it that is
+/// stopped.
+#[test]
+fn the_example_is_not_refused() {
+    let cases = root().join("cases/calibrations");
+    let text = fs::read_to_string(cases.join("sliding.toml")).unwrap();
+    let file = file(&text.replace("next =", "runs = 200\nfiner_runs = 0\nnext ="));
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("checked");
+    let mut folder = open(&out, None, &file, &[cases.join("sliding.csv")], false).unwrap();
+    let check = folder.check(&AtomicBool::new(false), &mut |_| {}).unwrap();
+    assert_eq!(check.reasons(), Vec::<String>::new());
+}
+
 /// The record of the example is the run that its comment describes, with noise of 1 % of its mean.
 #[test]
 fn the_record_of_the_example_is_a_run_with_noise() {
@@ -276,7 +290,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
         let mut stopped = open("stopped", None);
         let stop = AtomicBool::new(false);
         let ended = stopped.find(&stop, &mut |now| {
-            stop.store(now.stage == stage, Ordering::Relaxed)
+            stop.store(now.stage == stage, Ordering::Relaxed);
         });
         assert!(matches!(ended, Err(StudyError::Interrupted)));
         stopped.n_kept()
