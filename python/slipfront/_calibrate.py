@@ -77,7 +77,7 @@ class Interval:
     belongs_to_block
         Whether it leaves the interval on blocks of half the size, so that it is no value of the material.
     depends_on_step
-        Whether it leaves the interval at half the time step.
+        Whether it leaves the interval at a finer time step.
     """
 
     median: float

@@ -29,7 +29,7 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use slipfront_calibrate::{
     Calibration, CalibrationStage, Clipped, Closest, Conditions, Predicted, RunMaker, SamplePoints, SetUp,
-    Training, Unknown, closest,
+    Training, Unknown, closest, fine_enough,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
@@ -42,6 +42,9 @@ use crate::velocity_steps::{KEYS, RANGES, SPACING, friction};
 
 /// Standard deviation of the noise, over the mean of friction.
 const NOISE: f64 = 0.01;
+
+/// Time step of the runs that become records.
+const RECORD_STEP: f64 = 0.01;
 
 /// Runs that are drawn from an estimate.
 const PREDICTED: usize = 120;
@@ -206,9 +209,12 @@ impl Trained {
         let mut watch = |_: &_| {};
         let maker = &mut RunMaker::new(&go_on, 0, &mut watch);
         let stage = CalibrationStage::Prediction;
-        let predicted = Predicted::run(maker, stage, set_up, points.clone(), NOISE).map_err(failed)?;
+        let fine = fine_enough(maker, set_up, &points, NOISE).map_err(failed)?;
+        let judged_by = fine.as_ref().unwrap_or(set_up);
+        let predicted = Predicted::run(maker, stage, judged_by, points.clone(), NOISE).map_err(failed)?;
         let comparison = predicted.compare(&values);
-        let closest = closest(maker, set_up, &points, &values, NOISE).map_err(failed)?;
+        let search = |fine| closest(maker, &fine, &points, &values, NOISE).map_err(failed);
+        let closest = fine.map(search).transpose()?;
         let intervals = estimate
             .distributions
             .iter()
@@ -339,6 +345,9 @@ fn run(
 ) -> Result<(Vec<f64>, Vec<f64>), String> {
     let set_up = &experiment.set_up;
     let mut conditions = set_up.conditions[0].clone();
+    // An experiment has no steps.
+    let fine = Override::new("time.step", &toml::Value::from(RECORD_STEP));
+    conditions.overrides.push(fine);
     if let Change::Law(keys) = change {
         let table: toml::Table = keys.parse().map_err(|error: toml::de::Error| error.to_string())?;
         conditions
@@ -405,7 +414,7 @@ fn experiment(
             conditions,
             instrument: None,
             is_finer: false,
-            has_half_step: false,
+            halvings: 0,
         },
         runs: 600,
         kinds: Vec::new(),

@@ -136,7 +136,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
             conditions,
             instrument: None,
             is_finer: false,
-            has_half_step: false,
+            halvings: 0,
         },
         time,
     ))

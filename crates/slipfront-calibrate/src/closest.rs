@@ -2,12 +2,14 @@
 //! coefficients there is one whose difference from a good record is noise.
 
 use serde::Serialize;
+use slipfront_regression::least_squares;
 use slipfront_study::StudyError;
 use slipfront_study::adaptation::Adaptation;
 use slipfront_study::draws::Draws;
 use slipfront_study::statistics::mean;
 
 use crate::normals::{Stream, draws};
+use crate::predicted::apart;
 use crate::progress::CalibrationStage;
 use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, SetUp};
@@ -31,13 +33,26 @@ const NEAR: f64 = 1.5;
 /// phases of stick-slip agree over a part, they nearly agree over twice of it.
 const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
+/// Differences of curves from those at the finest time step, in units of the noise, with which a step is fine
+/// enough; the number of points at which they are taken, and the halvings of the finest step. Slips begin at
+/// a step, so that a coarse one moves their phases.
+const STEP_ERROR: f64 = 0.25;
+const STEP_POINTS: usize = 5;
+const MOST_HALVINGS: u32 = 5;
+
 /// Number of searches, and runs of a generation.
 const SEARCHES: usize = 5;
 const DRAFTS: usize = 24;
 
+/// Difference of a number of a search for a derivative, in units of the deviation from which it begins.
+const BESIDE: f64 = 0.05;
+
+/// Dampings of a step, as shares of the squares of the derivatives.
+const DAMPING: [f64; 3] = [1e-6, 0.1, 10.0];
+
 /// Generations without progress after which a search over a part ends, and the share of the distance that is
 /// progress.
-const PATIENCE: usize = 10;
+const PATIENCE: usize = 5;
 const PROGRESS: f64 = 0.002;
 
 /// Share by which the distances of two searches may differ that have found the same curve.
@@ -54,6 +69,8 @@ pub struct Closest {
     pub most_correlated: f64,
     /// Share of the records, from their beginning, over which they were compared.
     pub share: f64,
+    /// Number of times by which the time step of the case was halved for it.
+    pub halvings: u32,
 }
 
 impl Closest {
@@ -73,7 +90,7 @@ impl Closest {
     }
 
     /// Differences of every record in units of the noise, over this share of the records.
-    fn of(differences: &[Vec<f64>], share: f64) -> Self {
+    fn of(differences: &[Vec<f64>], share: f64, halvings: u32) -> Self {
         let all = differences.iter().flatten();
         let count = all.clone().count() as f64;
         let squares: f64 = all.map(|e| e * e).sum();
@@ -84,6 +101,7 @@ impl Closest {
             correlation: products / squares,
             most_correlated: MOST_CORRELATED / count.sqrt(),
             share,
+            halvings,
         }
     }
 
@@ -100,9 +118,52 @@ impl Closest {
     }
 }
 
-/// Looks for the closest curve among those of the unknowns that an estimate has drawn; none where random
-/// coefficients make curves of the same unknowns differ. A search ends where the differences are noise.
-/// `noise` is that of a value of the records, as a share of their mean friction.
+/// The set-up with the largest time step whose curves are those of the finest one, but for less than the
+/// noise, where the unknowns determine a curve; none where random coefficients make curves of the same
+/// unknowns differ. `drawn` are points of the ranges, `noise` is that of a value of the records, as a share
+/// of their mean friction.
+///
+/// # Errors
+/// When a run cannot be made or kept, and after a stop.
+pub fn fine_enough(
+    maker: &mut RunMaker,
+    set_up: &SetUp,
+    drawn: &[Vec<f64>],
+    noise: f64,
+) -> Result<Option<SetUp>, StudyError> {
+    let mut curves = |set_up: &SetUp, points: &[Vec<f64>]| {
+        let runs = Runs::new(set_up, points, FIRST_SURFACE);
+        maker.curves(CalibrationStage::Closest, &runs)
+    };
+    let two_surfaces = curves(set_up, &[set_up.middle(), set_up.middle()])?;
+    if two_surfaces[0] != two_surfaces[1] {
+        return Ok(None);
+    }
+    let points = &drawn[..drawn.len().min(STEP_POINTS)];
+    let finer = |halvings: u32| SetUp {
+        halvings: set_up.halvings + halvings,
+        ..set_up.clone()
+    };
+    let finest = finer(MOST_HALVINGS);
+    let of_finest = curves(&finest, points)?;
+    let is_same = |(one, other): (&Curves, &Curves)| {
+        let mut records = one.iter().zip(other).zip(&set_up.conditions);
+        records.all(|((one, other), conditions)| {
+            apart(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
+        })
+    };
+    for halvings in 0..MOST_HALVINGS {
+        let coarse = finer(halvings);
+        if curves(&coarse, points)?.iter().zip(&of_finest).all(is_same) {
+            return Ok(Some(coarse));
+        }
+    }
+    Ok(Some(finest))
+}
+
+/// Looks for the closest curve among those of the unknowns that an estimate has drawn, with a set-up that is
+/// [`fine_enough`]. A search ends where the differences are noise. `noise` is that of a value of the records,
+/// as a share of their mean friction.
 ///
 /// # Errors
 /// When a run cannot be made or kept, and after a stop.
@@ -112,15 +173,7 @@ pub fn closest(
     drawn: &[Vec<f64>],
     records: &[Vec<f64>],
     noise: f64,
-) -> Result<Option<Closest>, StudyError> {
-    let middle = [set_up.middle(), set_up.middle()];
-    let two_surfaces = maker.curves(
-        CalibrationStage::Closest,
-        &Runs::new(set_up, &middle, FIRST_SURFACE),
-    )?;
-    if two_surfaces[0] != two_surfaces[1] {
-        return Ok(None);
-    }
+) -> Result<Closest, StudyError> {
     let begin = |j: usize| {
         let values: Vec<f64> = drawn.iter().map(|point| point[j]).collect();
         [mean(&values), deviation(&values)]
@@ -134,20 +187,22 @@ pub fn closest(
         maker,
         begin: (0..set_up.unknowns.len()).map(begin).collect(),
     };
-    let mut found: Vec<Closest> = Vec::new();
-    for number in 0..SEARCHES {
-        let next = search.from(set_up, number)?;
-        if !next.is_refused() {
-            return Ok(Some(next));
-        }
-        let agrees = found.iter().any(|before| next.agrees_with(before));
-        found.push(next);
-        if agrees {
+    let mut found = vec![search.from(set_up, 0)?];
+    let mut best = found[0];
+    for number in 1..SEARCHES {
+        if !best.is_refused() {
             break;
         }
+        let next = search.from(set_up, number)?;
+        if next.is_closer_than(&best) || !next.is_refused() {
+            best = next;
+        }
+        if found.iter().any(|before| next.agrees_with(before)) {
+            break;
+        }
+        found.push(next);
     }
-    let closer = |one: Closest, other: Closest| if other.is_closer_than(&one) { other } else { one };
-    Ok(found.into_iter().reduce(closer))
+    Ok(best)
 }
 
 /// Search for the closest curve.
@@ -160,69 +215,141 @@ struct Search<'a, 'm> {
     begin: Vec<[f64; 2]>,
 }
 
+/// A curve with the numbers of a search that make it.
+#[derive(Clone)]
+struct Found {
+    numbers: Vec<f64>,
+    /// Differences of every record in units of the noise.
+    differences: Vec<Vec<f64>>,
+    closest: Closest,
+}
+
 impl Search<'_, '_> {
     /// The closest curve of the search of this number.
     fn from(&mut self, set_up: &SetUp, number: usize) -> Result<Closest, StudyError> {
         let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);
         let mut draws = draws(Stream::Closest, number, 0);
         let [first, longer @ ..] = PARTS;
-        let mut best = self.over(set_up, first, &mut adaptation, &mut draws)?;
+        let part = Part::of(set_up, first);
+        let begin = self.generation(&part, &mut adaptation, &mut draws)?;
+        let mut best = self.over(&part, begin, &mut adaptation, &mut draws)?;
         for share in longer {
-            if best.noise_ratio > NEAR {
+            if best.closest.noise_ratio > NEAR {
                 break;
             }
-            best = self.over(set_up, share, &mut adaptation, &mut draws)?;
+            let part = Part::of(set_up, share);
+            let begin = self.judge(&part, vec![best.numbers])?;
+            best = self.over(&part, begin, &mut adaptation, &mut draws)?;
         }
-        Ok(best)
+        Ok(best.closest)
     }
 
-    /// The closest curve over the first part of the records, from where a search stands.
+    /// The closest curve over a part of the records: by descent, and by generations where that does not lead
+    /// to it.
     fn over(
         &mut self,
-        set_up: &SetUp,
-        share: f64,
+        part: &Part,
+        begin: Found,
         adaptation: &mut Adaptation,
         draws: &mut Draws,
-    ) -> Result<Closest, StudyError> {
-        let part = set_up.beginning(share);
-        let is_done = |best: &Closest| match share {
-            1.0 => !best.is_refused(),
-            _ => best.noise_ratio < NEAR,
-        };
-        let mut best = self.generation(&part, share, adaptation, draws)?;
+    ) -> Result<Found, StudyError> {
+        let mut best = self.descend(part, begin)?;
         let mut idle = 0;
-        while idle < PATIENCE && !is_done(&best) {
-            let next = self.generation(&part, share, adaptation, draws)?;
+        while idle < PATIENCE && !part.is_done(&best.closest) {
+            let next = self.generation(part, adaptation, draws)?;
             idle += 1;
-            if next.noise_ratio < (1.0 - PROGRESS) * best.noise_ratio {
+            if next.closest.noise_ratio < (1.0 - PROGRESS) * best.closest.noise_ratio {
                 idle = 0;
             }
-            if next.noise_ratio < best.noise_ratio {
-                best = next;
+            if next.is_closer_than(&best) {
+                best = self.descend(part, next)?;
             }
         }
         Ok(best)
     }
 
-    /// The closest curve of the next generation over the first part of the records.
+    /// The closest curve of the next generation.
     fn generation(
         &mut self,
-        part: &SetUp,
-        share: f64,
+        part: &Part,
         adaptation: &mut Adaptation,
         draws: &mut Draws,
-    ) -> Result<Closest, StudyError> {
+    ) -> Result<Found, StudyError> {
         let drafts: Vec<_> = (0..DRAFTS).map(|_| adaptation.draw(draws)).collect();
-        let points: Vec<Vec<f64>> = drafts.iter().map(|(_, numbers)| self.point(numbers)).collect();
-        let runs = Runs::new(part, &points, FIRST_SURFACE);
-        let curves = self.maker.curves(CalibrationStage::Closest, &runs)?;
-        let judged = curves.iter().zip(&drafts);
-        let judged = judged.map(|(curves, (normal, _))| (self.judge(curves, share), normal.as_slice()));
-        let mut ranked: Vec<(Closest, &[f64])> = judged.collect();
-        ranked.sort_by(|one, other| one.0.noise_ratio.total_cmp(&other.0.noise_ratio));
+        let judged = self.judge_all(part, drafts.iter().map(|(_, numbers)| numbers.clone()).collect())?;
+        let mut ranked: Vec<(&Found, &[f64])> = judged
+            .iter()
+            .zip(&drafts)
+            .map(|(found, (normal, _))| (found, normal.as_slice()))
+            .collect();
+        ranked.sort_by(|(one, _), (other, _)| one.closest.noise_ratio.total_cmp(&other.closest.noise_ratio));
         let normal: Vec<&[f64]> = ranked.iter().map(|(_, normal)| *normal).collect();
         adaptation.adapt(&normal);
-        Ok(ranked[0].0)
+        Ok(ranked[0].0.clone())
+    }
+
+    /// Descends to a closer curve by the method of Levenberg and Marquardt, with differences of runs for the
+    /// derivatives, as long as that makes progress.
+    fn descend(&mut self, part: &Part, mut best: Found) -> Result<Found, StudyError> {
+        while !part.is_done(&best.closest) {
+            let beside = (0..best.numbers.len()).map(|j| {
+                let mut numbers = best.numbers.clone();
+                numbers[j] += BESIDE;
+                numbers
+            });
+            let beside = self.judge_all(part, beside.collect())?;
+            let own = best.differences.concat();
+            let slopes: Vec<Vec<f64>> = beside
+                .iter()
+                .map(|found| {
+                    let theirs = found.differences.concat();
+                    theirs
+                        .iter()
+                        .zip(&own)
+                        .map(|(theirs, own)| (own - theirs) / BESIDE)
+                        .collect()
+                })
+                .collect();
+            let steps = DAMPING
+                .iter()
+                .filter_map(|damping| least_squares(&slopes, &own, *damping));
+            let ahead = steps.map(|step| best.numbers.iter().zip(step).map(|(x, d)| x + d).collect());
+            let ahead = self.judge_all(part, ahead.collect())?;
+            let next = ahead.into_iter().chain(beside);
+            let next =
+                next.min_by(|one, other| one.closest.noise_ratio.total_cmp(&other.closest.noise_ratio));
+            let Some(next) = next else { break };
+            let is_progress = next.closest.noise_ratio < (1.0 - PROGRESS) * best.closest.noise_ratio;
+            if next.is_closer_than(&best) {
+                best = next;
+            }
+            if !is_progress {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// Runs the curve of numbers over a part of the records, and compares it with them.
+    fn judge(&mut self, part: &Part, numbers: Vec<Vec<f64>>) -> Result<Found, StudyError> {
+        let mut judged = self.judge_all(part, numbers)?;
+        Ok(judged.remove(0))
+    }
+
+    /// Runs the curves of numbers over a part of the records, and compares them with these.
+    fn judge_all(&mut self, part: &Part, numbers: Vec<Vec<f64>>) -> Result<Vec<Found>, StudyError> {
+        let points: Vec<Vec<f64>> = numbers.iter().map(|numbers| self.point(numbers)).collect();
+        let runs = Runs::new(&part.set_up, &points, FIRST_SURFACE);
+        let curves = self.maker.curves(CalibrationStage::Closest, &runs)?;
+        let judged = curves.iter().zip(numbers).map(|(curves, numbers)| {
+            let differences = self.differences(curves);
+            Found {
+                closest: Closest::of(&differences, part.share, part.set_up.halvings),
+                numbers,
+                differences,
+            }
+        });
+        Ok(judged.collect())
     }
 
     /// The point of the ranges at numbers of a search.
@@ -232,14 +359,46 @@ impl Search<'_, '_> {
             .collect()
     }
 
-    /// Differences between the records and curves of a part.
-    fn judge(&self, curves: &Curves, share: f64) -> Closest {
+    /// Differences between the records and curves of a part, in units of the noise.
+    fn differences(&self, curves: &Curves) -> Vec<Vec<f64>> {
         let records = self.records.iter().zip(curves).zip(&self.deviations);
         let differences = records.map(|((record, curve), deviation)| {
             let pairs = record.iter().zip(curve);
             pairs.map(|(y, f)| (y - f) / deviation).collect()
         });
-        Closest::of(&differences.collect::<Vec<_>>(), share)
+        differences.collect()
+    }
+}
+
+impl Found {
+    fn is_closer_than(&self, other: &Self) -> bool {
+        self.closest.noise_ratio < other.closest.noise_ratio
+    }
+}
+
+/// The first part of the records.
+struct Part {
+    set_up: SetUp,
+    share: f64,
+}
+
+impl Part {
+    /// Steps move phases by a share of a period for every slip, so that a part, which has fewer slips, needs
+    /// no steps as fine as the whole does.
+    fn of(set_up: &SetUp, share: f64) -> Self {
+        let set_up = SetUp {
+            halvings: set_up.halvings.saturating_sub(((1.0 / share) as u32).ilog2()),
+            ..set_up.beginning(share)
+        };
+        Self { set_up, share }
+    }
+
+    /// Whether a curve is close enough.
+    fn is_done(&self, closest: &Closest) -> bool {
+        match self.share {
+            1.0 => !closest.is_refused(),
+            _ => closest.noise_ratio < NEAR,
+        }
     }
 }
 
@@ -251,20 +410,20 @@ mod tests {
     #[test]
     fn noise_passes_and_a_wave_does_not() {
         let noise: Vec<f64> = normals(Stream::Noise, 1, 0).take(4000).collect();
-        let plain = Closest::of(std::slice::from_ref(&noise), 1.0);
+        let plain = Closest::of(std::slice::from_ref(&noise), 1.0, 0);
         assert!(
             !plain.is_refused() && (plain.noise_ratio - 1.0).abs() < 0.1,
             "{plain:?}"
         );
         let more: Vec<f64> = noise.iter().map(|e| 1.5 * e).collect();
-        assert!(Closest::of(&[more], 1.0).is_noisier());
+        assert!(Closest::of(&[more], 1.0, 0).is_noisier());
         // The mean square of the wave is 0.32, which makes the correlation 0.24, and the noise 1.15 times as
         // much.
         let wave = noise
             .iter()
             .enumerate()
             .map(|(i, e)| e + 0.8 * (0.05 * i as f64).sin());
-        let waved = Closest::of(&[wave.collect()], 1.0);
+        let waved = Closest::of(&[wave.collect()], 1.0, 0);
         assert!(waved.is_correlated() && !waved.is_noisier(), "{waved:?}");
     }
 }

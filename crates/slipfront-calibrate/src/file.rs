@@ -413,7 +413,7 @@ impl CalibrationFile {
             conditions,
             instrument: self.project.table(INSTRUMENT)?.cloned(),
             is_finer: false,
-            has_half_step: false,
+            halvings: 0,
         };
         let middle = set_up.middle();
         let in_instrument = |why: String| self.project.error_in_table(INSTRUMENT, why);

@@ -30,6 +30,8 @@ pub(crate) struct Findings {
     pub(crate) is_refused: bool,
     /// Share of the values of each record that lie within the band of the calibrated model, %.
     pub(crate) within_band_percent: Vec<f64>,
+    /// Number by which the time step is divided for the finer one.
+    pub(crate) finer_step: u32,
     /// Results on blocks of half the size.
     pub(crate) finer: OnFinerBlocks,
     /// Narrowing of the intervals by further experiments.
@@ -65,9 +67,9 @@ pub(crate) struct UnknownEstimate {
     pub(crate) on_finer_blocks: Option<(f64, [f64; 2])>,
     /// Whether the median on blocks of half the size lies beyond the interval.
     pub(crate) belongs_to_block: bool,
-    /// Median at half the time step.
-    pub(crate) at_half_step: f64,
-    /// Whether the median at half the time step lies beyond the interval.
+    /// Median at the finer time step.
+    pub(crate) at_finer_step: f64,
+    /// Whether the median at the finer time step lies beyond the interval.
     pub(crate) depends_on_step: bool,
 }
 
@@ -111,17 +113,17 @@ impl UnknownEstimate {
             is_determined: !estimate.undetermined.contains(&number),
             on_finer_blocks: None,
             belongs_to_block: false,
-            at_half_step: median,
+            at_finer_step: median,
             depends_on_step: false,
         }
     }
 
-    /// Adds the median at half the time step, by the share of the range by which records of half the step
+    /// Adds the median at the finer time step, by the share of the range by which records of that step
     /// move the estimate.
-    pub(crate) fn hold_against_half_step(&mut self, unknown: &Unknown, moved: f64) {
+    pub(crate) fn hold_against_finer_step(&mut self, unknown: &Unknown, moved: f64) {
         let [low, high] = self.interval;
-        self.at_half_step = unknown.at(unknown.share_of(self.median) - moved);
-        self.depends_on_step = self.is_determined && !(low..=high).contains(&self.at_half_step);
+        self.at_finer_step = unknown.at(unknown.share_of(self.median) - moved);
+        self.depends_on_step = self.is_determined && !(low..=high).contains(&self.at_finer_step);
     }
 
     /// Adds the results on blocks of half the size.

@@ -13,7 +13,7 @@ use slipfront_run::measured::Measure;
 use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
 use crate::calibration::{Calibration, Estimate};
 use crate::clipping::Clipped;
-use crate::closest::closest;
+use crate::closest::{closest, fine_enough};
 use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
 use crate::findings::{
     CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
@@ -35,8 +35,8 @@ use slipfront_study::{StudyError, TrainingError};
 /// Beginning of the names of copies of records.
 const RECORD: &str = "record-";
 
-/// Number of runs at half the time step.
-const AT_HALF_STEP: usize = 40;
+/// Number of runs at another time step.
+const AT_OTHER_STEP: usize = 40;
 
 /// Number of points that are drawn from the estimate.
 const SAMPLE: usize = 400;
@@ -78,7 +78,9 @@ impl FittedRecords {
         maker: &mut RunMaker,
     ) -> Result<(Predicted, RecordCheck), StudyError> {
         let points = self.sample(PREDICTED);
-        let predicted = Predicted::run(maker, CalibrationStage::Prediction, set_up, points, noise)?;
+        let fine = fine_enough(maker, set_up, &points, noise)?;
+        let stage = CalibrationStage::Prediction;
+        let predicted = Predicted::run(maker, stage, fine.as_ref().unwrap_or(set_up), points, noise)?;
         let as_noisy = records.iter().zip(&self.curves).enumerate();
         let as_noisy = as_noisy.map(|(number, (record, curve))| {
             let missing = missing_noise(&record.measured, noise);
@@ -86,7 +88,7 @@ impl FittedRecords {
                 .grid
                 .noisy(curve, missing, normals(Stream::Missing, 0, number))
         });
-        let closest = closest(maker, set_up, predicted.points(), &self.curves, noise)?;
+        let search = |fine| closest(maker, &fine, predicted.points(), &self.curves, noise);
         let clipped = || {
             let records = records.iter().enumerate();
             records
@@ -97,7 +99,7 @@ impl FittedRecords {
             clipped: if set_up.has_range() { None } else { clipped() },
             misfit: self.estimate.misfit.clone(),
             comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
-            closest,
+            closest: fine.map(search).transpose()?,
         };
         Ok((predicted, check))
     }
@@ -240,7 +242,7 @@ impl CalibrationFolder {
         } else {
             0
         };
-        let of = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_HALF_STEP;
+        let of = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_OTHER_STEP;
         let maker = &mut RunMaker::new(stop, of, watch).with(kept);
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs)?;
         let told = FittedRecords::of(&training, set_up, records, noise);
@@ -265,14 +267,22 @@ impl CalibrationFolder {
         let next = weigh(maker, &set_up.grids(), further, &training, &told, noise)?;
         let (predicted, check) = told.check(set_up, records, noise, maker)?;
         let bands = predicted.bands();
-        let points = predicted.points()[..AT_HALF_STEP].to_vec();
-        let half_step = set_up.at_half_step();
-        let half_step = Predicted::run(maker, CalibrationStage::HalfStep, &half_step, points, noise)?;
-        let moved = told
-            .calibration
-            .moved(&predicted.curves()[..AT_HALF_STEP], half_step.curves());
+        // Where the calibrated model needs a finer step already, it is held against that of the training.
+        let halvings = predicted.halvings();
+        let points = predicted.points()[..AT_OTHER_STEP].to_vec();
+        let other = if halvings > 0 {
+            set_up.clone()
+        } else {
+            set_up.at_half_step()
+        };
+        let other = Predicted::run(maker, CalibrationStage::OtherStep, &other, points, noise)?;
+        let (mut coarse, mut fine) = (&predicted.curves()[..AT_OTHER_STEP], other.curves());
+        if halvings > 0 {
+            (coarse, fine) = (fine, coarse);
+        }
+        let moved = told.calibration.moved(coarse, fine);
         for (told, (unknown, moved)) in unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved)) {
-            told.hold_against_half_step(unknown, moved);
+            told.hold_against_finer_step(unknown, moved);
         }
         let within = bands.iter().zip(&told.curves);
         let findings = Findings {
@@ -284,6 +294,7 @@ impl CalibrationFolder {
             check,
             instrument,
             unknowns,
+            finer_step: 1 << halvings.max(1),
             finer,
             next,
             version: env!("CARGO_PKG_VERSION"),

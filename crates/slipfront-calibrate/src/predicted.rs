@@ -34,6 +34,8 @@ pub struct Predicted {
     points: Vec<Vec<f64>>,
     /// Friction of every record, for every run.
     curves: Vec<Curves>,
+    /// Number of times by which the time step of the case is halved.
+    halvings: u32,
 }
 
 /// Friction of a record as the calibrated model has it, noise included: 90 % of the runs at every place, and
@@ -109,12 +111,21 @@ impl Predicted {
             noisy.collect()
         };
         let curves = curves.into_par_iter().enumerate().map(with_noise).collect();
-        Ok(Self { points, curves })
+        Ok(Self {
+            points,
+            curves,
+            halvings: set_up.halvings,
+        })
     }
 
     /// Points of the ranges, for every run.
     pub(crate) fn points(&self) -> &[Vec<f64>] {
         &self.points
+    }
+
+    /// Number of times by which the time step of the case is halved.
+    pub(crate) fn halvings(&self) -> u32 {
+        self.halvings
     }
 
     /// The bands of all records.
@@ -188,7 +199,7 @@ impl Predicted {
 const CURVE: &str = "curve as a whole";
 
 /// Root mean square of the difference of two curves.
-fn apart(one: &[f64], other: &[f64]) -> f64 {
+pub(crate) fn apart(one: &[f64], other: &[f64]) -> f64 {
     let squares: f64 = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();
     (squares / one.len() as f64).sqrt()
 }

@@ -13,8 +13,8 @@ pub enum CalibrationStage {
     Prediction,
     /// Search for the closest curve; its number of runs is not known before.
     Closest,
-    /// Runs of the calibrated model at half the time step.
-    HalfStep,
+    /// Runs of the calibrated model at another time step.
+    OtherStep,
     /// Runs of a planned experiment.
     Planning,
 }
@@ -24,7 +24,7 @@ impl CalibrationStage {
     pub(crate) fn is_for_any_records(self) -> bool {
         match self {
             Self::Training | Self::FinerBlocks | Self::Further | Self::Planning => true,
-            Self::Prediction | Self::Closest | Self::HalfStep => false,
+            Self::Prediction | Self::Closest | Self::OtherStep => false,
         }
     }
 }

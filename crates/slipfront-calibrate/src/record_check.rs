@@ -88,7 +88,8 @@ fn differences(closest: &Closest) -> String {
         share => format!(" over the first {} of the records", one_over(share)),
     };
     let size = format!(
-        "the closest curve that was found differs{part} by {:.1} times the noise",
+        "the closest curve that was found{} differs{part} by {:.1} times the noise",
+        at_step(closest),
         closest.noise_ratio
     );
     if closest.is_correlated() {
@@ -98,6 +99,14 @@ fn differences(closest: &Closest) -> String {
         )
     } else {
         size
+    }
+}
+
+/// The time step of the closest curve, in words, if it is finer than that of the case.
+pub(crate) fn at_step(closest: &Closest) -> String {
+    match closest.halvings {
+        0 => String::new(),
+        halvings => format!(", at 1/{} of the time step,", 1_u32 << halvings),
     }
 }
 
@@ -135,6 +144,7 @@ mod tests {
             correlation,
             most_correlated: 0.2,
             share,
+            halvings: 0,
         })
     }
 

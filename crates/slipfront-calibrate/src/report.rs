@@ -11,6 +11,7 @@ use slipfront_run::names::CASE;
 
 use crate::findings::{Findings, InstrumentFindings, OnFinerBlocks, UnknownEstimate};
 use crate::predicted::{Band, PREDICTED};
+use crate::record_check::at_step;
 use crate::set_up::{Conditions, SetUp};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::Batch;
@@ -226,7 +227,7 @@ fn in_words(found: &Findings) -> String {
             number + 1
         ));
     }
-    text += &at_half_step(found);
+    text += &at_finer_step(found);
     text += &on_finer_blocks(found);
     text += &further(found);
     text
@@ -272,8 +273,10 @@ fn accepted(found: &Findings) -> String {
     let [low, high] = found.check.misfit.drift.map(|drift| four_digits(100.0 * drift));
     let closest = match &found.check.closest {
         Some(closest) => format!(
-            "the closest curve differs from them by {:.2} times the noise, which is white (correlation {:.2})",
-            closest.noise_ratio, closest.correlation
+            "the closest curve{} differs from them by {:.2} times the noise, which is white (correlation {:.2})",
+            at_step(closest),
+            closest.noise_ratio,
+            closest.correlation
         ),
         None => format!(
             "they are as near to runs of the calibrated model as these are to each other (of which {:.0} % are farther away)",
@@ -318,19 +321,23 @@ fn instrument(found: &Findings) -> String {
     )
 }
 
-/// The medians at half the time step, in words.
-fn at_half_step(found: &Findings) -> String {
+/// The medians at the finer time step, in words.
+fn at_finer_step(found: &Findings) -> String {
     let moved: Vec<String> = found
         .unknowns
         .iter()
         .filter(|told| told.depends_on_step)
-        .map(|told| format!("{} ({})", told.key, told.text(told.at_half_step)))
+        .map(|told| format!("{} ({})", told.key, told.text(told.at_finer_step)))
         .collect();
+    let step = match found.finer_step {
+        2 => "half the time step".to_owned(),
+        divisor => format!("1/{divisor} of the time step"),
+    };
     paragraph(&if moved.is_empty() {
-        "At half the time step every median lies within its interval.".to_owned()
+        format!("At {step} every median lies within its interval.")
     } else {
         format!(
-            "At half the time step these leave their intervals: {}. Lower `time.step` of the case until they stay.",
+            "At {step} these leave their intervals: {}. Lower `time.step` of the case until they stay.",
             moved.join(", ")
         )
     })

@@ -35,8 +35,8 @@ pub struct SetUp {
     pub instrument: Option<toml::Table>,
     /// Whether blocks have half the size of those of the case.
     pub is_finer: bool,
-    /// Whether the time step is half of that of the case.
-    pub has_half_step: bool,
+    /// Number of times by which the time step of the case is halved.
+    pub halvings: u32,
 }
 
 /// Friction without noise, for every record.
@@ -104,7 +104,7 @@ impl SetUp {
     /// The set-up at half the time step.
     pub(crate) fn at_half_step(&self) -> Self {
         Self {
-            has_half_step: true,
+            halvings: self.halvings + 1,
             ..self.clone()
         }
     }
@@ -145,9 +145,10 @@ impl SetUp {
         let made =
             |file: CaseFile| Case::new(file, "training", &self.base.folder, &mut |_| true, Ranks::ALONE);
         let mut case = made(self.base.parse()?.with(&all)?)?;
-        if self.has_half_step {
-            let half = Override::new("time.step", &toml::Value::from(0.5 * case.time_plan.dt_star));
-            let all: Vec<&Override> = all.into_iter().chain([&half]).collect();
+        if self.halvings > 0 {
+            let step = 0.5_f64.powi(self.halvings as i32) * case.time_plan.dt_star;
+            let finer = Override::new("time.step", &toml::Value::from(step));
+            let all: Vec<&Override> = all.into_iter().chain([&finer]).collect();
             case = made(self.base.parse()?.with(&all)?)?;
         }
         if !self.is_finer {

@@ -83,7 +83,7 @@ mod tests {
             conditions: conditions.into(),
             instrument: None,
             is_finer: false,
-            has_half_step: false,
+            halvings: 0,
         }
     }
 

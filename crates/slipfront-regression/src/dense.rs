@@ -20,6 +20,24 @@ pub(crate) struct Factor {
     rows: Vec<f64>,
 }
 
+/// Coefficients of columns whose sum lies closest to `y`, each held back by a share `damping` of the square
+/// of its column; none if a column is zero, or the others make it.
+///
+/// ```text
+/// (A^T A + damping diag(A^T A)) x = A^T y
+/// ```
+pub fn least_squares(columns: &[Vec<f64>], y: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let product = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+    let matrix = columns
+        .iter()
+        .flat_map(|one| columns.iter().map(|other| product(one, other)));
+    let added = columns.iter().map(|column| damping * product(column, column));
+    let factor = Factor::of(matrix.collect(), added)?;
+    let mut x: Vec<f64> = columns.iter().map(|column| product(column, y)).collect();
+    factor.solve(&mut x);
+    Some(x)
+}
+
 /// Sums over k of `a[row][k] b[k][column]` of a tile of the product of two matrices.
 #[inline(always)]
 fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL]; ROWS] {
@@ -330,6 +348,21 @@ mod tests {
     use super::*;
 
     /// A^-1 of the second difference matrix of n rows has the diagonal i (n + 1 - i)/(n + 1), i from 1.
+    /// A straight line through 1, 3 and 5 at 0, 1 and 2, and half of its slope where it is held back by as
+    /// much as its square.
+    #[test]
+    fn least_squares_find_a_line() {
+        let line = [vec![1.0; 3], vec![0.0, 1.0, 2.0]];
+        let found = least_squares(&line, &[1.0, 3.0, 5.0], 0.0).unwrap();
+        assert!(
+            (found[0] - 1.0).abs() < 1e-12 && (found[1] - 2.0).abs() < 1e-12,
+            "{found:?}"
+        );
+        let held = least_squares(&line[1..], &[0.0, 2.0, 4.0], 1.0).unwrap();
+        assert!((held[0] - 1.0).abs() < 1e-12, "{held:?}");
+        assert_eq!(least_squares(&[vec![0.0; 3]], &[1.0; 3], 0.1), None);
+    }
+
     #[test]
     fn second_differences_have_their_inverse() {
         for n in [1, 7, 8, 9, 21, 40] {

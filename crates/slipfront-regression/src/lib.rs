@@ -12,6 +12,6 @@ mod parameters;
 mod regression;
 mod sample_distance;
 
-pub use dense::squared_distances;
+pub use dense::{least_squares, squared_distances};
 pub use regression::{Prediction, Regression};
 pub use sample_distance::{Distance, distance_from};

@@ -296,7 +296,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
         stopped.n_kept()
     };
     assert_eq!(stopped_at(CalibrationStage::FinerBlocks), 200);
-    assert_eq!(stopped_at(CalibrationStage::HalfStep), READY - 40);
+    assert_eq!(stopped_at(CalibrationStage::OtherStep), READY - 40);
     let journal = folder.path().join("stopped/training.jsonl");
     let lines = fs::read(&journal).unwrap();
     fs::write(&journal, &lines[..lines.len() - 1000]).unwrap();
@@ -440,10 +440,7 @@ fn a_filter_is_part_of_the_model() {
     for (name, instrument) in [("none", String::new()), ("half", filter(1.0))] {
         let (other, text) = found(name, &instrument);
         assert!(other["is_refused"].as_bool().unwrap(), "{name}: {text}");
-        assert!(
-            text.contains("the closest curve that was found differs"),
-            "{text}"
-        );
+        assert!(text.contains("the closest curve that was found"), "{text}");
     }
 }
 

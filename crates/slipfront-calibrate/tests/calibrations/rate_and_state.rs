@@ -98,7 +98,7 @@ fn set_up() -> SetUp {
         }],
         instrument: None,
         is_finer: false,
-        has_half_step: false,
+        halvings: 0,
     }
 }
 

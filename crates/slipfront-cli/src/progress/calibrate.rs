@@ -34,7 +34,7 @@ fn text(now: &CalibrationProgress, passed: Duration) -> String {
         CalibrationStage::Closest => {
             return format!("{} runs  search for the closest curve", now.runs);
         }
-        CalibrationStage::HalfStep => "half the time step",
+        CalibrationStage::OtherStep => "another time step",
         CalibrationStage::Planning => "planned experiments",
     };
     let left = time_left((now.of - now.runs) as u64, now.runs as u64, passed);
