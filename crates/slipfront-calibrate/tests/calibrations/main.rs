@@ -137,7 +137,7 @@ fn calibration_files_are_true() {
     let design = DesignFile::parse(block, "texture.toml", "texture", folder.path())
         .unwrap_or_else(|error| panic!("{error}"));
     design.design().unwrap_or_else(|error| panic!("{error}"));
-    for name in ["sliding", "basalt", "paper"] {
+    for name in ["sliding", "tribometer", "basalt", "paper"] {
         let folder = tempfile::tempdir().unwrap();
         let example = root().join("cases/calibrations").join(name);
         let record = example.with_extension("csv");
@@ -171,6 +171,47 @@ fn the_reference_has_the_keys_of_the_struct() {
         let page = with_keys(page, "`[calibrate]`", CalibrationKeys::KEYS);
         with_keys(&page, "`[instrument]`", InstrumentKeys::KEYS)
     });
+}
+
+/// The record of the tribometer is the run that the README beside it describes, behind a filter that is
+/// integrated here in steps of the run, with noise of 1 % of its mean.
+#[test]
+fn the_record_of_the_tribometer_is_a_run_behind_a_filter() {
+    let folder = root().join("cases/calibrations");
+    let text = fs::read_to_string(folder.join("tribometer.csv")).unwrap();
+    let rows = text.lines().filter_map(|line| {
+        let (time, force) = line.split_once(';')?;
+        let number = |text: &str| text.replace(',', ".").parse::<f64>().ok();
+        Some([number(time)?, number(force)?])
+    });
+    let rows: Vec<[f64; 2]> = rows.collect();
+    assert_eq!(rows.len(), 2001);
+    let case = "slider = { blocks = [1, 1], block_size = '4 cm', density = '3125 kg/m^3', young_modulus = '66.7 kPa', damping_rate = '6 1/s' }\n\
+        load.pressure = '1226 Pa'\ndrive = { speed = '2 mm/s', total_stiffness = '1150 N/m' }\ntime.step = 0.1\n\
+        friction = { mu_static = 0.42, r_star = 0.7, sigma_static_star = 0, sigma_kinetic_star = 0 }";
+    let case = Case::parse(case, "truth", "", &[]).unwrap();
+    let curve = run_curve_unless(&case, Measure::Time, 4.01, &|| false)
+        .unwrap()
+        .unwrap();
+    let unit = curve.unit_force.unwrap();
+    let force: Vec<f64> = curve.coefficient.iter().map(|mu| unit * mu).collect();
+    let constant = 1.0 / (std::f64::consts::TAU * 20.0);
+    let mut filtered = vec![0.0];
+    for k in 1..force.len() {
+        let dt = curve.time[k] - curve.time[k - 1];
+        let middle = 0.5 * (force[k] + force[k - 1]);
+        filtered.push(middle + (filtered[k - 1] - middle) * (-dt / constant).exp());
+    }
+    let at = |time: f64| {
+        let after = curve.time.partition_point(|t| *t <= time);
+        let share = (time - curve.time[after - 1]) / (curve.time[after] - curve.time[after - 1]);
+        filtered[after - 1] + share * (filtered[after] - filtered[after - 1])
+    };
+    let squares: f64 = rows.iter().map(|[time, force]| (force - at(*time)).powi(2)).sum();
+    let mean = rows.iter().map(|row| row[1]).sum::<f64>() / rows.len() as f64;
+    let noise = (squares / rows.len() as f64).sqrt() / mean;
+    // 2001 values tell a deviation to 1.6 %.
+    assert!((noise / 0.01 - 1.0).abs() < 0.08, "{noise}");
 }
 
 /// The example is not refused: its last value comes sooner than the others do, as a logger leaves it that is
