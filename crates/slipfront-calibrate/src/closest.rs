@@ -38,7 +38,7 @@ const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 /// a step, so that a coarse one moves their phases.
 const STEP_ERROR: f64 = 0.25;
 const STEP_POINTS: usize = 5;
-const MOST_HALVINGS: u32 = 5;
+pub(crate) const MOST_HALVINGS: u32 = 5;
 
 /// Number of searches, and runs of a generation.
 const SEARCHES: usize = 5;

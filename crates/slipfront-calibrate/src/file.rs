@@ -15,6 +15,7 @@ use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
 
+use crate::closest::MOST_HALVINGS;
 use crate::doubts::doubts;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
@@ -480,7 +481,10 @@ impl CalibrationFile {
                     .iter()
                     .map(|one| one.grid.n_values())
                     .sum::<usize>();
-            run = run.max(set_up.bytes_of_run()?);
+            run = run.max(set_up.bytes_of_run(0)?);
+        }
+        if !set_up.is_random()? {
+            run = run.max(set_up.bytes_of_run(MOST_HALVINGS)?);
         }
         // One for each unknown, and that of the drift of a record; with a further experiment and without.
         let regressions = 1 + set_up.unknowns.len();

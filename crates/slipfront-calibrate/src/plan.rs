@@ -5,9 +5,11 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 use slipfront_base::text::{COLUMNS, wrapped};
+use slipfront_case::case::PROGRAM;
 use slipfront_case::case_file::{CaseError, DriveSpeed, Override};
 use slipfront_study::StudyError;
 use slipfront_study::text_table::table;
+use slipfront_study::work_memory::WorkMemory;
 
 use crate::calibration::{Calibration, UNDETERMINED};
 use crate::file::{CalibrationFile, SampledRecord};
@@ -147,6 +149,20 @@ impl CalibrationFile {
         experiments.extend(self.others(&planned)?);
         let further = self.further(&planned)?;
         let possible = experiments.iter().filter(|(_, set_up)| set_up.is_ok()).count();
+        let mut run = 0.0_f64;
+        for set_up in experiments
+            .iter()
+            .flat_map(|(_, set_up)| set_up)
+            .chain(further.iter().map(|(_, set_up)| set_up))
+        {
+            run = run.max(set_up.bytes_of_run(0)?);
+        }
+        let memory = WorkMemory {
+            beside: PROGRAM,
+            pieces: vec![(run, usize::MAX)],
+        };
+        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
+        memory.check(rayon::current_num_threads(), no_memory)?;
         let mut maker = RunMaker::new(stop, RUNS * (possible + further.len()), watch);
         let mut train = |set_up: &SetUp| Training::run(&mut maker, CalibrationStage::Planning, set_up, RUNS);
         let mut found = Vec::new();

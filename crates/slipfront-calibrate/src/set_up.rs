@@ -159,15 +159,29 @@ impl SetUp {
         made(CaseFile::parse(&case.file.to_toml()?, "training", &set)?)
     }
 
-    /// Memory of the largest run, in bytes.
-    pub(crate) fn bytes_of_run(&self) -> Result<f64, CaseError> {
+    /// Whether random coefficients make curves of the same unknowns differ.
+    pub(crate) fn is_random(&self) -> Result<bool, CaseError> {
+        let middle = self.middle();
+        let coefficients = |seed: u64| {
+            let case = self.case(&middle, seed, &self.conditions[0])?;
+            let surface = &case.model.surface;
+            Ok::<_, CaseError>([
+                surface.mean_static_coefficient(),
+                surface.mean_kinetic_coefficient(),
+            ])
+        };
+        Ok(coefficients(1)? != coefficients(2)?)
+    }
+
+    /// Memory of the largest run at a time step that is halved this number of times, in bytes.
+    pub(crate) fn bytes_of_run(&self, halvings: u32) -> Result<f64, CaseError> {
         // Time, path and friction of every step, and a fourth number to spare.
         const STEP: f64 = 4.0 * size_of::<f64>() as f64;
         let middle = self.middle();
         let mut largest = 0.0_f64;
         for conditions in &self.conditions {
             let case = self.case(&middle, 0, conditions)?;
-            let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
+            let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end()) << halvings;
             largest = largest.max(case.budget.stepping() + STEP * steps as f64);
         }
         Ok(largest)
