@@ -384,9 +384,10 @@ fn lagged(y: &[f64], dt: f64, constant: f64) -> Vec<f64> {
 }
 
 fn running_mean(y: &[f64], width: usize) -> Vec<f64> {
+    // Before the drive begins there is no friction.
     let before = |i: usize| (i + 1).saturating_sub(width);
     (0..y.len())
-        .map(|i| y[before(i)..=i].iter().sum::<f64>() / (i + 1 - before(i)) as f64)
+        .map(|i| y[before(i)..=i].iter().sum::<f64>() / width as f64)
         .collect()
 }
 

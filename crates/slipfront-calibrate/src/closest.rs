@@ -45,7 +45,7 @@ const SEARCHES: usize = 5;
 const DRAFTS: usize = 24;
 
 /// Difference of a number of a search for a derivative, in units of the deviation from which it begins.
-const BESIDE: f64 = 0.05;
+const BESIDE: f64 = 0.02;
 
 /// Dampings of a step, as shares of the squares of the derivatives.
 const DAMPING: [f64; 3] = [1e-6, 0.1, 10.0];
