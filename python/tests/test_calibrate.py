@@ -74,7 +74,7 @@ def test_records_in_memory_share_their_runs() -> None:
     again = made.fit(record(), progress=lambda *now: shown.append(now))
     assert again.to_dict() == first.to_dict()
     # None of the training.
-    assert shown[-1] == (120 + 40, 160)
+    assert shown[-1] == (120 + 2 + 40, 162)
     with pytest.raises(LookupError, match="in memory"):
         _ = again.case
     copied = pickle.loads(pickle.dumps(again))
@@ -199,7 +199,7 @@ def test_an_instrument_stands_before_the_record(tmp_path: Path) -> None:
     unknowns = {"instrument.gain": (1, 3), "drive.stiffness_star": (0.3, 0.9)}
     case = {**SLIDER, "friction": {"sigma_static_star": 0, "sigma_kinetic_star": 0}}
     gain = sf.Calibration(case, unknowns, noise=0.01, runs=200, finer_runs=0, instrument={"offset": "0 N"})
-    series = sf.run(sf.Case(case).replace({"drive.stiffness_star": 0.7, "output.series": 1}), progress=False).series
+    series = sf.run(sf.Case(case).replace({"drive.stiffness_star": 0.7, "time.step": 0.0125, "output.series": 1}), progress=False).series
     force = 2 * np.asarray(series["friction_force_n"])
     force += np.random.default_rng(5).normal(0, 0.01 * force.mean(), len(force))
     found = gain.fit((series["time_s"], force), progress=False)

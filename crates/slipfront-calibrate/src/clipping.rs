@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Largest distance of the next value, in standard deviations of the noise: digits that are coarser than
 /// noise make equal values, too.
-const FINE: f64 = 0.5;
+const FINE: f64 = 2.0;
 
 /// Equal values at the end of a record's range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn whole_records_and_few_digits_are_not_clipped() {
         assert_eq!(clipped(noisy()), None);
-        for digit in [0.002, 0.01, 0.05] {
+        for digit in [0.002, 0.01, 0.02, 0.03, 0.05] {
             assert_eq!(clipped(noisy().map(|y| digit * (y / digit).round())), None);
         }
         // Steady sliding at one digit for ever.
