@@ -12,7 +12,7 @@ use crate::normals::{Stream, draws};
 use crate::predicted::apart;
 use crate::progress::CalibrationStage;
 use crate::runs::{RunMaker, Runs};
-use crate::set_up::{Curves, SetUp};
+use crate::set_up::{Curves, MOST_HALVINGS, SetUp};
 use crate::summaries::deviation;
 
 /// Number of the surface of the first run; all surfaces are alike.
@@ -34,11 +34,10 @@ const NEAR: f64 = 1.5;
 const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
 /// Differences of curves from those at the finest time step, in units of the noise, with which a step is fine
-/// enough; the number of points at which they are taken, and the halvings of the finest step. Slips begin at
-/// a step, so that a coarse one moves their phases.
+/// enough, and the number of points at which they are taken. Slips begin at a step, so that a coarse one
+/// moves their phases.
 const STEP_ERROR: f64 = 0.25;
 const STEP_POINTS: usize = 5;
-pub(crate) const MOST_HALVINGS: u32 = 5;
 
 /// Number of searches, and runs of a generation.
 const SEARCHES: usize = 5;
@@ -140,11 +139,7 @@ pub fn fine_enough(
         return Ok(None);
     }
     let points = &drawn[..drawn.len().min(STEP_POINTS)];
-    let finer = |halvings: u32| SetUp {
-        halvings: set_up.halvings + halvings,
-        ..set_up.clone()
-    };
-    let finest = finer(MOST_HALVINGS);
+    let finest = set_up.halved(MOST_HALVINGS);
     let of_finest = curves(&finest, points)?;
     let is_same = |(one, other): (&Curves, &Curves)| {
         let mut records = one.iter().zip(other).zip(&set_up.conditions);
@@ -152,8 +147,8 @@ pub fn fine_enough(
             apart(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
         })
     };
-    for halvings in 0..MOST_HALVINGS {
-        let coarse = finer(halvings);
+    for times in 0..MOST_HALVINGS {
+        let coarse = set_up.halved(times);
         if curves(&coarse, points)?.iter().zip(&of_finest).all(is_same) {
             return Ok(Some(coarse));
         }

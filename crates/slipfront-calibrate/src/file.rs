@@ -15,10 +15,9 @@ use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
 
-use crate::closest::MOST_HALVINGS;
 use crate::doubts::doubts;
 use crate::sample_points::SamplePoints;
-use crate::set_up::{Conditions, SetUp};
+use crate::set_up::{Conditions, MOST_HALVINGS, SetUp};
 use crate::summaries::{MIN_VALUES, n_summaries};
 use crate::unknowns::Unknown;
 use slipfront_study::StudyError;
@@ -453,8 +452,7 @@ impl CalibrationFile {
     /// # Errors
     /// When the ranges leave the bounds of the case, and with both figures of memory.
     pub fn check_memory(&self, records: &[SampledRecord], threads: usize) -> Result<(), StudyError> {
-        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
-        self.memory(records)?.check(threads, no_memory)
+        expect_memory(&self.memory(records)?, threads)
     }
 
     /// Memory of the calibration from these records.
@@ -570,6 +568,12 @@ impl Number {
             },
         }
     }
+}
+
+/// Refuses work of a calibration that there is no memory for, on this number of threads.
+pub(crate) fn expect_memory(memory: &WorkMemory, threads: usize) -> Result<(), StudyError> {
+    let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
+    memory.check(threads, no_memory)
 }
 
 #[cfg(test)]

@@ -90,10 +90,8 @@ impl FittedRecords {
         });
         let search = |fine| closest(maker, &fine, predicted.points(), &self.curves, noise);
         let clipped = || {
-            let records = records.iter().enumerate();
-            records
-                .filter_map(|(number, record)| Clipped::of(number, &record.measured))
-                .next()
+            let mut records = records.iter().enumerate();
+            records.find_map(|(number, record)| Clipped::of(number, &record.measured))
         };
         let check = RecordCheck {
             clipped: if set_up.has_range() { None } else { clipped() },
@@ -273,7 +271,7 @@ impl CalibrationFolder {
         let other = if halvings > 0 {
             set_up.clone()
         } else {
-            set_up.at_half_step()
+            set_up.halved(1)
         };
         let other = Predicted::run(maker, CalibrationStage::OtherStep, &other, points, noise)?;
         let (mut coarse, mut fine) = (&predicted.curves()[..AT_OTHER_STEP], other.curves());
@@ -320,15 +318,9 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<RecordCheck, StudyError> {
-        let Self {
-            kept,
-            file,
-            records,
-            set_up,
-            ..
-        } = self;
-        let CalibrationKeys { runs, noise, .. } = file.keys;
-        let maker = &mut RunMaker::new(stop, runs as usize + PREDICTED, watch).with(kept);
+        let CalibrationKeys { runs, noise, .. } = self.file.keys;
+        let (set_up, records) = (&self.set_up, &self.records);
+        let maker = &mut RunMaker::new(stop, runs as usize + PREDICTED, watch).with(&mut self.kept);
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs as usize)?;
         let told = FittedRecords::of(&training, set_up, records, noise);
         let (_, check) = told.check(set_up, records, noise, maker)?;

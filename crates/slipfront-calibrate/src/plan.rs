@@ -12,7 +12,7 @@ use slipfront_study::text_table::table;
 use slipfront_study::work_memory::WorkMemory;
 
 use crate::calibration::{Calibration, UNDETERMINED};
-use crate::file::{CalibrationFile, SampledRecord};
+use crate::file::{CalibrationFile, SampledRecord, expect_memory};
 use crate::findings::with_unit;
 use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::runs::RunMaker;
@@ -161,8 +161,7 @@ impl CalibrationFile {
             beside: PROGRAM,
             pieces: vec![(run, usize::MAX)],
         };
-        let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
-        memory.check(rayon::current_num_threads(), no_memory)?;
+        expect_memory(&memory, rayon::current_num_threads())?;
         let mut maker = RunMaker::new(stop, RUNS * (possible + further.len()), watch);
         let mut train = |set_up: &SetUp| Training::run(&mut maker, CalibrationStage::Planning, set_up, RUNS);
         let mut found = Vec::new();

@@ -13,6 +13,9 @@ use slipfront_study::Base;
 use slipfront_study::identity::physics;
 use slipfront_study::{StudyError, TrainingError};
 
+/// Number of times by which the time step of a case is halved at the most.
+pub(crate) const MOST_HALVINGS: u32 = 5;
+
 /// Conditions of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
@@ -101,10 +104,10 @@ impl SetUp {
         part
     }
 
-    /// The set-up at half the time step.
-    pub(crate) fn at_half_step(&self) -> Self {
+    /// The set-up with a time step that is halved this number of times.
+    pub(crate) fn halved(&self, times: u32) -> Self {
         Self {
-            halvings: self.halvings + 1,
+            halvings: self.halvings + times,
             ..self.clone()
         }
     }

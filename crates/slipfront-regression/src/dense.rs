@@ -347,7 +347,6 @@ fn distances<S: Simd>(simd: S, points: &[f64], others: &[f64], d: usize) -> Vec<
 mod tests {
     use super::*;
 
-    /// A^-1 of the second difference matrix of n rows has the diagonal i (n + 1 - i)/(n + 1), i from 1.
     /// A straight line through 1, 3 and 5 at 0, 1 and 2, and half of its slope where it is held back by as
     /// much as its square.
     #[test]
@@ -363,6 +362,7 @@ mod tests {
         assert_eq!(least_squares(&[vec![0.0; 3]], &[1.0; 3], 0.1), None);
     }
 
+    /// A^-1 of the second difference matrix of n rows has the diagonal i (n + 1 - i)/(n + 1), i from 1.
     #[test]
     fn second_differences_have_their_inverse() {
         for n in [1, 7, 8, 9, 21, 40] {
