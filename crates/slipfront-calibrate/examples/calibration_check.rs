@@ -29,7 +29,7 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use slipfront_calibrate::{
     Calibration, CalibrationStage, Clipped, Closest, Conditions, Predicted, RunMaker, SamplePoints, SetUp,
-    Training, Unknown, closest, fine_enough,
+    Training, Unknown, closest,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
@@ -43,8 +43,9 @@ use crate::velocity_steps::{KEYS, RANGES, SPACING, friction};
 /// Standard deviation of the noise, over the mean of friction.
 const NOISE: f64 = 0.01;
 
-/// Time step of the runs that become records.
-const RECORD_STEP: f64 = 0.01;
+/// Time step of the runs that become records. An experiment has none: this one is a twelfth of the finest of a
+/// calibration of these cases.
+const RECORD_STEP: f64 = 0.001;
 
 /// Runs that are drawn from an estimate.
 const PREDICTED: usize = 120;
@@ -209,12 +210,11 @@ impl Trained {
         let mut watch = |_: &_| {};
         let maker = &mut RunMaker::new(&go_on, 0, &mut watch);
         let stage = CalibrationStage::Prediction;
-        let fine = fine_enough(maker, set_up, &points, NOISE).map_err(failed)?;
-        let judged_by = fine.as_ref().unwrap_or(set_up);
-        let predicted = Predicted::run(maker, stage, judged_by, points.clone(), NOISE).map_err(failed)?;
+        let found = closest(maker, set_up, &points, &values, NOISE).map_err(failed)?;
+        let (of_step, closest) = found.unzip();
+        let judged_by = of_step.as_ref().unwrap_or(set_up);
+        let predicted = Predicted::run(maker, stage, judged_by, points, NOISE).map_err(failed)?;
         let comparison = predicted.compare(&values);
-        let search = |fine| closest(maker, &fine, &points, &values, NOISE).map_err(failed);
-        let closest = fine.map(search).transpose()?;
         let intervals = estimate
             .distributions
             .iter()
@@ -345,7 +345,6 @@ fn run(
 ) -> Result<(Vec<f64>, Vec<f64>), String> {
     let set_up = &experiment.set_up;
     let mut conditions = set_up.conditions[0].clone();
-    // An experiment has no steps.
     let fine = Override::new("time.step", &toml::Value::from(RECORD_STEP));
     conditions.overrides.push(fine);
     if let Change::Law(keys) = change {

@@ -117,48 +117,11 @@ impl Closest {
     }
 }
 
-/// The set-up with the largest time step whose curves are those of the finest one, but for less than the
-/// noise, where the unknowns determine a curve; none where random coefficients make curves of the same
-/// unknowns differ. `drawn` are points of the ranges, `noise` is that of a value of the records, as a share
-/// of their mean friction.
-///
-/// # Errors
-/// When a run cannot be made or kept, and after a stop.
-pub fn fine_enough(
-    maker: &mut RunMaker,
-    set_up: &SetUp,
-    drawn: &[Vec<f64>],
-    noise: f64,
-) -> Result<Option<SetUp>, StudyError> {
-    let mut curves = |set_up: &SetUp, points: &[Vec<f64>]| {
-        let runs = Runs::new(set_up, points, FIRST_SURFACE);
-        maker.curves(CalibrationStage::Closest, &runs)
-    };
-    let two_surfaces = curves(set_up, &[set_up.middle(), set_up.middle()])?;
-    if two_surfaces[0] != two_surfaces[1] {
-        return Ok(None);
-    }
-    let points = &drawn[..drawn.len().min(STEP_POINTS)];
-    let finest = set_up.halved(MOST_HALVINGS);
-    let of_finest = curves(&finest, points)?;
-    let is_same = |(one, other): (&Curves, &Curves)| {
-        let mut records = one.iter().zip(other).zip(&set_up.conditions);
-        records.all(|((one, other), conditions)| {
-            apart(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
-        })
-    };
-    for times in 0..MOST_HALVINGS {
-        let coarse = set_up.halved(times);
-        if curves(&coarse, points)?.iter().zip(&of_finest).all(is_same) {
-            return Ok(Some(coarse));
-        }
-    }
-    Ok(Some(finest))
-}
-
-/// Looks for the closest curve among those of the unknowns that an estimate has drawn, with a set-up that is
-/// [`fine_enough`]. A search ends where the differences are noise. `noise` is that of a value of the records,
-/// as a share of their mean friction.
+/// Looks for the closest curve among those of the unknowns that an estimate has drawn, where the unknowns
+/// determine a curve; none where random coefficients make curves of the same unknowns differ. Returns it with
+/// the set-up of its time step, which is that of the case for records that were computed at such steps, and
+/// otherwise a finer one. `drawn` are points of the ranges, `noise` is that of a value of the records, as a
+/// share of their mean friction.
 ///
 /// # Errors
 /// When a run cannot be made or kept, and after a stop.
@@ -168,7 +131,10 @@ pub fn closest(
     drawn: &[Vec<f64>],
     records: &[Vec<f64>],
     noise: f64,
-) -> Result<Closest, StudyError> {
+) -> Result<Option<(SetUp, Closest)>, StudyError> {
+    if set_up.is_random()? {
+        return Ok(None);
+    }
     let begin = |j: usize| {
         let values: Vec<f64> = drawn.iter().map(|point| point[j]).collect();
         [mean(&values), deviation(&values)]
@@ -179,25 +145,48 @@ pub fn closest(
         deviations: deviations
             .map(|(record, conditions)| conditions.grid.deviation(record, noise))
             .collect(),
-        maker,
         begin: (0..set_up.unknowns.len()).map(begin).collect(),
+        maker,
     };
-    let mut found = vec![search.from(set_up, 0)?];
-    let mut best = found[0];
-    for number in 1..SEARCHES {
-        if !best.is_refused() {
-            break;
+    let of_case = search.closest(set_up)?;
+    if of_case.is_refused() {
+        let fine = fine_enough(search.maker, set_up, drawn, noise)?;
+        if fine.halvings > set_up.halvings {
+            let found = search.closest(&fine)?;
+            return Ok(Some((fine, found)));
         }
-        let next = search.from(set_up, number)?;
-        if next.is_closer_than(&best) || !next.is_refused() {
-            best = next;
-        }
-        if found.iter().any(|before| next.agrees_with(before)) {
-            break;
-        }
-        found.push(next);
     }
-    Ok(best)
+    Ok(Some((set_up.clone(), of_case)))
+}
+
+/// The set-up with the largest time step whose curves are those of the finest one, but for less than the
+/// noise.
+fn fine_enough(
+    maker: &mut RunMaker,
+    set_up: &SetUp,
+    drawn: &[Vec<f64>],
+    noise: f64,
+) -> Result<SetUp, StudyError> {
+    let points = &drawn[..drawn.len().min(STEP_POINTS)];
+    let mut curves = |set_up: &SetUp| {
+        let runs = Runs::new(set_up, points, FIRST_SURFACE);
+        maker.curves(CalibrationStage::Closest, &runs)
+    };
+    let finest = set_up.halved(MOST_HALVINGS);
+    let of_finest = curves(&finest)?;
+    let is_same = |(one, other): (&Curves, &Curves)| {
+        let mut records = one.iter().zip(other).zip(&set_up.conditions);
+        records.all(|((one, other), conditions)| {
+            apart(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
+        })
+    };
+    for times in 0..MOST_HALVINGS {
+        let coarse = set_up.halved(times);
+        if curves(&coarse)?.iter().zip(&of_finest).all(is_same) {
+            return Ok(coarse);
+        }
+    }
+    Ok(finest)
 }
 
 /// Search for the closest curve.
@@ -220,6 +209,26 @@ struct Found {
 }
 
 impl Search<'_, '_> {
+    /// The closest curve of a set-up. Searches end where the differences are noise.
+    fn closest(&mut self, set_up: &SetUp) -> Result<Closest, StudyError> {
+        let mut found = vec![self.from(set_up, 0)?];
+        let mut best = found[0];
+        for number in 1..SEARCHES {
+            if !best.is_refused() {
+                break;
+            }
+            let next = self.from(set_up, number)?;
+            if next.is_closer_than(&best) || !next.is_refused() {
+                best = next;
+            }
+            if found.iter().any(|before| next.agrees_with(before)) {
+                break;
+            }
+            found.push(next);
+        }
+        Ok(best)
+    }
+
     /// The closest curve of the search of this number.
     fn from(&mut self, set_up: &SetUp, number: usize) -> Result<Closest, StudyError> {
         let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);

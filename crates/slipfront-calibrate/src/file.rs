@@ -12,6 +12,7 @@ use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::instrument::Instrument;
 use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
+use slipfront_run::names::RUN_JOURNAL;
 use slipfront_run::run_curve::steps_to;
 use toml::{Table, Value};
 
@@ -32,7 +33,7 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
     name: "calibration",
     table: "calibrate",
     file: "calibration.toml",
-    journal: "training.jsonl",
+    journal: RUN_JOURNAL,
 };
 
 /// Table of the file that describes the measuring chain.

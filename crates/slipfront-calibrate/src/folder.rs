@@ -1,4 +1,4 @@
-//! The results folder of a calibration: its file, copies of the records, the journal of training runs, and
+//! The results folder of a calibration: its file, copies of the records, the journal of runs, and
 //! the findings.
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use slipfront_run::measured::Measure;
 use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
 use crate::calibration::{Calibration, Estimate};
 use crate::clipping::Clipped;
-use crate::closest::{closest, fine_enough};
+use crate::closest::closest;
 use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
 use crate::findings::{
     CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
@@ -78,9 +78,9 @@ impl FittedRecords {
         maker: &mut RunMaker,
     ) -> Result<(Predicted, RecordCheck), StudyError> {
         let points = self.sample(PREDICTED);
-        let fine = fine_enough(maker, set_up, &points, noise)?;
+        let (of_step, closest) = closest(maker, set_up, &points, &self.curves, noise)?.unzip();
         let stage = CalibrationStage::Prediction;
-        let predicted = Predicted::run(maker, stage, fine.as_ref().unwrap_or(set_up), points, noise)?;
+        let predicted = Predicted::run(maker, stage, of_step.as_ref().unwrap_or(set_up), points, noise)?;
         let as_noisy = records.iter().zip(&self.curves).enumerate();
         let as_noisy = as_noisy.map(|(number, (record, curve))| {
             let missing = missing_noise(&record.measured, noise);
@@ -88,7 +88,6 @@ impl FittedRecords {
                 .grid
                 .noisy(curve, missing, normals(Stream::Missing, 0, number))
         });
-        let search = |fine| closest(maker, &fine, predicted.points(), &self.curves, noise);
         let clipped = || {
             let mut records = records.iter().enumerate();
             records.find_map(|(number, record)| Clipped::of(number, &record.measured))
@@ -97,7 +96,7 @@ impl FittedRecords {
             clipped: if set_up.has_range() { None } else { clipped() },
             misfit: self.estimate.misfit.clone(),
             comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
-            closest: fine.map(search).transpose()?,
+            closest,
         };
         Ok((predicted, check))
     }

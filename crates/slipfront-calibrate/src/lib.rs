@@ -34,7 +34,7 @@ mod unknowns;
 
 pub use calibration::{Calibration, Estimate, Pair};
 pub use clipping::Clipped;
-pub use closest::{Closest, closest, fine_enough};
+pub use closest::{Closest, closest};
 pub use file::{CalibrationFile, CalibrationKeys, SampledRecord};
 pub use folder::{CALIBRATIONS, CalibrationFolder};
 pub use intervals::Distribution;

@@ -37,7 +37,7 @@ fn a_calibration_is_told_and_found_again() {
     workspace.succeed("calibrate found/calibration.toml found/record-1.csv -o twice --threads 2 --quiet");
     let others = |folder: &str| {
         let mut files = workspace.files(folder);
-        files.retain(|name, _| name != "training.jsonl");
+        files.retain(|name, _| name != "runs.jsonl");
         files
     };
     assert!(others("found") == others("twice"));
@@ -84,7 +84,7 @@ fn a_planned_record_says_what_it_would_show() {
 fn another_record_needs_no_runs() {
     let workspace = workspace();
     workspace.succeed("calibrate fit.toml record.csv -o one --training runs --quiet");
-    let runs = workspace.read("runs/training.jsonl");
+    let runs = workspace.read("runs/runs.jsonl");
     workspace.write(
         "other.csv",
         workspace.read_text("record.csv").replace("e-6,", "e-6 ,"),
@@ -95,7 +95,7 @@ fn another_record_needs_no_runs() {
         "{}",
         stderr(&output)
     );
-    assert!(workspace.read("runs/training.jsonl") == runs);
+    assert!(workspace.read("runs/runs.jsonl") == runs);
     let said = workspace.fail("calibrate fit.toml other.csv -o one", 2);
     assert!(said.contains("holds another calibration"), "{said}");
 }
@@ -184,7 +184,7 @@ fn a_signal_keeps_what_was_run() {
     workspace.write("long.toml", FIT.replace("runs = 200\n", "runs = 5000\n"));
     let child = workspace.start("calibrate long.toml record.csv -o found");
     let has_runs =
-        || workspace.exists("found/training.jsonl") && !workspace.read("found/training.jsonl").is_empty();
+        || workspace.exists("found/runs.jsonl") && !workspace.read("found/runs.jsonl").is_empty();
     wait_for("some runs", has_runs);
     send(&child, "-INT");
     let output = child.wait_with_output().unwrap();

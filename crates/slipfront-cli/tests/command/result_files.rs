@@ -154,7 +154,7 @@ fn pipes_and_endless_files_end_no_verification() {
         (
             WRITERS[1].0,
             [
-                "training.jsonl",
+                "runs.jsonl",
                 "calibration.toml",
                 "checksums.json",
                 "record-1.csv",
@@ -274,7 +274,7 @@ fn journals_of_another_kind_are_refused() {
     let workspace = workspace();
     let kinds = [
         ("design", WRITERS[0].0, "design.jsonl"),
-        ("calibration", WRITERS[1].0, "training.jsonl"),
+        ("calibration", WRITERS[1].0, "runs.jsonl"),
         ("study", WRITERS[3].0, "runs.jsonl"),
     ];
     for (kind, line, _) in kinds {
@@ -345,7 +345,7 @@ fn waiting_for_training_runs_leaves_no_folder() {
     workspace.write("long.toml", FIT.replace("runs = 200\n", "runs = 5000\n"));
     let child = workspace.start("calibrate long.toml record.csv -o one --training runs");
     wait_for("training runs", || {
-        workspace.exists("runs/training.jsonl") && !workspace.read("runs/training.jsonl").is_empty()
+        workspace.exists("runs/runs.jsonl") && !workspace.read("runs/runs.jsonl").is_empty()
     });
     let said = workspace.fail("calibrate fit.toml record.csv -o two --training runs", 2);
     assert!(said.contains("another slipfront is running in runs"), "{said}");
