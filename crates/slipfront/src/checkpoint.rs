@@ -57,7 +57,32 @@ impl Checkpoint {
 impl Model {
     /// Number of columns of a checkpoint; a column holds one number per block.
     pub fn n_columns(&self) -> usize {
-        BlockColumn::ALL.len() + self.friction.n_columns()
+        BlockColumn::ALL.len() + self.friction.n_columns() + SheetColumn::ALL.len() * self.sheets.len()
+    }
+}
+
+/// A number that is kept of every block of a sheet above the lowest one, after the columns of the law of
+/// friction: all columns of one sheet, then those of the sheet above it. Velocities are those of the instant of
+/// [`BlockColumn::VelocityX`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SheetColumn {
+    DisplacementX,
+    DisplacementY,
+    VelocityX,
+    VelocityY,
+}
+
+impl SheetColumn {
+    pub(crate) const ALL: [Self; 4] = [
+        Self::DisplacementX,
+        Self::DisplacementY,
+        Self::VelocityX,
+        Self::VelocityY,
+    ];
+
+    /// All columns of so many sheets, with the number of the sheet, from 0 for the lowest above the lattice.
+    pub(crate) fn of_sheets(sheets: usize) -> impl Iterator<Item = (usize, Self)> {
+        (0..sheets).flat_map(|sheet| Self::ALL.map(|column| (sheet, column)))
     }
 }
 

@@ -9,6 +9,7 @@ use crate::drive::{Drive, Loading, Program};
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice, springs_on_a_lone_block};
+use crate::sheets::{self, Sheet};
 use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::length;
@@ -26,6 +27,8 @@ pub struct Model {
     pub rows: Range<usize>,
     /// Heterogeneous properties of the blocks of these rows.
     pub(crate) slider: Slider,
+    /// Sheets above the lattice, from the lowest on; none in the paper.
+    pub(crate) sheets: Vec<Sheet>,
     /// Friction of every block of these rows.
     pub surface: Surface,
     /// The drive of the slider.
@@ -71,6 +74,7 @@ impl Model {
             lattice,
             rows,
             slider: Slider::default(),
+            sheets: Vec::new(),
             surface,
             drive,
             damping,
@@ -87,6 +91,20 @@ impl Model {
     pub fn with_slider(self, slider: Slider) -> Self {
         slider.assert_fits(self.surface.n_blocks());
         Self { slider, ..self }
+    }
+
+    /// Returns the model with sheets above the lattice, from the lowest on. The drive springs pull the blocks
+    /// of the highest one.
+    ///
+    /// # Panics
+    /// If blocks differ, there are dampers between them, or the drive rotates: no sheet above has these.
+    pub fn with_sheets(self, sheets: Vec<Sheet>) -> Self {
+        let is_plain = self.slider == Slider::default() && self.drive.rotation.is_none();
+        assert!(
+            is_plain || sheets.is_empty(),
+            "a stack of sheets has equal blocks without dampers, and a drive that does not rotate"
+        );
+        Self { sheets, ..self }
     }
 
     /// Returns the model with the given loading of its drive.
@@ -109,6 +127,7 @@ impl Model {
             lattice: self.lattice,
             rows,
             slider: self.slider.of_some_blocks(&blocks),
+            sheets: self.sheets.clone(),
             surface: self.surface.of_some_blocks(&blocks),
             drive: self.drive.clone(),
             damping: self.damping,
@@ -122,6 +141,17 @@ impl Model {
         &self.slider
     }
 
+    /// Sheets above the lattice, from the lowest on.
+    pub fn sheets(&self) -> &[Sheet] {
+        &self.sheets
+    }
+
+    /// Stiffness of the spring through which the drive pulls a block where all blocks of a sheet move alike: of
+    /// the drive spring, and of the springs between sheets that follow it in series.
+    pub(crate) fn mount_stiffness(&self) -> f64 {
+        sheets::stiffness_in_series(&self.sheets, self.drive.k_drive)
+    }
+
     /// Number of blocks of the whole lattice that exist.
     pub fn n_blocks(&self) -> usize {
         self.slider.n_blocks(&self.lattice)
@@ -131,13 +161,13 @@ impl Model {
     /// with slip: the critical size of a long strip across the drive whose blocks have the mean strength of
     /// those in contact, on the mean drive spring `k_s`; without drive springs, where only some blocks have
     /// one. The size is infinite where the mount is stiff enough for slip of any size to be stable; there is
-    /// none under other laws.
+    /// none under other laws, and of a stack of sheets.
     ///
     /// ```text
     /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
     /// ```
     pub fn critical_size(&self) -> Option<f64> {
-        let weakening = self.weakening()?;
+        let weakening = self.weakening().filter(|_| self.sheets.is_empty())?;
         let mean_spring = self.slider.sum_of_drive_springs(&self.lattice) / self.n_blocks() as f64;
         // A stiff drive at an edge does not hold a patch far from it.
         let mount = if self.slider.drives_some {
@@ -182,9 +212,10 @@ impl Model {
     }
 
     /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this
-    /// one does, in which waiting times are counted: V* times `sum k_s/(k_2 N)`.
+    /// one does, in which waiting times are counted: V* times `sum k_s/(k_2 N)`, with the stiffness in series
+    /// of a stack of sheets.
     pub fn loading_speed(&self) -> f64 {
-        self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
+        self.drive.v_star * (self.mount_stiffness() * self.driven_share() / K_DRIVE)
     }
 
     /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in
@@ -209,7 +240,7 @@ impl Model {
     pub fn onset_estimate(&self, load_factor: f64) -> [f64; 2] {
         let speed = self.loading_speed();
         let late = ONSET_PATH * load_factor.max(1.0);
-        let lone = load_factor / (springs_on_a_lone_block(self.drive.k_drive) * K_DRIVE);
+        let lone = load_factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
         [lone.clamp(ONSET_PATH, late) / speed, late / speed]
     }
 
@@ -218,8 +249,8 @@ impl Model {
     /// times: of loading, 2.5/V* (Eq. 12), after which kinetic friction is measured; of a slip front across
     /// the slider, a block per t*; and of a swing of the slider on its drive springs.
     pub fn longest_fall(&self) -> f64 {
-        let k_drive = self.drive.k_drive;
-        let loading = ONSET_PATH / self.loading_speed() * self.friction.loading_delay(k_drive);
+        let delay = self.friction.loading_delay(self.mount_stiffness());
+        let loading = ONSET_PATH / self.loading_speed() * delay;
         loading.max(self.response_time())
     }
 
@@ -227,7 +258,7 @@ impl Model {
     /// the slider on its drive springs.
     fn response_time(&self) -> f64 {
         let front = self.lattice.nx.max(self.lattice.ny) as f64;
-        front.max(TAU / self.drive.k_drive.sqrt())
+        front.max(TAU * sheets::mass(&self.sheets).sqrt() / self.drive.k_drive.sqrt())
     }
 
     /// The longest time, in t*, for which a held drive stands still. Without damping, kinetic friction of R*
@@ -243,7 +274,7 @@ impl Model {
     pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
         let drag = self.damping * self.drive.steady_speed();
         let Some(rotation) = &self.drive.rotation else {
-            return drag * self.slider.mean_mass;
+            return drag * self.slider.mean_mass * sheets::mass(&self.sheets);
         };
         let torque = sum_over(ranks, self.surface.n_blocks(), |b| {
             if self.slider.exists(b) {
@@ -258,11 +289,11 @@ impl Model {
     /// Level of mu* in steady sliding at V*:
     ///
     /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i)
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i) (1 + sum h_k)
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// V* counts as 0 under a held drive; a coefficient that depends on the speed is taken at V*; for springs
+    /// The last factor is the mass of a stack of sheets of relative thickness h_k. V* counts as 0 under a held drive; a coefficient that depends on the speed is taken at V*; for springs
     /// in contact half the mean threshold stands for kinetic friction. All `ranks` of a lattice must call
     /// this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
@@ -292,9 +323,10 @@ impl Model {
     /// ```
     ///
     /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
-    /// this time, `path(t) = V* t*`. All `ranks` of a lattice must call this together.
+    /// this time, `path(t) = V* t*`. Of a stack of sheets, with its stiffness in series, it is that of slow
+    /// loading: the sheets above swing about it. All `ranks` of a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
-        let (k_drive, v_star) = (self.drive.k_drive, self.drive.v_star);
+        let (k_drive, v_star) = (self.mount_stiffness(), self.drive.v_star);
         let pull =
             |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
         if self.drive.rotation.is_none() {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::checkpoint::{BlockColumn, Checkpoint};
+use crate::checkpoint::{BlockColumn, Checkpoint, SheetColumn};
 use crate::clock::{Clock, Rest};
 use crate::communicator::{Communicator, lowest_rank};
 use crate::error::RunError;
@@ -126,8 +126,8 @@ impl Simulation {
     }
 
     /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the number
-    /// of the column, the first block, and the values. The columns are [`BlockColumn::ALL`] and those of the
-    /// law of friction, together [`Model::n_columns`].
+    /// of the column, the first block, and the values. The columns are [`BlockColumn::ALL`], those of the law of
+    /// friction and those of the sheets above the lowest, together [`Model::n_columns`].
     ///
     /// # Errors
     /// Errors of `write`.
@@ -140,12 +140,22 @@ impl Simulation {
             engine.read_column(column, first, values);
             write(column as usize, first, values)
         })?;
-        (0..self.model.friction.n_columns()).try_for_each(|column| {
-            BlockColumn::for_each_part_of_one(self.model.surface.n_blocks(), |first, values| {
+        let n_blocks = self.model.surface.n_blocks();
+        let of_law = BlockColumn::ALL.len()..;
+        for (column, number) in (0..self.model.friction.n_columns()).zip(of_law) {
+            BlockColumn::for_each_part_of_one(n_blocks, |first, values| {
                 engine.read_memory(self.time_star(), column, first, values);
-                write(BlockColumn::ALL.len() + column, first, values)
-            })
-        })
+                write(number, first, values)
+            })?;
+        }
+        let of_sheets = BlockColumn::ALL.len() + self.model.friction.n_columns()..;
+        for ((sheet, column), number) in SheetColumn::of_sheets(self.model.sheets.len()).zip(of_sheets) {
+            BlockColumn::for_each_part_of_one(n_blocks, |first, values| {
+                engine.read_sheet(sheet, column, first, values);
+                write(number, first, values)
+            })?;
+        }
+        Ok(())
     }
 
     /// Steps until `stop`, and shows every instant, including the last, to the observers that are due. All
@@ -285,6 +295,11 @@ impl Simulation {
     /// Displacements now, velocities half a step later.
     pub fn state(&self) -> State {
         self.engine.state()
+    }
+
+    /// Displacements now, velocities half a step later, of the sheets above the lattice.
+    pub fn sheets(&self) -> Vec<State> {
+        self.engine.sheets()
     }
 
     /// The first peak of mu* as far as it is known by now.

@@ -1,9 +1,10 @@
 //! The largest time step with which a slider is stable.
 
 use crate::communicator::Communicator;
-use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
+use crate::lattice::{Bond, K_DRIVE, OMEGA_MAX_SQUARED, dt_star_limit};
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::sheets::largest_eigenvalue;
 use crate::slider::Slider;
 
 /// Largest stable time step of a block, from the largest eigenvalue `springs` of
@@ -30,13 +31,22 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
     4.0 / (lag + (lag * lag + 4.0 * all).sqrt())
 }
 
+/// Largest eigenvalue of the springs of a block to its neighbours, `2 sum_j k_ij e_ij e_ij^T/m`, of a block in
+/// the middle of equal ones.
+const SPRINGS_OF_A_BLOCK: f64 = OMEGA_MAX_SQUARED - K_DRIVE;
+
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
-    /// [`dt_star_limit`], the bound of the paper's slider. Friction and damping do not lower it. All `ranks`
+    /// [`dt_star_limit`], the bound of the paper's slider; of a stack of sheets that of equal blocks held by the
+    /// springs between the sheets. Friction and damping do not lower it. All `ranks`
     /// of a lattice must call this together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = self.friction.contact_stiffness();
+        if !self.sheets.is_empty() {
+            let held = largest_eigenvalue(&self.sheets, self.drive.k_drive, contact);
+            return stable_step(SPRINGS_OF_A_BLOCK, held, 0.0).min(dt_star_limit());
+        }
         let is_plain = self.slider == Slider::default() && contact == 0.0;
         if is_plain && self.drive.k_drive <= K_DRIVE {
             return dt_star_limit();

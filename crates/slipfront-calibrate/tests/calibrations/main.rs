@@ -358,11 +358,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     // Runs that another folder keeps are the same ones.
     let shared = folder.path().join("shared");
     fs::create_dir(&shared).unwrap();
-    fs::copy(
-        folder.path().join("whole/runs.jsonl"),
-        shared.join("runs.jsonl"),
-    )
-    .unwrap();
+    fs::copy(folder.path().join("whole/runs.jsonl"), shared.join("runs.jsonl")).unwrap();
     let mut sharing = open("sharing", Some(&shared));
     let known = sharing.n_kept();
     find(&mut sharing, 2).unwrap();

@@ -518,7 +518,12 @@ fn is_viscous(file: &CaseFile) -> bool {
 
 /// The kernel that computes the model of a case file.
 fn kernel(file: &CaseFile, friction: &Friction) -> Kernel {
-    Kernel::default().for_law(friction, is_viscous(file), file.drive.motion == Motion::Rotation)
+    Kernel::default().for_law(
+        friction,
+        is_viscous(file),
+        file.drive.motion == Motion::Rotation,
+        false,
+    )
 }
 
 #[cfg(test)]

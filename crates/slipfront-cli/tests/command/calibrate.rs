@@ -183,8 +183,7 @@ fn a_signal_keeps_what_was_run() {
     let workspace = workspace();
     workspace.write("long.toml", FIT.replace("runs = 200\n", "runs = 5000\n"));
     let child = workspace.start("calibrate long.toml record.csv -o found");
-    let has_runs =
-        || workspace.exists("found/runs.jsonl") && !workspace.read("found/runs.jsonl").is_empty();
+    let has_runs = || workspace.exists("found/runs.jsonl") && !workspace.read("found/runs.jsonl").is_empty();
     wait_for("some runs", has_runs);
     send(&child, "-INT");
     let output = child.wait_with_output().unwrap();

@@ -153,12 +153,7 @@ fn pipes_and_endless_files_end_no_verification() {
         ),
         (
             WRITERS[1].0,
-            [
-                "runs.jsonl",
-                "calibration.toml",
-                "checksums.json",
-                "record-1.csv",
-            ],
+            ["runs.jsonl", "calibration.toml", "checksums.json", "record-1.csv"],
         ),
         (
             WRITERS[3].0,

@@ -23,6 +23,7 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
         stored.kinetic,
         stored.lattice,
         stored.drive_springs,
+        stored.between_sheets,
         simulation.contact_stress_max(),
         contact.spring_energy,
         contact.broken_energy,

@@ -4,7 +4,7 @@
 use slipfront::communicator::Alone;
 use slipfront::{
     Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model, RateAndState,
-    Rotation,
+    Rotation, Sheet,
 };
 use test_case::test_matrix;
 
@@ -20,6 +20,8 @@ enum Variety {
     RateAndState,
     Springs,
     Turns,
+    /// Two sheets above the lattice.
+    Stack,
     /// Moduli and densities that differ, and blocks that do not exist.
     Differ,
 }
@@ -43,7 +45,7 @@ fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
             Law(law) => slider.law = law,
             Differ => slider.body = varied(blocks[0] * blocks[1], true),
             Viscous => (slider.body.viscosity_time, slider.dt_star) = (0.2, 0.05),
-            Ages | RateState | Springs | Turns => {}
+            Ages | RateState | Springs | Turns | Stack => {}
         }
     }
     slider
@@ -83,16 +85,20 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
                 let turned = Rotation::about_centroid(&model.lattice, &model.rows, model.slider(), ranks);
                 model.drive.rotation = Some(turned);
             }
+            Stack => {
+                let sheet = |thickness, coupling| Sheet { thickness, coupling };
+                *model = model.clone().with_sheets(vec![sheet(2.0, 1.5), sheet(7.0, 0.4)]);
+            }
         }
     }
 }
 
-use Variety::{Ages, Differ, Law, RateAndState as RateState, Springs, Turns, Viscous};
+use Variety::{Ages, Differ, Law, RateAndState as RateState, Springs, Stack, Turns, Viscous};
 
 #[test_matrix(
     [
         &[Law(FrictionLaw::Reversal)], &[Law(FrictionLaw::Literal), Differ], &[Viscous], &[Ages], &[RateState],
-        &[Springs], &[Turns], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
+        &[Springs], &[Turns], &[Stack], &[Stack, RateState], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
         &[Springs, Turns, Differ]
     ],
     [Edges::Free, Edges::Periodic]
@@ -105,7 +111,7 @@ fn the_same_bits_over_ranks(options: &'static [Variety], edges: Edges) {
     assert_same_with(&slider, &change, Some(&from), 100);
 }
 
-#[test_matrix([&[Viscous, Differ, Ages], &[RateState], &[Springs, Turns]])]
+#[test_matrix([&[Viscous, Differ, Ages], &[RateState], &[Springs, Turns], &[Stack, Ages]])]
 fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_goes_on(&slider(BLOCKS, Edges::Free, options), &change);
@@ -113,7 +119,8 @@ fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
 
 #[test_matrix(
     [
-        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Viscous, Differ, Turns],
+        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Stack, Springs],
+        &[Viscous, Differ, Turns],
         &[Viscous, Differ, RateState], &[Springs, Turns, Differ]
     ],
     [Edges::Free, Edges::Periodic]
@@ -126,7 +133,7 @@ fn the_same_bits_over_threads(options: &'static [Variety], edges: Edges) {
     assert_same_bits(&model, slider.dt_star, Some(&from), 30);
 }
 
-#[test_matrix([&[Viscous, Differ, Turns], &[RateState]], [Edges::Free, Edges::Periodic])]
+#[test_matrix([&[Viscous, Differ, Turns], &[RateState], &[Stack]], [Edges::Free, Edges::Periodic])]
 fn the_same_bits_over_threads_of_ranks(options: &'static [Variety], edges: Edges) {
     // Three bands on each of the three ranks that have two threads: one has bands alone beside it.
     let blocks = [40, 240];

@@ -11,7 +11,7 @@ use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
     Ageing, ContactSprings, Coulomb, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Kernel, Loading,
-    Model, Outline, Program, RateAndState, Rotation, Simulation, SlipWeakening, Snapshot, State, Stop,
+    Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, SlipWeakening, Snapshot, State, Stop,
     Surface, VectorField, Weakening, scales,
 };
 
@@ -28,6 +28,8 @@ struct Options {
     friction: Friction,
     /// Moduli, densities and pressures, block by block.
     graded: [bool; 3],
+    /// Sheets above the lattice, for equal blocks.
+    sheets: Vec<Sheet>,
     outline: bool,
     attached: Option<Edge>,
     viscosity_time: f64,
@@ -106,6 +108,7 @@ prop_compose! {
         friction in friction(),
         graded in any::<[bool; 3]>(),
         outline in any::<bool>(),
+        sheets in prop_oneof![2 => Just(Vec::new()), 1 => prop::collection::vec(sheet(), 1..4)],
         attached in prop::option::of(prop::sample::select(vec![Edge::Left, Edge::Right, Edge::Bottom, Edge::Top])),
         viscosity_time in prop_oneof![3 => Just(0.0), 1 => 0.01..1.0],
         program in prop::option::of(prop::collection::vec((-1.0..1.0, 1..20_u32), 1..4)),
@@ -118,10 +121,14 @@ prop_compose! {
         follows in any::<bool>(),
     ) -> Options {
         Options {
-            friction, graded, outline, attached, viscosity_time, program, rotates, held, k_drive, constant_force, mu_static_mean,
+            friction, graded, outline, sheets, attached, viscosity_time, program, rotates, held, k_drive, constant_force, mu_static_mean,
             start, follows,
         }
     }
+}
+
+fn sheet() -> impl Strategy<Value = Sheet> {
+    (0.2..10.0, 0.05..5.0).prop_map(|(thickness, coupling)| Sheet { thickness, coupling })
 }
 
 /// Numbers from `low` to `high`, one for each block.
@@ -144,20 +151,24 @@ impl Setting {
     /// The setting of a slider with options; none where nothing is in contact.
     fn new(slider: &Slider, options: &Options) -> Option<Self> {
         let (lattice, seed) = (slider.lattice(), slider.seed);
+        let is_stack = !options.sheets.is_empty();
         let n = lattice.n_blocks();
         let given = |number: usize, low, high| {
-            options.graded[number].then(|| spread(n, seed.wrapping_add(number as u64), low, high))
+            (options.graded[number] && (number == 2 || !is_stack))
+                .then(|| spread(n, seed.wrapping_add(number as u64), low, high))
         };
         let exists: Vec<bool> = spread(n, seed.wrapping_add(3), 0.0, 1.0)
             .iter()
             .map(|&x| x > 0.2)
             .collect();
-        let outline = options.outline.then(|| Outline::new(exists, &Alone));
+        let outline = (options.outline && !is_stack).then(|| Outline::new(exists, &Alone));
         let mut body = slipfront::Slider::new(given(0, 0.25, 1.0), given(1, 0.5, 2.0), outline, &Alone);
-        if let Some(edge) = options.attached {
+        if let Some(edge) = options.attached.filter(|_| !is_stack) {
             body.attach_edge(&lattice, &(0..lattice.ny), edge, &Alone);
         }
-        body.viscosity_time = options.viscosity_time;
+        if !is_stack {
+            body.viscosity_time = options.viscosity_time;
+        }
         let mut contact = Contact {
             mu_static_mean: options.mu_static_mean,
             ..slider.contact(0..lattice.ny)
@@ -173,7 +184,7 @@ impl Setting {
         };
         let damping = scales::damping(slider.omega_star);
         let mut model = Model::new(lattice, surface, drive, damping, slider.epsilon, options.friction);
-        model = model.with_slider(body);
+        model = model.with_slider(body).with_sheets(options.sheets.clone());
         let dt = slider.dt_star * model.stable_step_limit(&Alone);
         if let Some(parts) = &options.program {
             let mut steps = 0;
@@ -184,7 +195,7 @@ impl Setting {
             model.drive.program = Some(Arc::new(Program::new(segments)));
         }
         // A single block has no arm.
-        if options.rotates && model.n_blocks() > 1 {
+        if options.rotates && model.n_blocks() > 1 && !is_stack {
             let rotation = Rotation::about_centroid(&lattice, &model.rows, model.slider(), &Alone);
             model.drive.rotation = Some(rotation);
         }
@@ -202,7 +213,7 @@ impl Setting {
     }
 
     /// All options, and whether this setting uses them.
-    fn options(&self) -> [(&'static str, bool); 34] {
+    fn options(&self) -> [(&'static str, bool); 35] {
         let (model, body) = (&self.model, self.model.slider());
         let coulomb = match model.friction {
             Friction::Coulomb(coulomb) => Some(coulomb),
@@ -234,6 +245,7 @@ impl Setting {
             ("periodic edges", model.lattice.edges.contains(&Edges::Periodic)),
             ("chain", model.lattice.ny == 1),
             ("outline", body.outline.is_some()),
+            ("stack of sheets", !model.sheets().is_empty()),
             ("moduli", body.stiffness.is_some()),
             ("densities", body.density.is_some()),
             ("viscosity", body.viscosity_time > 0.0),
@@ -320,7 +332,7 @@ impl Tolerance {
     /// last place of the largest: 32 last places. In a step a velocity changes by it times dt/(m c_+), and so
     /// does what is lost of it to the next; in n steps that begin where the one before has ended, velocities
     /// gather n such errors and displacements n^2, since no law that is followed so amplifies them.
-    fn new(setting: &Setting, state: &State, step: u64) -> Self {
+    fn new(setting: &Setting, state: &State, sheets: &[State], step: u64) -> Self {
         let (model, slider) = (&setting.model, setting.model.slider());
         let blocks = || (0..model.lattice.n_blocks()).filter(|&b| slider.exists(b));
         let most = |values: &VectorField| {
@@ -330,17 +342,26 @@ impl Tolerance {
                 .chain(&values.y)
                 .fold(0.0_f64, |most, x| most.max(x.abs()))
         };
-        let lightest = blocks().map(|b| slider.mass(b)).fold(f64::INFINITY, f64::min);
-        let heaviest = blocks().map(|b| slider.mass(b)).fold(0.0, f64::max);
+        let thickness = model.sheets().iter().map(|sheet| sheet.thickness);
+        let masses = || blocks().map(|b| slider.mass(b)).chain(thickness.clone());
+        let lightest = masses().fold(f64::INFINITY, f64::min);
+        let heaviest = masses().fold(0.0, f64::max);
         let threshold = |b: usize| {
             let surface = &model.surface;
             surface.normal_force(b) + surface.static_limit(b) + surface.kinetic_force(b)
         };
         let bears = blocks().map(threshold).fold(0.0, f64::max);
-        let (distance, speed) = (most(&state.displacement), most(&state.velocity));
+        let states = || sheets.iter().chain([state]);
+        let distance = states()
+            .map(|state| most(&state.displacement))
+            .fold(0.0, f64::max);
+        let speed = states().map(|state| most(&state.velocity)).fold(0.0, f64::max);
         let path = model.drive.farthest_path(step as f64 * setting.dt);
-        // All springs of a block together are less stiff than 10, and dampers than that times their time.
-        let springs = 10.0 * (distance + path + slider.viscosity_time * speed) + 1.0;
+        // All springs of a block together are less stiff than 10, in a sheet by its thickness, and those to
+        // other sheets add their stiffness at both ends; dampers are less stiff than 10 times their time.
+        let couplings = model.sheets().iter().map(|sheet| 2.0 * sheet.coupling);
+        let stiffness = 10.0 * thickness.clone().fold(1.0, f64::max) + couplings.sum::<f64>();
+        let springs = stiffness * (distance + path + slider.viscosity_time * speed) + 1.0;
         let inertia = (1.0 + model.damping * setting.dt) * speed / setting.dt;
         let largest = springs + bears + heaviest * inertia;
         let steps = if setting.takes_single_steps() {
@@ -354,10 +375,10 @@ impl Tolerance {
         // stretched as far as blocks may have moved since displacements were measured, which is done every 16
         // steps.
         let gap = distance + path + 2.0 * 16.0 * setting.dt * speed;
-        let highest = speed + (10.0 * gap + bears) * setting.dt / lightest;
+        let highest = speed + (stiffness * gap + bears) * setting.dt / lightest;
         let powers = heaviest * (1.0 + model.damping * setting.dt) / setting.dt * highest * highest;
-        let potentials = 10.0 * gap * gap;
-        let n = model.n_blocks() as f64;
+        let potentials = stiffness * gap * gap;
+        let n = (model.n_blocks() * (1 + sheets.len())) as f64;
         Self {
             force,
             velocity,
@@ -396,7 +417,7 @@ fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult
     for step in 0..=STEPS {
         if step > 0 {
             if setting.takes_single_steps() {
-                reference.move_to(&simulation.state());
+                reference.move_to(&simulation.state(), &simulation.sheets());
             }
             let before = reference.slides.clone();
             // Where rounding decides what slides, it decides whether the drive stands, too.
@@ -415,7 +436,10 @@ fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult
         prop_assert!(ended.is_ok(), "{:?}", ended);
         largest_stress = largest_stress.max(reference.largest_contact_stress());
         let state = simulation.state();
-        let (now, tolerance) = (simulation.snapshot(), Tolerance::new(setting, &state, step));
+        let (now, tolerance) = (
+            simulation.snapshot(),
+            Tolerance::new(setting, &state, &simulation.sheets(), step),
+        );
         energy_tolerance += tolerance.energy;
         let tolerance = Tolerance {
             energy: energy_tolerance,
@@ -549,6 +573,11 @@ fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) ->
             "drive energy",
             energies.stored.drive_springs,
             reference.drive_energy(),
+        ),
+        (
+            "energy between sheets",
+            energies.stored.between_sheets,
+            reference.energy_between_sheets(),
         ),
         (
             "contact energy",

@@ -31,16 +31,16 @@ pub(crate) struct Losses {
 
 impl Reference<'_> {
     /// Velocity of block `b` at t_n, the mean of the half steps around it.
-    fn velocity_now(&self, b: usize) -> Vector {
+    pub(super) fn velocity_now(&self, b: usize) -> Vector {
         times(0.5, sum(self.velocity_before[b], self.velocity[b]))
     }
 
     /// Pull of the drive spring of block `b`, without the constant force.
     fn pull(&self, b: usize) -> Vector {
-        difference(self.force_drive[b], self.blocks[b].constant_force)
+        difference(self.drive_force(b), self.blocks[b].constant_force)
     }
 
-    fn sum_over(&self, of_block: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn sum_over(&self, of_block: impl Fn(usize) -> f64) -> f64 {
         (0..self.blocks.len()).map(of_block).sum()
     }
 
@@ -98,13 +98,15 @@ impl Reference<'_> {
         self.sum_over(|b| {
             let mean = 0.5 * (square(self.velocity_before[b]) + square(self.velocity[b]));
             0.5 * self.blocks[b].mass * mean
-        })
+        }) + 0.5 * self.sheets_m_v_squared(true)
     }
 
-    /// Energy of the springs between blocks, `k_ij (r_ij - d_ij)^2/2`.
+    /// Energy of the springs between blocks of all sheets, `k_ij (r_ij - d_ij)^2/2`.
     pub(crate) fn lattice_energy(&self) -> f64 {
         let epsilon = self.model.epsilon;
-        self.sum_over(|b| elastic_energy(b, &self.blocks[b].springs, &self.displacement, epsilon))
+        let lowest =
+            self.sum_over(|b| elastic_energy(b, &self.blocks[b].springs, &self.displacement, epsilon));
+        lowest + self.sheets_lattice_energy()
     }
 
     /// Energy of the drive springs, `k_s,i (X g_i - u_i)^2/2`.
@@ -112,7 +114,7 @@ impl Reference<'_> {
         let path = drive::path(self.model, self.drive_time());
         self.sum_over(|b| {
             let block = &self.blocks[b];
-            let stretch = difference(times(path, block.direction), self.displacement[b]);
+            let stretch = difference(times(path, block.direction), self.pulled_displacement(b));
             0.5 * block.drive_stiffness * dot(stretch, stretch)
         })
     }
@@ -152,9 +154,9 @@ impl Reference<'_> {
         };
         Powers {
             pull: self.sum_over(|b| dot(self.pull(b), self.blocks[b].direction)),
-            constant_force: self.sum_over(|b| dot(self.blocks[b].constant_force, self.velocity_now(b))),
+            constant_force: self.sum_over(|b| dot(self.blocks[b].constant_force, self.pulled_velocity(b))),
             friction: if is_stored { 0.0 } else { self.sum_over(friction) },
-            damping: self.sum_over(damping),
+            damping: self.sum_over(damping) + self.model.damping * self.sheets_m_v_squared(false),
             viscosity: self.sum_over(|b| -dot(self.force_dampers[b], self.velocity_now(b))),
         }
     }

@@ -11,6 +11,7 @@ mod lattice;
 mod load;
 mod measure;
 mod rate_and_state;
+mod sheets;
 mod springs;
 mod step;
 mod vector;
@@ -75,7 +76,9 @@ pub(crate) struct Reference<'a> {
     velocity_before: Vec<Vector>,
     /// Velocities half a step after t_n.
     pub(crate) velocity: Vec<Vector>,
-    /// Drive forces `F_s` with the constant force.
+    /// Sheets above the lattice.
+    sheets: Vec<sheets::Blocks>,
+    /// Drive forces `F_s` with the constant force; of a stack the forces of the sheet above.
     pub(crate) force_drive: Vec<Vector>,
     /// Forces `F_v` of the dampers.
     force_dampers: Vec<Vector>,
@@ -138,6 +141,11 @@ impl<'a> Reference<'a> {
             displacement: zeros.clone(),
             velocity_before: zeros.clone(),
             velocity: zeros.clone(),
+            sheets: model
+                .sheets()
+                .iter()
+                .map(|sheet| sheets::Blocks::at_rest(*sheet, n))
+                .collect(),
             force_drive: zeros.clone(),
             force_dampers: zeros.clone(),
             force_lattice: zeros.clone(),
@@ -147,15 +155,18 @@ impl<'a> Reference<'a> {
             first_slips: vec![f64::NAN; n],
             losses: Losses::default(),
         };
-        reference.move_to(state);
+        reference.move_to(state, &[]);
         reference.velocity_before.clone_from(&reference.velocity);
         reference.evaluate();
         reference
     }
 
-    /// Puts blocks where a state has them; its velocities become those half a step after t_n. The memory
-    /// stays.
-    pub(crate) fn move_to(&mut self, state: &State) {
+    /// Puts blocks where a state and those of the sheets above have them; their velocities become those half
+    /// a step after t_n. The memory stays.
+    pub(crate) fn move_to(&mut self, state: &State, sheets: &[State]) {
+        for (blocks, state) in self.sheets.iter_mut().zip(sheets) {
+            blocks.move_to(state);
+        }
         let [u, v] = [&state.displacement, &state.velocity];
         for b in 0..self.blocks.len() {
             self.displacement[b] = [u.x[b], u.y[b]];
@@ -195,6 +206,7 @@ impl<'a> Reference<'a> {
             }
         }
         self.velocity_before.clone_from(&self.velocity);
+        self.sheets.iter_mut().for_each(|blocks| blocks.step(self.dt));
         self.evaluate();
     }
 
@@ -202,7 +214,7 @@ impl<'a> Reference<'a> {
     /// measures.
     fn evaluate(&mut self) {
         for b in 0..self.blocks.len() {
-            self.force_drive[b] = self.drive_force(b);
+            self.force_drive[b] = self.pull_on(None, b);
             self.force_dampers[b] = self.damper_force(b);
             self.force_lattice[b] = sum(self.elastic_force(b), self.force_dampers[b]);
         }
@@ -214,15 +226,8 @@ impl<'a> Reference<'a> {
                 self.first_slips[b] = self.time();
             }
         }
+        self.accelerate_sheets();
         self.add_losses();
-    }
-
-    /// Force of the drive spring (Eq. 2), and the constant force.
-    fn drive_force(&self, b: usize) -> Vector {
-        let (block, path) = (&self.blocks[b], drive::path(self.model, self.drive_time()));
-        let u = self.displacement[b];
-        let spring = drive::spring_force(block.drive_stiffness, path, block.direction, u);
-        sum(spring, block.constant_force)
     }
 
     /// Force of the springs between blocks (Eq. 3).

@@ -476,6 +476,7 @@ impl Fused {
             stretch_square += self.drive_springs * position * (position - 2.0 * mean);
         }
         Some(StoredEnergy {
+            between_sheets: 0.0,
             kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
             lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * K_STRAIGHT),
             drive_springs: 0.5 * step.k_drive * stretch_square.max(0.0),

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::drive::DrivenBlocks;
 use super::rows::Rows;
+use super::sheets::{self, UpperSheet};
 use super::springs::{damper_forces, lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::clock::Clock;
@@ -96,6 +97,8 @@ pub(super) struct Band {
     /// Displacements at t_n, velocities half a step later.
     pub(super) state: State,
     pub(super) forces: Forces,
+    /// The sheets above, which friction does not reach.
+    pub(super) sheets: Vec<UpperSheet>,
     /// Static thresholds `mu_s F_n`, as the law of friction has changed them since a block last slipped.
     static_limit: Vec<f64>,
     /// Kinetic friction `mu_k F_n`.
@@ -107,10 +110,11 @@ pub(super) struct Band {
     relative_springs: Option<[Vec<f64>; 4]>,
     dampers: Option<Dampers>,
     pub(super) sums: BandSums,
-    /// Sums of energies: kinetic half a step before and after, and of the drive springs.
-    pub(super) energy_sums: [RunningSum; 3],
-    /// Energies of the springs between blocks along each bond, one number per row.
-    pub(super) row_energies: [Vec<f64>; 4],
+    /// Sums of energies: kinetic half a step before and after, of the drive springs, and of the springs between
+    /// sheets.
+    pub(super) energy_sums: [RunningSum; 4],
+    /// Energies of the springs between blocks of each sheet along each bond, one number per row.
+    pub(super) row_energies: Vec<[Vec<f64>; 4]>,
     /// Number of blocks that slide, and of those among them that are in contact.
     pub(super) counts: [i64; 2],
     scratch: WeightedScratch,
@@ -138,6 +142,11 @@ impl Band {
                 slides: vec![false; n],
                 springs: bonds(),
             },
+            sheets: model
+                .sheets
+                .iter()
+                .map(|sheet| UpperSheet::new(model, *sheet))
+                .collect(),
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
@@ -173,6 +182,38 @@ impl Band {
                 self.move_blocks(model, &blocks);
             }
             self.rows.take_over(&self.state, &blocks);
+            for UpperSheet { rows, state, .. } in &mut self.sheets {
+                if moves {
+                    let State {
+                        displacement,
+                        velocity,
+                    } = state;
+                    move_blocks(displacement, velocity, &blocks, self.dt_star);
+                }
+                rows.take_over(state, &blocks);
+            }
+        }
+    }
+
+    /// The motion of the first and the last row of this band in all sheets, see [`Rows::read_ends`].
+    pub(super) fn read_ends(&self, ends: &mut [Vec<f64>; 2]) {
+        ends.iter_mut().for_each(Vec::clear);
+        self.rows.read_ends(&self.state, ends);
+        for UpperSheet { rows, state, .. } in &self.sheets {
+            rows.read_ends(state, ends);
+        }
+    }
+
+    /// Takes over the motion of the row below and of the row above in all sheets, see
+    /// [`read_ends`](Self::read_ends).
+    pub(super) fn set_beside(&mut self, ends: [&[f64]; 2]) {
+        let n_sheets = self.sheets.len() + 1;
+        let all = std::iter::once(&mut self.rows).chain(self.sheets.iter_mut().map(|sheet| &mut sheet.rows));
+        for (number, rows) in all.enumerate() {
+            rows.set_beside(ends.map(|row| {
+                let len = row.len() / n_sheets;
+                &row[number * len..(number + 1) * len]
+            }));
         }
     }
 
@@ -198,10 +239,14 @@ impl Band {
     /// Adds up the energies of the blocks and the drive springs, and finds those of the springs between
     /// blocks row by row, after the next velocities are known.
     #[inline(always)]
-    pub(super) fn add_energies(&mut self, model: &Model, drive_time_star: f64, sums: [RunningSum; 3]) {
+    pub(super) fn add_energies(&mut self, model: &Model, drive_time_star: f64, sums: [RunningSum; 4]) {
         self.energy_sums = sums;
-        let [before, after, drive_springs] = &mut self.energy_sums;
+        let [before, after, drive_springs, between_sheets] = &mut self.energy_sums;
         let displacement = &self.state.displacement;
+        let pulled = self
+            .sheets
+            .last()
+            .map_or(displacement, |sheet| &sheet.state.displacement);
         for blocks in parts(model) {
             let (n, scratch) = (blocks.len(), &mut self.scratch);
             let masses = masses(model, &blocks);
@@ -213,24 +258,34 @@ impl Band {
                 dot_products(velocity, velocity, &mut scratch.terms[..n]);
                 add_weighted(sum, &scratch.terms[..n], masses, &mut scratch.products);
             }
-            self.driven.add_squares(
-                model,
-                &blocks,
-                displacement,
-                drive_time_star,
-                drive_springs,
-                scratch,
-            );
+            for sheet in &self.sheets {
+                let velocities = sheet.velocities(&blocks).into_iter();
+                for (velocity, sum) in velocities.zip([&mut *before, &mut *after]) {
+                    sheet.add_velocity_square(&blocks, velocity, sum, scratch);
+                }
+            }
+            sheets::add_squares(&self.sheets, &blocks, displacement, between_sheets, scratch);
+            self.driven
+                .add_squares(model, &blocks, pulled, drive_time_star, drive_springs, scratch);
         }
         let relative = self.relative_springs.as_ref();
         let u = &self.rows.state(&self.state).displacement;
-        self.row_energies = row_energies(&self.rows, u, relative, model.epsilon, &mut self.scratch.terms);
+        let lowest = row_energies(&self.rows, u, relative, model.epsilon, &mut self.scratch.terms);
+        self.row_energies.clear();
+        self.row_energies.push(lowest);
+        for sheet in &self.sheets {
+            self.row_energies
+                .push(sheet.row_energies(model.epsilon, &mut self.scratch));
+        }
     }
 
     /// Makes the velocities of this step those of the step before, for the next step.
     pub(super) fn end_step(&mut self) {
         // Not earlier: sums and energies take the velocities on both sides of the instant.
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
+        for UpperSheet { state, velocity, .. } in &mut self.sheets {
+            std::mem::swap(&mut state.velocity, velocity);
+        }
     }
 
     /// Block `b` of these rows with the forces on it.
@@ -263,9 +318,9 @@ impl Band {
     fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, clock: &Clock) {
         let (time_star, drive_time_star) = (clock.time_star(), clock.drive_time_star());
         let displacement = &self.state.displacement;
+        let (upper, driven) = (&mut self.sheets, &self.driven);
         let drive = &mut self.forces.drive;
-        self.driven
-            .forces(model, blocks, displacement, drive_time_star, drive);
+        sheets::pull(upper, driven, model, blocks, displacement, drive_time_star, drive);
         let Forces { lattice, springs, .. } = &mut self.forces;
         let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
         let state = rows.state(&self.state);
@@ -276,6 +331,7 @@ impl Band {
         }
         // Decided outside of the loop: equal masses have one integrator, which no block divides anew.
         let integrator = Integrator::new(model.damping, self.dt_star);
+        sheets::accelerate(&mut self.sheets, model, blocks, &self.forces.drive, integrator);
         match masses(model, blocks) {
             None => self.apply_friction(blocks, |_| integrator, time_star, model),
             Some(masses) => {
@@ -328,30 +384,24 @@ impl Band {
     #[inline(always)]
     fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
         let (n, scratch) = (blocks.len(), &mut self.scratch);
-        let ([bx, by], [ax, ay]) = (
-            part(&self.state.velocity, blocks),
-            part(&self.forces.velocity, blocks),
-        );
-        let (bx, by, ax, ay) = (&bx[..n], &by[..n], &ax[..n], &ay[..n]);
+        let own = [&self.state.velocity, &self.forces.velocity].map(|v| part(v, blocks));
         // Taken out while sums are given the rest of the scratch arrays.
         let mut velocity = std::mem::take(&mut scratch.velocity);
-        let (vx, vy) = (&mut velocity.x[..n], &mut velocity.y[..n]);
-        for k in 0..n {
-            vx[k] = 0.5 * (bx[k] + ax[k]);
-            vy[k] = 0.5 * (by[k] + ay[k]);
-        }
-        let now = [&*vx, &*vy];
         let sums = Summed::from(self.sums.each_mut());
-        let (driven, displacement) = (&self.driven, &self.state.displacement);
-        driven.add(
-            model,
-            blocks,
-            part(displacement, blocks),
-            sums.displacement,
-            scratch,
-        );
+        let (mut displacement, mut pulled) = (&self.state.displacement, own);
+        for sheet in &self.sheets {
+            (displacement, pulled) = (&sheet.state.displacement, sheet.velocities(blocks));
+            let now = mean(pulled, &mut velocity, n);
+            sheet.add_velocity_square(blocks, now, sums.velocity_square, scratch);
+        }
+        let mut now = mean(pulled, &mut velocity, n);
+        let (driven, displacement) = (&self.driven, part(displacement, blocks));
+        driven.add(model, blocks, displacement, sums.displacement, scratch);
         driven.add(model, blocks, now, sums.velocity, scratch);
-        driven.add(model, blocks, [ax, ay], sums.velocity_after, scratch);
+        driven.add(model, blocks, pulled[1], sums.velocity_after, scratch);
+        if !self.sheets.is_empty() {
+            now = mean(own, &mut velocity, n);
+        }
         let masses = masses(model, blocks);
         dot_products(now, now, &mut scratch.terms[..n]);
         add_weighted(
@@ -395,6 +445,18 @@ impl Band {
         let largest = reductions::largest(n, |k| squares[k]);
         self.stress_square_max = self.stress_square_max.max(largest);
     }
+}
+
+/// Velocities of `n` blocks at t_n: means of those half a step before and after.
+#[inline(always)]
+fn mean<'a>([before, after]: [[&[f64]; 2]; 2], velocity: &'a mut VectorField, n: usize) -> [&'a [f64]; 2] {
+    let ([bx, by], [ax, ay]) = (before.map(|v| &v[..n]), after.map(|v| &v[..n]));
+    let (vx, vy) = (&mut velocity.x[..n], &mut velocity.y[..n]);
+    for k in 0..n {
+        vx[k] = 0.5 * (bx[k] + ax[k]);
+        vy[k] = 0.5 * (by[k] + ay[k]);
+    }
+    [vx, vy]
 }
 
 /// Masses of some blocks, for a heterogeneous slider.

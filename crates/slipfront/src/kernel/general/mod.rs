@@ -12,6 +12,7 @@
 mod band;
 mod drive;
 mod rows;
+mod sheets;
 mod springs;
 mod weighted;
 
@@ -25,7 +26,7 @@ use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::vectors;
-use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds, SheetColumn};
 use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::fixed_point::RunningSum;
@@ -55,7 +56,7 @@ pub(crate) struct General {
     /// Motion of the rows below and above this rank.
     beside: [Vec<f64>; 2],
     sums: BandSums,
-    energy_sums: [RunningSum; 3],
+    energy_sums: [RunningSum; 4],
     /// Power that the dampers take.
     viscous_power: f64,
     contact_totals: ContactTotals,
@@ -183,6 +184,14 @@ impl General {
                 Ok(())
             })?;
         }
+        let of_sheets = BlockColumn::ALL.len() + model.friction.n_columns()..;
+        for ((sheet, column), number) in SheetColumn::of_sheets(model.sheets.len()).zip(of_sheets) {
+            BlockColumn::for_each_part_of_one(n, |first, values| {
+                read(number, first, values)?;
+                kernel.write(first, values, |band| band.sheets[sheet].column_mut(column));
+                Ok(())
+            })?;
+        }
         for one in &mut kernel.bands {
             let (model, band) = one.with_model(model);
             band.resume(model);
@@ -218,7 +227,7 @@ impl General {
     /// Exchanges the motion of the rows beside every band.
     fn exchange(&mut self) {
         for (ends, one) in self.ends.iter_mut().zip(&self.bands) {
-            one.band.rows.read_ends(&one.band.state, ends);
+            one.band.read_ends(ends);
         }
         let (ends, last) = (&self.ends, self.ends.len() - 1);
         let to = [&*ends[0][0], &*ends[last][1]];
@@ -235,13 +244,13 @@ impl General {
             } else {
                 &ends[number + 1][0]
             };
-            one.band.rows.set_beside([below, above]);
+            one.band.set_beside([below, above]);
         }
     }
 
     /// Energies of all blocks, after their next velocities are known.
     fn stored_energy(&mut self, model: &Model, drive_time_star: f64) -> StoredEnergy {
-        let [before, after, drive_springs] = loop {
+        let [before, after, drive_springs, between_sheets] = loop {
             let sums = self.energy_sums;
             for_each_band(self.threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
@@ -254,14 +263,16 @@ impl General {
                 break found;
             }
         };
-        let along_bond = |bond: usize| {
-            let rows = self.bands.iter().map(|one| &*one.band.row_energies[bond]);
-            self.sum_rows(model, rows)
+        let along_bond = |(sheet, bond): (usize, usize)| {
+            let rows = self.bands.iter();
+            self.sum_rows(model, rows.map(|one| &*one.band.row_energies[sheet][bond]))
         };
+        let bonds = (0..=model.sheets.len()).flat_map(|sheet| (0..4).map(move |bond| (sheet, bond)));
         StoredEnergy {
             kinetic: 0.25 * (before + after),
-            lattice: (0..4).map(along_bond).sum(),
+            lattice: bonds.map(along_bond).sum(),
             drive_springs: 0.5 * model.drive.k_drive * drive_springs,
+            between_sheets: 0.5 * between_sheets,
         }
     }
 
@@ -389,6 +400,29 @@ impl Engine for General {
         state
     }
 
+    fn sheets(&self) -> Vec<State> {
+        let n = self.bands.last().map_or(0, |one| one.blocks.end);
+        let sheets = self.bands.first().map_or(0, |one| one.band.sheets.len());
+        let of_sheet = |sheet: usize| {
+            let mut state = State::at_rest(n);
+            for one in &self.bands {
+                let State {
+                    displacement,
+                    velocity,
+                } = &one.band.sheets[sheet].state;
+                for (to, from) in [
+                    (&mut state.displacement, displacement),
+                    (&mut state.velocity, velocity),
+                ] {
+                    to.x[one.blocks.clone()].copy_from_slice(&from.x);
+                    to.y[one.blocks.clone()].copy_from_slice(&from.y);
+                }
+            }
+            state
+        };
+        (0..sheets).map(of_sheet).collect()
+    }
+
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         self.read(first, values, |band| match column {
             BlockColumn::DisplacementX => &band.state.displacement.x,
@@ -422,6 +456,10 @@ impl Engine for General {
 
     fn contact_totals(&self, _: &Model) -> ContactTotals {
         self.contact_totals
+    }
+
+    fn read_sheet(&self, sheet: usize, column: SheetColumn, first: usize, values: &mut [f64]) {
+        self.read(first, values, |band| band.sheets[sheet].column(column));
     }
 
     fn read_memory(&self, _: f64, column: usize, first: usize, values: &mut [f64]) {

@@ -86,15 +86,14 @@ impl Rows {
         }
     }
 
-    /// The motion of the first and the last row of this band, one component after the other, for the bands
-    /// below and above; nothing where there is none.
+    /// Adds the motion of the first and the last row of this band to `ends`, one component after the other, for
+    /// the bands below and above; nothing where there is none.
     pub(super) fn read_ends(&self, own: &State, ends: &mut [Vec<f64>; 2]) {
         let Some(Beside { has, has_dampers, .. }) = &self.beside else {
             return;
         };
         let nx = self.lattice.nx;
         for ((end, first), has) in ends.iter_mut().zip([0, self.own.len() - nx]).zip(has) {
-            end.clear();
             if *has {
                 for values in fields(own, *has_dampers).flat_map(|field| [&field.x, &field.y]) {
                     end.extend_from_slice(&values[first..first + nx]);
