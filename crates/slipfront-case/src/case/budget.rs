@@ -502,11 +502,18 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
         Kernel::Fused if varies.contains(&true) || needs.varies => 22.0,
         Kernel::Fused => 10.0 + own,
         Kernel::General => {
-            29.0 + if blocks_differ { 9.0 } else { 0.0 } + if is_viscous(file) { 12.0 } else { 0.0 }
+            let of_sheets = NUMBERS_OF_SHEET * file.slider.n_sheets_above() as f64;
+            29.0 + if blocks_differ { 9.0 } else { 0.0 }
+                + if is_viscous(file) { 12.0 } else { 0.0 }
+                + of_sheets
         }
     };
     [3.0 + own, stepped + 2.0 * needs.columns as f64]
 }
+
+/// Numbers of a block in a sheet above the lowest: displacement, velocities before and after, force of the
+/// springs in the sheet, along each bond, and from above.
+const NUMBERS_OF_SHEET: f64 = 18.0;
 
 /// Ratio of the memory of the general kernel on several threads, each of which has the rows beside its own,
 /// to that on one.
@@ -522,7 +529,7 @@ fn kernel(file: &CaseFile, friction: &Friction) -> Kernel {
         friction,
         is_viscous(file),
         file.drive.motion == Motion::Rotation,
-        false,
+        file.slider.n_sheets_above() > 0,
     )
 }
 

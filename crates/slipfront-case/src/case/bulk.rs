@@ -8,8 +8,9 @@
 use std::f64::consts::TAU;
 
 use super::runnable::Case;
-use super::textures::arrays;
-use crate::case_file::{Attached, AttachedEdge, Shape, Texture};
+use super::stack::BulkBody;
+use super::textures::{pitch, regular_pitch};
+use crate::case_file::{Attached, AttachedEdge};
 use slipfront_base::number_format::with_si_prefix;
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
@@ -43,6 +44,11 @@ struct TextureLengths {
 }
 
 impl Case {
+    /// The bulk body that the slider is; none of a sheet, or where `slider.sheets` gives the stack.
+    pub fn bulk_body(&self) -> Option<BulkBody> {
+        BulkBody::of(&self.file, &self.scales)
+    }
+
     /// The critical size of slip in a bulk body on a rigid base in blocks, for a long strip across the drive,
     /// where strength falls with slip; none for a chain:
     ///
@@ -53,7 +59,11 @@ impl Case {
         let (model, scales) = (&self.model, &self.scales);
         // On a block it is w l^2 in units of E h.
         let weakening = model.weakening().filter(|weakening| *weakening > 0.0)?;
-        let blocks = STRIP * SHEAR / (1.0 - NU) / weakening * (scales.block_size / scales.thickness);
+        let of_sheet = SHEAR / (1.0 - NU);
+        let modulus = self
+            .bulk_body()
+            .map_or(of_sheet, |body| body.effective_modulus(1.0));
+        let blocks = STRIP * modulus / weakening * (scales.block_size / scales.thickness);
         (model.lattice.nx > 1 && model.lattice.ny > 1).then_some(blocks)
     }
 
@@ -129,37 +139,16 @@ impl Case {
     /// The smallest feature and pitch of all textures.
     fn texture_lengths(&self) -> TextureLengths {
         let textures = &self.file.texture;
-        let patterns: Vec<(f64, bool)> = textures
+        let (scales, lattice) = (&self.scales, &self.model.lattice);
+        let pitches = textures
             .iter()
-            .filter_map(|texture| self.pitch(texture))
-            .collect();
-        let pitch = patterns.iter().map(|(pitch, _)| *pitch).reduce(f64::min);
-        let feature = self.clearance().feature;
+            .filter_map(|texture| Some(pitch(texture, scales, lattice)?.0));
+        let in_metres = |blocks: f64| blocks * scales.block_size;
         TextureLengths {
-            feature: feature.map(|blocks| blocks * self.scales.block_size),
-            pitch,
-            is_regular: textures.len() == 1 && patterns.iter().all(|(_, fills)| *fills) && pitch.is_some(),
+            feature: self.clearance().feature.map(in_metres),
+            pitch: pitches.reduce(f64::min).map(in_metres),
+            is_regular: regular_pitch(textures, scales, lattice).is_some(),
         }
-    }
-
-    /// Pitch of the innermost array of a texture, and whether it is the only one and fills the slider.
-    fn pitch(&self, texture: &Texture) -> Option<(f64, bool)> {
-        let lattice = &self.model.lattice;
-        let arrays = arrays(&texture.pattern, &self.scales, lattice).ok()?;
-        let array = arrays.last()?;
-        // Copies of a groove lie in one direction.
-        let is_groove = matches!(texture.shape, Shape::Groove(_));
-        let repeated = (0..2).filter(|&axis| array.count[axis] > 1);
-        let pitch = repeated
-            .clone()
-            .map(|axis| array.spacing[axis])
-            .reduce(f64::max)?;
-        let sizes = [lattice.nx, lattice.ny];
-        let is_filled =
-            |axis: usize| array.spacing[axis] * (array.count[axis] + 1) as f64 > sizes[axis] as f64;
-        let is_regular =
-            arrays.len() == 1 && (0..2).all(|axis| is_filled(axis) && (array.count[axis] > 1 || is_groove));
-        Some((pitch * self.scales.block_size, is_regular))
     }
 }
 

@@ -8,6 +8,7 @@ use super::budget::Budget;
 use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::ranks::Ranks;
+use super::stack::Stack;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
 
@@ -56,15 +57,20 @@ impl Derived {
     }
 }
 
-/// Units of the dimensionless quantities of a case file.
+/// Units of the dimensionless quantities of a case file, with the thickness of the lowest sheet of a stack.
 pub fn scales(file: &CaseFile) -> Scales {
     let block_size = file.slider.block_size.si();
-    Scales {
+    let of_sheet = Scales {
         block_size,
         thickness: file.slider.thickness.as_ref().map_or(block_size, Length::si),
         young_modulus: file.slider.young_modulus.si(),
         density: file.slider.density.si(),
         pressure: file.load.pressure.si(),
         mu_static_mean: file.friction.mu_static,
+    };
+    let lowest = Stack::of(file, &of_sheet).map(|stack| stack.thickness[0]);
+    Scales {
+        thickness: lowest.unwrap_or(of_sheet.thickness),
+        ..of_sheet
     }
 }

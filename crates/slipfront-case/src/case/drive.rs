@@ -9,6 +9,7 @@ use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, 
 use super::files::Watch;
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
+use super::stack::Stack;
 use crate::case_file::{
     Attached, AutoOrStiffness, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
@@ -52,7 +53,8 @@ pub(super) fn attach(
     Ok(())
 }
 
-/// The drive of a slider. A total stiffness is shared by the driven blocks in proportion to their moduli.
+/// The drive of a slider. A total stiffness is shared by the driven blocks in proportion to their moduli; a
+/// stack of sheets has its own mount.
 pub(super) fn drive(
     file: &CaseFile,
     scales: &Scales,
@@ -61,20 +63,14 @@ pub(super) fn drive(
     slider: &Slider,
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
-    let key = match file.drive.stiffness {
-        DriveStiffness::Each(_) => "drive.stiffness",
-        DriveStiffness::EachStar(_) => "drive.stiffness_star",
-        DriveStiffness::PerArea(_) => "drive.stiffness_per_area",
-        DriveStiffness::Total(_) => "drive.total_stiffness",
-        DriveStiffness::TotalStar(_) => "drive.total_stiffness_star",
-    };
-    let k_drive = match total(file, scales) {
-        Some(total) => total / slider.sum_of_drive_springs(lattice),
-        None => each(file, scales),
+    let k_drive = match (Stack::of(file, scales), total(file, scales)) {
+        (Some(stack), _) => scales.stiffness_of_area(stack.mount()),
+        (None, Some(total)) => total / slider.sum_of_drive_springs(lattice),
+        (None, None) => each(file, scales),
     };
     within(
         file,
-        key,
+        &format!("drive.{}", file.drive.stiffness.key()),
         "the stiffness of a drive spring over E h",
         k_drive,
         1e-12..=1e6,

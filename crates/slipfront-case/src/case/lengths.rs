@@ -10,7 +10,7 @@ use slipfront::surface::{Clearance, clearance};
 use super::runnable::Case;
 use super::textures::outlines_in_blocks;
 use crate::case_file::{
-    Attached, AttachedEdge, AutoOrStiffness, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture,
+    Attached, AttachedEdge, AutoOrStiffness, Body, CaseFile, DriveStiffness, LengthOfABlock, Motion, Texture,
 };
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
@@ -47,7 +47,10 @@ impl CaseFile {
     /// Lengths of the material that equal the length of a block because no key gives them; they change with
     /// the blocks.
     pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
-        let thickness = self.slider.thickness.is_none().then_some(LengthOfABlock {
+        if self.slider.body == Body::Bulk {
+            return self.friction.lengths_of_a_block().collect();
+        }
+        let thickness = self.slider.thickness_is_a_block().then_some(LengthOfABlock {
             length: "the thickness of the sheet",
             key: "slider.thickness",
         });
@@ -167,11 +170,13 @@ impl Case {
             .collect()
     }
 
-    /// Whether every one of several blocks hangs on the drive by a spring of its own, in translation.
+    /// Whether every one of several blocks of a single sheet hangs on the drive by a spring of its own, in
+    /// translation.
     fn has_spring_on_every_block(&self) -> bool {
         let drive = &self.file.drive;
         let is_on_all = matches!(drive.attached, Attached::At(AttachedEdge::All));
-        is_on_all && drive.motion != Motion::Rotation && self.model.n_blocks() > 1
+        let is_sheet = self.model.sheets().is_empty();
+        is_sheet && is_on_all && drive.motion != Motion::Rotation && self.model.n_blocks() > 1
     }
 
     fn length(&self, name: &str, blocks: f64, enough: Option<f64>) -> CaseLength {

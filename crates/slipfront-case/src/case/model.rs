@@ -12,6 +12,7 @@ use super::files::Watch;
 use super::inputs::{Inputs, NamedFiles};
 use super::ranks::Ranks;
 use super::slider::GivenBlocks;
+use super::stack::Stack;
 use super::textures;
 use super::topography::Topography;
 use crate::case_file::{CaseError, CaseFile};
@@ -79,7 +80,8 @@ pub(super) fn make(
     )?;
     let (damping, friction) = (damping(groups.omega_star), derived.friction);
     let model = Model::of_rows(lattice, rows, surface, drive, damping, groups.epsilon, friction);
-    Ok((model.with_slider(slider), texture))
+    let sheets = Stack::of(file, scales).map_or(Vec::new(), |stack| stack.sheets(scales));
+    Ok((model.with_slider(slider).with_sheets(sheets), texture))
 }
 
 /// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.

@@ -47,9 +47,10 @@ impl Case {
         let blocks = self.other_blocks(finer)?;
         let scales = Scales {
             block_size: self.scales.block_size / finer,
-            thickness: match &self.file.slider.thickness {
-                Some(_) => self.scales.thickness,
-                None => self.scales.thickness / finer,
+            thickness: if self.file.slider.thickness_is_a_block() {
+                self.scales.thickness / finer
+            } else {
+                self.scales.thickness
             },
             ..self.scales
         };

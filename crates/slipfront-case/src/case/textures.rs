@@ -140,6 +140,31 @@ pub(super) fn outlines_in_blocks(
     file.texture.iter().filter_map(outline).collect()
 }
 
+/// Pitch in blocks of the innermost array of a texture, and whether it is the only one and fills the slider.
+pub(super) fn pitch(texture: &Texture, scales: &Scales, lattice: &Lattice) -> Option<(f64, bool)> {
+    let arrays = arrays(&texture.pattern, scales, lattice).ok()?;
+    let array = arrays.last()?;
+    // Copies of a groove lie in one direction.
+    let is_groove = matches!(texture.shape, Shape::Groove(_));
+    let repeated = (0..2).filter(|&axis| array.count[axis] > 1);
+    let pitch = repeated
+        .clone()
+        .map(|axis| array.spacing[axis])
+        .reduce(f64::max)?;
+    let sizes = [lattice.nx, lattice.ny];
+    let is_filled = |axis: usize| array.spacing[axis] * (array.count[axis] + 1) as f64 > sizes[axis] as f64;
+    let is_regular =
+        arrays.len() == 1 && (0..2).all(|axis| is_filled(axis) && (array.count[axis] > 1 || is_groove));
+    Some((pitch, is_regular))
+}
+
+/// Pitch in blocks of textures that are one array which fills the slider.
+pub(super) fn regular_pitch(textures: &[Texture], scales: &Scales, lattice: &Lattice) -> Option<f64> {
+    let [texture] = textures else { return None };
+    let (pitch, is_regular) = pitch(texture, scales, lattice)?;
+    is_regular.then_some(pitch)
+}
+
 /// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one
 /// over a place of it. An error consists of the key, within the texture, and the sentence.
 pub(super) fn arrays(

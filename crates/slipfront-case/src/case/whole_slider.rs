@@ -91,6 +91,7 @@ impl Case {
             && load.profile.is_none()
             && load.pressure_field.is_none()
             && *model.slider() == Slider::default()
+            && model.sheets().is_empty()
             && model.drive.program.is_none()
             && !model.drive.is_held()
             && drive.motion == Motion::Translation

@@ -11,7 +11,7 @@ use super::key::{
 use super::probe::names_of;
 use super::slider::Slider;
 use super::values::word;
-use super::words::{AttachedEdge, Loading, Motion, Outline};
+use super::words::{AttachedEdge, Body, Loading, Motion, Outline};
 use crate::key_rows;
 use crate::quantity::{QuantityError, Speed, Stiffness, StiffnessPerArea};
 
@@ -161,8 +161,40 @@ impl Drive {
                 format!("`{key}` names an edge that is none: the slider is periodic along {axis}; take free edges, or `attach_file`")
             });
         }
+        if slider.body == Body::Bulk {
+            self.check_for_bulk(check)?;
+        }
         self.stiffness.check(check)?;
         self.attached.check(check)
+    }
+
+    /// Refuses drives that no bulk body has: it is driven by its whole upper face.
+    fn check_for_bulk(&self, check: &Check) -> Result<(), CaseError> {
+        let is_auto = self.stiffness == DriveStiffness::Each(AutoOrStiffness::Auto);
+        let keys = [
+            (
+                self.stiffness.key(),
+                !is_auto,
+                "its stiffness follows from `slider.height`, or stands in the last of `slider.sheets`",
+            ),
+            (
+                "motion",
+                self.motion == Motion::Rotation,
+                "a body that turns is not derived",
+            ),
+            (
+                "attach_file",
+                matches!(self.attached, Attached::File(_)),
+                "its whole upper face is driven",
+            ),
+            ("attach", self.edge().is_some(), "its whole upper face is driven"),
+        ];
+        let given = keys.iter().find(|(_, is_given, _)| *is_given);
+        given.map_or(Ok(()), |(key, _, why)| {
+            check.refuse(key, |key| {
+                format!("`{key}` has no meaning with `slider.body` = \"bulk\": {why}; leave it out, or take \"sheet\"")
+            })
+        })
     }
 }
 

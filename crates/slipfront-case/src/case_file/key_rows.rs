@@ -65,6 +65,13 @@ macro_rules! key_rows {
             }
 
             impl $enum {
+                /// Name of the key that was given.
+                pub const fn key(&self) -> &'static str {
+                    match self {
+                        $(Self::$Variant(_) => stringify!($one),)+
+                    }
+                }
+
                 /// Checks the value of the key that was given.
                 pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
                     match self {

@@ -55,14 +55,14 @@ pub(crate) use pattern::MAX_COUNT;
 pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
 pub use shapes::*;
-pub use slider::{Damping, Grade, Slider};
+pub use slider::{Damping, Grade, SheetOfStack, Slider};
 pub(crate) use slider::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, MAX_RELATIVE, MIN_RELATIVE};
 pub use source::Source;
 pub use tables::Tables;
 pub use texture::Texture;
 pub use time::{RunTime, Time, TimeStep};
 pub use values::AutoOr;
-pub use words::{Arrangement, AttachedEdge, Loading, Motion, Outline};
+pub use words::{Arrangement, AttachedEdge, Body, Loading, Motion, Outline};
 
 #[cfg(test)]
 mod tests;

@@ -5,15 +5,17 @@ use slipfront::Edges;
 
 use super::check::Check;
 use super::error::CaseError;
-use super::key::{ARRAY, Key, KeyKind, StarUnit, key, number, quantity, whole, within};
+use super::key::{ARRAY, Key, KeyKind, STIFFNESS_PER_AREA, StarUnit, key, number, quantity, whole, within};
 use super::motion::Along;
 use super::probe::names_of;
 use super::values::{Pair, pair, word};
-use super::words::Outline;
+use super::words::{Body, Outline};
 use crate::key_rows;
-use crate::quantity::{Density, Length, Pressure, Rate};
+use crate::quantity::{Density, Length, Pressure, Rate, StiffnessPerArea};
 use slipfront_base::number_format::count;
 
+/// Why properties that differ from block to block do not go with a bulk body.
+const UNEQUAL: &str = "how far they reach into a bulk body is not known";
 /// Largest number of blocks along an axis.
 pub(crate) const MAX_BLOCKS: u64 = 100_000;
 /// Least and largest property of a block over that of the whole slider.
@@ -39,6 +41,21 @@ key_rows! {
         pub thickness: Option<Length> = key("", quantity("m", within(1e-12, 1e3)))
             .title("thickness", "h", "m")
             .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes, and what to write for a bulk body."),
+        /// What the slider is made of: a sheet, or a bulk body, for which a stack of two sheets with the
+        /// springs of the lattice takes the place of the one; only the lower one is in friction.
+        #[serde(deserialize_with = "word", skip_serializing_if = "Body::is_sheet")]
+        pub body: Body = key("\"sheet\"", KeyKind::Words(names_of::<Body>))
+            .note("See [bulk bodies](../model.md#bulk-bodies)."),
+        /// Height of a bulk body, from the contact to the face by which it is driven.
+        pub height: Option<Length> = key("", quantity("m", within(1e-12, 1e6))).without("deep: many pitches")
+            .title("height", "H", "m"),
+        /// Poisson's ratio of a bulk body. Of the sheets it stays 1/3.
+        pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
+            .title("Poisson's ratio", "\u{3bd}", ""),
+        /// The sheets of a bulk body in place of those that follow from height and Poisson's ratio, from the
+        /// lowest on.
+        pub sheets: Option<Vec<SheetOfStack>> = key("", KeyKind::Table(
+            "[{ thickness = \"5 um\", coupling = \"2e15 N/m^3\" }, { thickness = \"40 um\", coupling = \"4e14 N/m^3\" }]", SheetOfStack::KEYS)),
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),
@@ -84,6 +101,19 @@ key_rows! {
 }
 
 key_rows! {
+    /// A sheet of the stack that stands for a bulk body.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct SheetOfStack {
+        /// Thickness of the sheet.
+        pub thickness: Length = key("", THICKNESS_OF_SHEET),
+        /// Stiffness per area of the springs from its blocks to those of the sheet above, of the last sheet to
+        /// the drive.
+        pub coupling: StiffnessPerArea = key("", STIFFNESS_PER_AREA),
+    }
+}
+
+key_rows! {
     /// A property relative to that of the whole slider that changes linearly along an axis, from one edge to
     /// the other.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,6 +135,12 @@ const RELATIVE_PROPERTY: KeyKind = number(
     "it is relative, so that 1 changes nothing",
 );
 const GRADE: KeyKind = KeyKind::Table("{ along = \"x\", from = 1, to = 0.1 }", Grade::KEYS);
+
+/// Thickness of a sheet of a stack.
+const THICKNESS_OF_SHEET: KeyKind = quantity("m", within(1e-12, 1e3));
+/// Fewest and most sheets of a stack: with one there is nothing to couple, and three are within 0.1 % of a deep
+/// body.
+const SHEETS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// Largest number of all blocks.
 pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
@@ -137,6 +173,7 @@ impl Slider {
         }
         check.value("block_size", &self.block_size)?;
         check.value("thickness", &self.thickness)?;
+        self.check_body(check)?;
         check.value("young_modulus", &self.young_modulus)?;
         check.value("density", &self.density)?;
         self.damping.check(check)?;
@@ -163,6 +200,96 @@ impl Slider {
             }
         }
         self.check_outline(check)
+    }
+
+    /// Refuses keys of a bulk body for a sheet, and the other way round.
+    fn check_body(&self, check: &Check) -> Result<(), CaseError> {
+        check.value("height", &self.height)?;
+        check.value("poisson", &self.poisson)?;
+        let of_bulk = [
+            ("height", self.height.is_some()),
+            ("poisson", self.poisson.is_some()),
+            ("sheets", self.sheets.is_some()),
+        ];
+        if self.body == Body::Sheet {
+            let given = of_bulk.iter().find(|(_, is_given)| *is_given);
+            return given.map_or(Ok(()), |(key, _)| {
+                check.refuse(key, |key| {
+                    format!("`{key}` belongs to `slider.body` = \"bulk\": set that, or leave it out")
+                })
+            });
+        }
+        let of_sheet = [
+            (
+                "thickness",
+                self.thickness.is_some(),
+                "the sheets of a bulk body have theirs by `height` or `sheets`",
+            ),
+            (
+                "outline",
+                self.outline != Outline::Rectangle,
+                "what a free side does to a bulk body is not derived",
+            ),
+            ("stiffness_field", self.stiffness_field.is_some(), UNEQUAL),
+            ("stiffness_grade", self.stiffness_grade.is_some(), UNEQUAL),
+            ("density_field", self.density_field.is_some(), UNEQUAL),
+            ("density_grade", self.density_grade.is_some(), UNEQUAL),
+            (
+                "viscosity_time_star",
+                self.viscosity_time_star > 0.0,
+                "no dampers of a bulk body are derived",
+            ),
+        ];
+        if let Some((key, _, why)) = of_sheet.iter().find(|(_, is_given, _)| *is_given) {
+            return check.refuse(key, |key| {
+                format!("`{key}` has no meaning with `slider.body` = \"bulk\": {why}; leave it out, or take \"sheet\"")
+            });
+        }
+        let Some(sheets) = &self.sheets else {
+            return Ok(());
+        };
+        if let Some((key, _)) = of_bulk[..2].iter().find(|(_, is_given)| *is_given) {
+            return check.refuse(key, |key| {
+                format!("`{key}` is not read where `slider.sheets` gives the stack: leave one of them out")
+            });
+        }
+        if !SHEETS.contains(&sheets.len()) {
+            return check.refuse("sheets", |key| {
+                format!(
+                    "`{key}` has {}: a stack has {} to {}",
+                    count(sheets.len(), "sheet"),
+                    SHEETS.start(),
+                    SHEETS.end()
+                )
+            });
+        }
+        for (number, sheet) in sheets.iter().enumerate() {
+            check.value_of(
+                &THICKNESS_OF_SHEET,
+                &format!("sheets.{number}.thickness"),
+                &sheet.thickness,
+            )?;
+            check.value_of(
+                &STIFFNESS_PER_AREA,
+                &format!("sheets.{number}.coupling"),
+                &sheet.coupling,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Number of sheets above the lowest one.
+    pub(crate) fn n_sheets_above(&self) -> usize {
+        match (self.body, &self.sheets) {
+            (Body::Sheet, _) => 0,
+            (Body::Bulk, None) => 1,
+            (Body::Bulk, Some(sheets)) => sheets.len() - 1,
+        }
+    }
+
+    /// Whether the slider is as thick as a block, because no key says how thick it is.
+    pub(crate) fn thickness_is_a_block(&self) -> bool {
+        self.body == Body::Sheet && self.thickness.is_none()
     }
 
     fn check_outline(&self, check: &Check) -> Result<(), CaseError> {

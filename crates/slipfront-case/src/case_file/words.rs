@@ -14,6 +14,23 @@ pub enum Outline {
     Mask,
 }
 
+/// What the slider is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Body {
+    /// A sheet of the thickness of the slider.
+    #[default]
+    Sheet,
+    /// A stack of sheets, which stands for a body that is thick under its texture.
+    Bulk,
+}
+
+impl Body {
+    pub(super) fn is_sheet(&self) -> bool {
+        *self == Self::Sheet
+    }
+}
+
 /// The words of `attach`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -6,10 +6,11 @@ use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
-    CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed, DriveStiffness,
-    Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Level, Load, Loading, Mask,
-    Missing, Motion, Outline, Output, Pattern, Pitch, Polygon, Profile, RunTime, Shape, Slider,
-    SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed,
+    DriveStiffness, Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Level, Load,
+    Loading, Mask, Missing, Motion, Outline, Output, Pattern, Pitch, Polygon, Profile, RunTime, Shape,
+    SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep,
+    Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -87,6 +88,10 @@ fn slider() -> impl Strategy<Value = Slider> {
                 },
                 block_size,
                 thickness,
+                body: Body::Sheet,
+                height: None,
+                poisson: None,
+                sheets: None,
                 young_modulus,
                 density,
                 damping,
@@ -104,6 +109,30 @@ fn slider() -> impl Strategy<Value = Slider> {
                 density_grade,
             },
         )
+}
+
+/// A bulk body, by its height and Poisson's ratio or by its sheets.
+fn bulk() -> impl Strategy<Value = Slider> {
+    let sheet = (length(), quantity(0, 20, &["N/m^3"]));
+    let sheet = sheet.prop_map(|(thickness, coupling)| SheetOfStack { thickness, coupling });
+    let sheets = prop::collection::vec(sheet, 2..=4).prop_map(|sheets| (None, None, Some(sheets)));
+    let by_height = (prop::option::of(length()), prop::option::of(0.0..0.5));
+    let by_height = by_height.prop_map(|(height, poisson)| (height, poisson, None));
+    (slider(), prop_oneof![by_height, sheets]).prop_map(|(slider, (height, poisson, sheets))| Slider {
+        body: Body::Bulk,
+        thickness: None,
+        height,
+        poisson,
+        sheets,
+        outline: Outline::Rectangle,
+        outline_file: None,
+        viscosity_time_star: 0.0,
+        stiffness_field: None,
+        stiffness_grade: None,
+        density_field: None,
+        density_grade: None,
+        ..slider
+    })
 }
 
 fn load() -> impl Strategy<Value = Load> {
@@ -509,13 +538,20 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
     let textures = prop::collection::vec(texture(), 0..4);
     let loading = select(vec![Loading::Constant, Loading::Held]);
     let drive = (drive(), loading);
-    (slider(), load(), drive, friction(), textures, time(), output()).prop_map(
+    let body = prop_oneof![3 => slider().boxed(), 1 => bulk().boxed()];
+    (body, load(), drive, friction(), textures, time(), output()).prop_map(
         |(slider, load, (mut drive, loading), friction, texture, time, output)| {
             let source = Source::default();
             // Blocks of other laws do not stop, or grow stronger in time.
             let stops = friction.law == Law::Projection && friction.contact == ContactModel::Rigid;
             if stops && friction.ageing.is_none() && friction.healing_time_star.is_none() {
                 drive.loading = loading;
+            }
+            // A bulk body is driven by its whole upper face.
+            if slider.body == Body::Bulk {
+                drive.stiffness = DriveStiffness::Each(AutoOrStiffness::Auto);
+                drive.attached = Attached::At(AttachedEdge::All);
+                drive.motion = Motion::Translation;
             }
             CaseFile {
                 slider,
