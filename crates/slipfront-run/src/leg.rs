@@ -45,6 +45,10 @@ pub enum ChangeError {
     )]
     Memory,
     #[error(
+        "a bulk body is a stack of sheets, of which a change keeps the motion of the lowest alone: begin such a run from rest"
+    )]
+    Stack,
+    #[error(
         "a displacement or a velocity is no finite number in the units of the new case: the run diverges, or a unit is too small; begin such a run from rest"
     )]
     NotFinite,
@@ -71,7 +75,7 @@ impl Running {
     ///
     /// # Errors
     /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state
-    /// holds, or the run diverges.
+    /// holds, one of them is a stack of sheets, or the run diverges.
     ///
     /// # Panics
     /// If several ranks share the lattice.
@@ -96,6 +100,9 @@ impl Running {
         }
         if [old, new].iter().any(|model| model.friction.n_columns() > 0) {
             return Err(ChangeError::Memory);
+        }
+        if [old, new].iter().any(|model| !model.sheets().is_empty()) {
+            return Err(ChangeError::Stack);
         }
 
         let steps = self.snapshot().step + 1;

@@ -10,8 +10,7 @@ use std::f64::consts::TAU;
 use super::runnable::Case;
 use super::stack::BulkBody;
 use super::textures::{pitch, regular_pitch};
-use crate::case_file::{Attached, AttachedEdge};
-use slipfront_base::number_format::with_si_prefix;
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
 const THICK: f64 = 1.0 / 3.0;
@@ -28,9 +27,10 @@ const STRIP: f64 = 2.316;
 /// what it changes in the sheet, for a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a
 /// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/model.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
-/// Reductions of static friction by a patch of dimples, a band of them, and random dimples: the lowest and
-/// the highest in the sheet that fits at their pitch, and in the bulk body.
-const LONGER_WAVES: [&str; 2] = ["3.1 to 8.2 %", "12.4 to 15.5 %"];
+/// Difference of Poisson's ratio from that of the sheets above which there is a note.
+const LIKE_POISSON: f64 = 0.05;
+/// Excess of the stiffness of the stack over that of the body above which there is a note.
+const LARGE_EXCESS: f64 = 0.1;
 
 /// Lengths of the textures of a case that tell whether it is a sheet, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,44 +96,57 @@ impl Case {
         if thickness <= (THICK * smallest).max(fits) * (1.0 + ROUNDING) {
             return None;
         }
-        let remedy = match lengths.is_regular {
-            true => self.sheet_that_fits(lengths.reach()),
-            false => format!(
-                "no single sheet stands for it, since this texture has wave lengths above a pitch, where a sheet that fits at the pitch \
-                 found {} for {}: lay the texture over the whole slider in one array with a `pitch`, for which there is one, or take the \
-                 answer for that of a sheet",
-                LONGER_WAVES[0], LONGER_WAVES[1]
-            ),
-        };
         Some(format!(
             "`slider.thickness` is {}, more than a third of the {name} of {}: so thick a part is no sheet but a bulk body, in which stress \
-             beside the texture reaches about {} deep, and the texture changes mu_s* by about {} times as much as in this sheet; {remedy}",
+             beside the texture reaches about {} deep, and the texture changes mu_s* by about {} times as much as in this sheet; \
+             write `slider.body = \"bulk\"` and `slider.height = \"{}\"` in its place",
             with_si_prefix(thickness, "m"),
             with_si_prefix(smallest, "m"),
             with_si_prefix(lengths.reach(), "m"),
-            times_as_much(thickness / lengths.reach())
+            times_as_much(thickness / lengths.reach()),
+            with_si_prefix(thickness, "m")
         ))
     }
 
-    /// Keys of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk
-    /// body does: its [thickness](fitting_thickness), and the mount
-    ///
-    /// ```text
-    /// K = G q (2 - 3 nu)/(2 (1 - nu))
-    /// ```
-    fn sheet_that_fits(&self, pitch: f64) -> String {
-        let shear_modulus = SHEAR * self.scales.young_modulus;
-        let mount = shear_modulus * (TAU / pitch) * (2.0 - 3.0 * NU) / (2.0 * (1.0 - NU));
-        let attach = match self.file.drive.attached {
-            Attached::At(AttachedEdge::All) => "",
-            _ => ", `drive.attach = \"all\"`",
+    /// Sentences on what the stack leaves out of a bulk body: another Poisson's ratio than that of its sheets,
+    /// and waves that are shorter than those of the fit.
+    pub(super) fn bulk_notes(&self) -> Vec<String> {
+        let Some(body) = self.bulk_body() else {
+            return Vec::new();
         };
-        format!(
-            "one sheet that fits this pitch has `slider.thickness = \"{}\"` and `drive.stiffness_per_area = \"{mount:.3e} N/m^3\"`{attach}, and \
-             finds 5 % less to 18 % more than a bulk body of nu = 1/3; it fails for patterns with longer wave lengths: random dimples, bands, \
-             patches",
-            with_si_prefix(fitting_thickness(pitch), "m")
-        )
+        let ratio = 1.0 / (1.0 - body.poisson);
+        let unlike = (body.poisson - NU).abs() > LIKE_POISSON;
+        let unlike = unlike.then(|| {
+            format!(
+                "the sheets have Poisson's ratio 1/3, so that this stack is 1.73 times as stiff along a wave as across it, and the body, of \
+                 `slider.poisson` = {}, {} times: of textures it found {}",
+                four_digits(body.poisson),
+                four_digits(ratio),
+                if body.poisson > NU {
+                    "6 to 27 % less than such a body at 0.49"
+                } else {
+                    "1 to 7 % more than such a body at 0.25"
+                }
+            )
+        });
+        let feature = self
+            .clearance()
+            .feature
+            .map(|blocks| blocks * self.scales.block_size);
+        let short = feature.and_then(|feature| {
+            let excess = body.excess(self.scales.young_modulus, 2.0 * feature);
+            (excess > LARGE_EXCESS).then(|| {
+                format!(
+                    "the smallest feature of {} is short for a slider whose longest wave length is {}: at twice the feature the stack is {:.0} % \
+                     stiffer than the body; one array with a `pitch` that fills the slider has its pitch for the longest wave, and \
+                     `slider.sheets` takes three sheets",
+                    with_si_prefix(feature, "m"),
+                    with_si_prefix(body.longest_wave, "m"),
+                    100.0 * excess
+                )
+            })
+        });
+        unlike.into_iter().chain(short).collect()
     }
 
     /// The smallest feature and pitch of all textures.

@@ -199,7 +199,7 @@ const COMMON: &[(&str, &str)] = &[
 const YOUNG: &str = "Young's modulus is `slider.young_modulus`";
 const SPRINGS: &str = "the springs follow from `slider.young_modulus`";
 const STIFFNESS: &str = "the springs between blocks follow from `slider.young_modulus`, and `drive.stiffness` is that of the drive springs";
-const POISSON: &str = "Poisson's ratio is that of the lattice, 1/3, and cannot be set";
+const POISSON: &str = "Poisson's ratio of the springs between blocks is 1/3; that of a body with `slider.body` = \"bulk\" is `slider.poisson`";
 const BLOCKS: &str = "the slider is `slider.blocks` = [25, 25] blocks of edge `slider.block_size`";
 const PRESSURE: &str = "the normal load is `load.pressure`, over the whole area";
 const SPEED: &str = "the speed of the drive is `drive.v_star`, or `drive.speed` with its unit";

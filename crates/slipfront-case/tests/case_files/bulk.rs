@@ -1,5 +1,5 @@
-//! The note on a slider that is a bulk body under its texture and no sheet, and the critical size of such a
-//! body.
+//! Bulk bodies: the note on a slider that is one under its texture and no sheet, the stack of sheets that
+//! stands for one, and its critical size.
 
 use slipfront_case::case::Case;
 
@@ -41,7 +41,6 @@ fn keys(note: &str) -> Vec<String> {
     quoted.map(|keys| keys.replacen(" = ", "=", 1)).collect()
 }
 
-/// The sheet that fits has h = p/(8 pi) and K = 9/16 pi E/p, since nu = 1/3 and G = 3/8 E.
 #[test]
 fn a_thickness_above_a_third_of_the_feature_is_noted() {
     // A third of 100 um, and a thousandth more for rounding.
@@ -50,8 +49,7 @@ fn a_thickness_above_a_third_of_the_feature_is_noted() {
         note(DIMPLES, "33.4 um").unwrap(),
         "`slider.thickness` is 33.4 um, more than a third of the smallest feature of 100 um: so thick a part is no sheet but a bulk body, in \
          which stress beside the texture reaches about 200 um deep, and the texture changes mu_s* by about 0.6 to 1.2 times as much as in this \
-         sheet; one sheet that fits this pitch has `slider.thickness = \"7.958 um\"` and `drive.stiffness_per_area = \"8.836e14 N/m^3\"`, and finds 5 % \
-         less to 18 % more than a bulk body of nu = 1/3; it fails for patterns with longer wave lengths: random dimples, bands, patches"
+         sheet; write `slider.body = \"bulk\"` and `slider.height = \"33.4 um\"` in its place"
     );
 }
 
@@ -73,28 +71,22 @@ fn the_factor_is_that_of_the_known_thicknesses() {
 }
 
 #[test]
-fn the_keys_that_a_note_gives_make_a_sheet_without_one() {
+fn the_keys_that_a_note_gives_make_a_body_without_one() {
     let grooves = |orientation: &str| {
         format!(
             "slider = {{ blocks = [50, 50], block_size = '20 um' }}\n[[texture]]\nshape = 'groove'\norientation = '{orientation}'\nwidth = \
              '60 um'\npitch = '200 um'\n"
         )
     };
-    let small = DIMPLES.replace("lambda = '50 um'", "lambda = '10 um'");
+    let patch = format!("{DIMPLES}array = [2, 2]");
     let hexagonal = format!("{DIMPLES}lattice = 'hexagonal'");
-    let at_an_edge = format!("drive.attach = 'left'\n{DIMPLES}");
-    for (text, n_keys) in [
-        (DIMPLES.to_owned(), 2),
-        (grooves("across"), 2),
-        (grooves("along"), 2),
-        (small, 2),
-        (hexagonal, 2),
-        (at_an_edge, 3),
-    ] {
-        let note = note(&text, "2 mm").unwrap();
+    for text in [DIMPLES, &grooves("across"), &grooves("along"), &patch, &hexagonal] {
+        let note = note(text, "2 mm").unwrap();
         let keys = keys(&note);
-        assert_eq!(keys.len(), n_keys, "{note}");
-        assert_eq!(case(&text, &keys).thick_for_texture(), None, "{text}\n{keys:?}");
+        assert_eq!(keys, ["slider.body=\"bulk\"", "slider.height=\"2 mm\""]);
+        let body = case(text, &keys);
+        assert_eq!(body.thick_for_texture(), None, "{text}");
+        assert_eq!(body.bulk_body().unwrap().height, 2e-3);
     }
     assert!(
         note(&grooves("across"), "20.1 um")
@@ -103,28 +95,141 @@ fn the_keys_that_a_note_gives_make_a_sheet_without_one() {
     );
 }
 
-/// A pattern that does not fill the slider, or is no single array, has wave lengths above its pitch.
+/// The longest wave length is the pitch of an array that fills the slider, and else the slider.
 #[test]
-fn a_pattern_with_longer_wave_lengths_has_no_sheet_that_fits() {
-    let single = "slider = { blocks = [50, 50], block_size = '20 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '50 um'";
+fn the_stack_follows_from_the_longest_wave() {
+    let single = "slider = { blocks = [50, 40], block_size = '20 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '50 um'";
     let patch = format!("{DIMPLES}array = [2, 2]");
-    let band = format!("{DIMPLES}array = [5, 2]");
-    let of_patches = DIMPLES.replace(
-        "pitch = '200 um'",
-        "array = [2, 2]\npitch = '150 um'\nrepeat = { array = [2, 2] }",
-    );
-    let two = format!("{DIMPLES}[[texture]]\nshape = 'groove'\nwidth = '200 um'\n");
-    for text in [single, &patch, &band, &of_patches, &two] {
-        let note = note(text, "2 mm").unwrap();
-        assert!(note.contains("no single sheet stands for it"), "{text}\n{note}");
-        assert!(!note.contains("slider.thickness ="), "{note}");
+    for (text, longest) in [
+        (DIMPLES, 200e-6),
+        (single, 1e-3),
+        (&patch, 1e-3),
+        ("slider.blocks = [7, 9]", 9e-6),
+    ] {
+        let body = case(text, &["slider.body=\"bulk\"".to_owned()])
+            .bulk_body()
+            .unwrap();
+        assert!((body.longest_wave / longest - 1.0).abs() < 1e-12, "{body:?}");
     }
-    // In the array whose answers are known a feature is half a pitch wide.
-    assert!(
-        note(single, "2 mm")
+}
+
+/// In the units of the lattice, `k_s = K l^2/(E h_1)` and `g* = g l^2/(E h_1)`; on finer blocks the body is the
+/// one of the coarser.
+#[test]
+fn the_model_has_the_sheets_of_the_body() {
+    let text = DIMPLES;
+    let keys = [
+        "slider.body=\"bulk\"",
+        "slider.height=\"0.5 mm\"",
+        "slider.poisson=0.3",
+    ]
+    .map(str::to_owned);
+    let coarse = case(&text, &keys);
+    let body = coarse.bulk_body().unwrap();
+    let mut sets = keys.to_vec();
+    sets.extend(
+        coarse
+            .on_other_blocks(2.0)
             .unwrap()
-            .contains("reaches about 200 um deep")
+            .iter()
+            .map(ToString::to_string),
     );
+    let fine = case(&text, &sets);
+    assert_eq!(fine.bulk_body().unwrap(), body);
+    for case in [&coarse, &fine] {
+        let per_area = case.scales.block_size.powi(2) / (case.scales.young_modulus * body.thickness[0]);
+        assert_eq!(case.scales.thickness, body.thickness[0]);
+        let [sheet] = case.model.sheets() else { panic!() };
+        let found = [sheet.thickness, sheet.coupling, case.model.drive.k_drive];
+        let expected = [
+            body.thickness[1] / body.thickness[0],
+            body.coupling * per_area,
+            body.mount * per_area,
+        ];
+        for (found, expected) in found.into_iter().zip(expected) {
+            // Of some products.
+            assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
+        }
+    }
+}
+
+/// Sheets that are given are taken as they are.
+#[test]
+fn sheets_may_be_given() {
+    let sheets = "slider.sheets=[{ thickness = '2 um', coupling = '1e15 N/m^3' }, { thickness = '6 um', coupling = '4e14 N/m^3' }]";
+    let given = case(DIMPLES, &["slider.body=\"bulk\"".to_owned(), sheets.to_owned()]);
+    assert_eq!(given.bulk_body(), None);
+    assert_eq!(given.scales.thickness, 2e-6);
+    // l^2/(E h_1) = 4e-10/(1e11 2e-6) m^3/N.
+    let [sheet] = given.model.sheets() else { panic!() };
+    let found = [sheet.thickness, sheet.coupling, given.model.drive.k_drive];
+    for (found, expected) in found.into_iter().zip([3.0, 2.0, 0.8]) {
+        assert!((found / expected - 1.0_f64).abs() < 1e-14, "{found} {expected}");
+    }
+}
+
+#[test]
+fn what_a_bulk_body_does_not_have_is_refused() {
+    let refusal = |sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        let refused = Case::parse(DIMPLES, "case", "", &sets).unwrap_err();
+        refused.to_string()
+    };
+    let bulk = "slider.body=\"bulk\"";
+    for (key, value, why) in [
+        (
+            "slider.thickness",
+            "'1 mm'",
+            "the sheets of a bulk body have theirs",
+        ),
+        ("slider.outline", "'disc'", "free side"),
+        (
+            "slider.stiffness_grade",
+            "{ along = 'x', from = 1, to = 0.5 }",
+            "how far they reach",
+        ),
+        ("slider.viscosity_time_star", "0.1", "no dampers"),
+        ("drive.stiffness_star", "0.2", "follows from `slider.height`"),
+        (
+            "drive.total_stiffness",
+            "'10 N/m'",
+            "follows from `slider.height`",
+        ),
+        ("drive.attach", "'left'", "its whole upper face is driven"),
+        ("drive.motion", "'rotation'", "a body that turns is not derived"),
+    ] {
+        let refused = refusal(&[bulk, &format!("{key}={value}")]);
+        assert!(refused.contains(key) && refused.contains(why), "{refused}");
+    }
+    for key in ["slider.height='1 mm'", "slider.poisson=0.3", "slider.sheets=[]"] {
+        let refused = refusal(&[key]);
+        assert!(
+            refused.contains("belongs to `slider.body` = \"bulk\""),
+            "{refused}"
+        );
+    }
+    let one = "slider.sheets=[{ thickness = '2 um', coupling = '1e15 N/m^3' }]";
+    assert!(refusal(&[bulk, one]).contains("has 1 sheet: a stack has 2 to 4"));
+    let two = one.replace("}]", "}, { thickness = '2 km', coupling = '1e15 N/m^3' }]");
+    assert!(refusal(&[bulk, &two]).contains("it must be"));
+    assert!(refusal(&[bulk, &two, "slider.height='1 mm'"]).contains("is not read where"));
+    assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
+}
+
+/// Poisson's ratio of the sheets stays that of their springs, and small features have waves beyond the fit.
+#[test]
+fn what_the_stack_leaves_out_is_noted() {
+    let notes = |text: &str, sets: &[&str]| {
+        let mut all = vec!["slider.body=\"bulk\"".to_owned()];
+        all.extend(sets.iter().map(|set| (*set).to_owned()));
+        case(text, &all).warnings().join("\n")
+    };
+    assert!(!notes(DIMPLES, &[]).contains("sheets"));
+    assert!(notes(DIMPLES, &["slider.poisson=0.49"]).contains("6 to 27 % less"));
+    assert!(notes(DIMPLES, &["slider.poisson=0.25"]).contains("1 to 7 % more"));
+    let small = "slider = { blocks = [100, 100], block_size = '10 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '15 um'\narray = [3, 3]\npitch = '100 um'";
+    let noted = notes(small, &[]);
+    assert!(noted.contains("at twice the feature the stack is"), "{noted}");
 }
 
 #[test]
@@ -165,7 +270,7 @@ fn a_feature_alone_is_enough_for_a_note() {
     assert_eq!(sheet.thick_for_feature(60e-6), None);
     let note = sheet.thick_for_feature(59e-6).unwrap();
     assert!(
-        note.contains("smallest feature of 59 um") && note.contains("no single sheet"),
+        note.contains("smallest feature of 59 um") && note.contains("`slider.height = \"20 um\"`"),
         "{note}"
     );
 }

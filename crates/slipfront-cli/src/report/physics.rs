@@ -10,17 +10,21 @@ use slipfront_case::case_file::{
 
 use super::summary::notes;
 
+/// Shortest wave length, over the longest one, for which the stack of a bulk body is fitted.
+const SHORTEST_WAVE: f64 = 0.125;
+
 /// The resolved physics of a case, as a tree.
 pub fn physics(case: &Case) -> String {
-    let branches = [
-        ("slider", slider(case)),
+    let mut branches = vec![("slider", slider(case))];
+    branches.extend(body(case).map(|body| ("body", body)));
+    branches.extend([
         ("material", material(case)),
         ("load", load(case)),
         ("drive", drive(case)),
         ("friction", case.file.friction.in_words(&case.model.friction)),
         ("texture", texture(case)),
         ("time", time(case)),
-    ];
+    ]);
     let mut text = format!("{}\n", case.name);
     for (number, (name, value)) in branches.iter().enumerate() {
         let branch = if number + 1 < branches.len() {
@@ -55,6 +59,28 @@ fn slider(case: &Case) -> String {
         format!(", {} thick", with_si_prefix(thickness.si(), "m"))
     });
     format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
+}
+
+/// The stack that stands for a bulk body.
+fn body(case: &Case) -> Option<String> {
+    let bulk = case.bulk_body()?;
+    let [lower, upper] = bulk.thickness.map(|thickness| with_si_prefix(thickness, "m"));
+    let height = if bulk.height.is_finite() {
+        format!("a body {} high", with_si_prefix(bulk.height, "m"))
+    } else {
+        "a deep body".to_owned()
+    };
+    let waves = [1.0, SHORTEST_WAVE].map(|share| with_si_prefix(share * bulk.longest_wave, "m"));
+    Some(format!(
+        "{height} of nu = {}: sheets of {lower} and {upper}, {:.3e} N/m^3 between them, {:.3e} N/m^3 to the drive, within {:.1} % for waves \
+         of {} to {}",
+        four_digits(bulk.poisson),
+        bulk.coupling,
+        bulk.mount,
+        100.0 * bulk.error,
+        waves[0],
+        waves[1]
+    ))
 }
 
 /// Remark behind a property of the material that is not uniform.
