@@ -42,6 +42,7 @@ mod slip_cycle;
 mod slip_weakening;
 mod springs;
 mod stability;
+mod stack;
 mod steady_sliding;
 mod straight_groove;
 mod symmetry;
