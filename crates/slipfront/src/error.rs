@@ -65,4 +65,17 @@ pub enum SurfaceError {
         /// Number of blocks.
         n_blocks: usize,
     },
+    /// The load of a textured block has no block in contact near it that takes it.
+    #[error(
+        "no block in contact is within {distance:.1} blocks of block ({i}, {j}), which is textured and leaves its load to such blocks: raise the \
+         distance within which load is shared, or make the texture smaller"
+    )]
+    NoContactNear {
+        /// Column of the block.
+        i: usize,
+        /// Row of the block.
+        j: usize,
+        /// The distance, in blocks.
+        distance: f64,
+    },
 }

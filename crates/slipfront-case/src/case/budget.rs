@@ -130,6 +130,11 @@ impl Budget {
         let has_heights = shapes().any(|shape| matches!(shape, Shape::HeightMap(_)));
         // Means of heights are found over the whole lattice.
         let heights = if has_heights { 3.0 * NUMBER } else { 0.0 };
+        let shares = if file.shares_load_nearby() {
+            SHARED * NUMBER
+        } else {
+            0.0
+        };
         Self {
             blocks,
             numbers: numbers_of_block(file, friction),
@@ -137,7 +142,7 @@ impl Budget {
                 Kernel::Fused => 1.0,
                 Kernel::General => BANDS,
             },
-            laid: blocks * masks as f64 + lattice.n_blocks() as f64 * heights,
+            laid: blocks * masks as f64 + lattice.n_blocks() as f64 * (heights + shares),
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
             ..Self::default()
@@ -489,7 +494,7 @@ impl Cause {
 fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     let (slider, load, needs) = (&file.slider, &file.load, friction.needs());
     let has_outline = slider.outline != Outline::Rectangle;
-    let has_pressures = load.profile.is_some() || load.pressure_field.is_some();
+    let has_pressures = load.profile.is_some() || load.pressure_field.is_some() || file.shares_load_nearby();
     let varies = [
         slider.stiffness_field.is_some() || slider.stiffness_grade.is_some(),
         slider.density_field.is_some() || slider.density_grade.is_some(),
@@ -510,6 +515,10 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     };
     [3.0 + own, stepped + 2.0 * needs.columns as f64]
 }
+
+/// Numbers of each block of the whole lattice while the load of textured blocks is shared among those near
+/// them: two marks, pressures as numbers and as bits, and sums of counts and of shares.
+const SHARED: f64 = 6.0;
 
 /// Numbers of a block in a sheet above the lowest: displacement, velocities before and after, force of the
 /// springs in the sheet, along each bond, and from above.

@@ -9,7 +9,8 @@ use slipfront::{Lattice, Scales};
 use super::files::Watch;
 use super::groups::Groups;
 use super::inputs::Inputs;
-use crate::case_file::{CaseError, CaseFile};
+use super::textures::pitch;
+use crate::case_file::{Body, CaseError, CaseFile, Near, Redistribute};
 use slipfront_base::number_format::four_digits;
 
 /// Refuses a correlation length with which coefficients could not be drawn, before any file is read.
@@ -81,6 +82,43 @@ pub(super) fn coefficients(
     Ok(drawn)
 }
 
+impl CaseFile {
+    /// Whether blocks in contact near a textured one carry its load, and not all of them.
+    pub(super) fn shares_load_nearby(&self) -> bool {
+        match self.load.redistribute {
+            Redistribute::Near(_) => true,
+            Redistribute::All(shares) => shares && self.slider.body == Body::Bulk && !self.texture.is_empty(),
+        }
+    }
+}
+
+/// Distance in blocks within which blocks in contact carry the load of a textured one; none where all of them
+/// carry it in equal parts, or none does.
+pub(super) fn sharing_distance(
+    file: &CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+) -> Result<Option<f64>, CaseError> {
+    if let Redistribute::Near(Near { within }) = &file.load.redistribute {
+        return Ok(Some(scales.in_blocks(within.si())));
+    }
+    if !file.shares_load_nearby() {
+        return Ok(None);
+    }
+    let mut smallest = None;
+    for (number, texture) in file.texture.iter().enumerate() {
+        let Some((pitch, _)) = pitch(texture, scales, lattice) else {
+            let sentence = format!(
+                "a bulk body bears the load of a textured part near it, and texture {number} has no pitch that says how near: give \
+                 `load.redistribute` = {{ within = \"...\" }}, about twice the width of a feature"
+            );
+            return Err(file.source.error(&format!("texture.{number}"), sentence));
+        };
+        smallest = Some(smallest.map_or(pitch, |smallest: f64| smallest.min(pitch)));
+    }
+    Ok(smallest)
+}
+
 /// Contact of a surface: load and adhesion.
 pub(super) fn contact(
     file: &CaseFile,
@@ -89,10 +127,9 @@ pub(super) fn contact(
     inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<Contact, CaseError> {
-    let load = if file.load.redistribute {
-        Load::Redistributed
-    } else {
-        Load::Kept
+    let load = match file.load.redistribute {
+        Redistribute::All(false) => Load::Kept,
+        Redistribute::All(true) | Redistribute::Near(_) => Load::Redistributed,
     };
     let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field, watch)?;
     let pressure = match &file.load.profile {

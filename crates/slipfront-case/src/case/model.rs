@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, Lattice, Model, Surface};
+use slipfront::surface::share_load;
+use slipfront::{Communicator, Lattice, Model, Surface, SurfaceError};
 
-use super::coefficients::{coefficients, contact};
+use super::coefficients::{coefficients, contact, sharing_distance};
 use super::derived::Derived;
 use super::drive::{attach, attached, drive};
 use super::files::Watch;
@@ -52,9 +53,24 @@ pub(super) fn make(
         let contact = contact(file, scales, &lattice, inputs, watch)?;
         Ok((meshed, coefficients, contact, attached(file, inputs, watch)?))
     });
-    let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree_on_rows(made)?;
+    let ((meshed, in_blocks), coefficients, mut contact, attached) = ranks.agree_on_rows(made)?;
     ranks.agree(named.expect_unchanged(file))?;
     attach(&mut slider, file, &lattice, &rows, attached, ranks.communicator)?;
+    if let Some(distance) = sharing_distance(file, scales, &lattice)? {
+        let exists = slider.outline.as_ref().map(|outline| &*outline.exists);
+        let (textured, pressure) = (&meshed.textured, contact.pressure.take());
+        let shared = share_load(
+            &lattice,
+            &rows,
+            textured,
+            exists,
+            pressure,
+            distance,
+            ranks.communicator,
+        );
+        let refused = |error: SurfaceError| file.source.error("load.redistribute", error.to_string());
+        contact.pressure = Some(shared.map_err(refused)?);
+    }
     let surface = Surface::of_ranks(
         coefficients,
         meshed.textured,

@@ -48,7 +48,7 @@ pub use keys::{
 };
 pub use length_of_a_block::LengthOfABlock;
 pub use load::{read_text, read_text_from};
-pub use motion::{Along, Load, Profile};
+pub use motion::{Along, Load, Near, Profile, Redistribute};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub(crate) use pattern::MAX_COUNT;

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::error::CaseError;
 use super::key::{ARRAY, KeyKind, between, key, number, quantity, within};
 use super::probe::names_of;
 use super::values::word;
 use crate::key_rows;
-use crate::quantity::Pressure;
+use crate::quantity::{Length, Pressure};
 
 key_rows! {
     /// `[load]`: the normal load.
@@ -18,9 +18,11 @@ key_rows! {
         /// Normal load over the whole area, textured or not.
         pub pressure: Pressure = key("\"100 kPa\"", quantity("Pa", within(1e-9, 1e15))).paper("P")
             .title("pressure", "P", "Pa"),
-        /// Whether the blocks in contact carry the load of the textured ones; `false` leaves P l^2 to each,
-        /// for comparison.
-        pub redistribute: bool = key("true", KeyKind::Switch),
+        /// Which blocks in contact carry the load of the textured ones: all of them in equal parts; with
+        /// `within`, for each textured block those at most so far away; with `false` none, for comparison. In
+        /// a bulk body `true` is a `within` of the pitch, and a texture without one needs a distance.
+        pub redistribute: Redistribute = key("true", KeyKind::Special("`true`, `false`, or a distance such as `{ within = \"400 um\" }`, 1e-12 to 1e3 m"))
+            .note("See [texture and load](../model.md#texture-and-load)."),
         /// A pressure that rises along x or y, with the mean `pressure`: p = P (1 + slope (2 x/L - 1)).
         #[serde(skip_serializing_if = "Option::is_none")]
         pub profile: Option<Profile> =
@@ -60,9 +62,40 @@ pub enum Along {
 impl Load {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         check.value("pressure", &self.pressure)?;
+        check.value("redistribute", &self.redistribute)?;
         if let Some(profile) = &self.profile {
             check.value_of(&RELATIVE_SLOPE, "profile.relative_slope", &profile.relative_slope)?;
         }
         check.value("pressure_field", &self.pressure_field)
+    }
+}
+
+/// The blocks in contact that carry the load of textured ones.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected true, false, or a distance such as { within = \"400 um\" }"
+)]
+pub enum Redistribute {
+    /// All of them, or none: then the load of textured blocks is lost.
+    All(bool),
+    /// Those near each textured block.
+    Near(Near),
+}
+
+/// Blocks in contact that are near a textured block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Near {
+    /// Largest distance between the centres.
+    pub within: Length,
+}
+
+impl Checked for Redistribute {
+    fn complaint(&self, _: &KeyKind) -> Option<String> {
+        match self {
+            Self::All(_) => None,
+            Self::Near(Near { within: distance }) => distance.complaint(&quantity("m", within(1e-12, 1e3))),
+        }
     }
 }

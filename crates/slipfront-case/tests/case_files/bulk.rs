@@ -106,9 +106,8 @@ fn the_stack_follows_from_the_longest_wave() {
         (&patch, 1e-3),
         ("slider.blocks = [7, 9]", 9e-6),
     ] {
-        let body = case(text, &["slider.body=\"bulk\"".to_owned()])
-            .bulk_body()
-            .unwrap();
+        let sets = ["slider.body=\"bulk\"", "load.redistribute={ within = '200 um' }"].map(str::to_owned);
+        let body = case(text, &sets).bulk_body().unwrap();
         assert!((body.longest_wave / longest - 1.0).abs() < 1e-12, "{body:?}");
     }
 }
@@ -124,7 +123,7 @@ fn the_model_has_the_sheets_of_the_body() {
         "slider.poisson=0.3",
     ]
     .map(str::to_owned);
-    let coarse = case(&text, &keys);
+    let coarse = case(text, &keys);
     let body = coarse.bulk_body().unwrap();
     let mut sets = keys.to_vec();
     sets.extend(
@@ -134,7 +133,7 @@ fn the_model_has_the_sheets_of_the_body() {
             .iter()
             .map(ToString::to_string),
     );
-    let fine = case(&text, &sets);
+    let fine = case(text, &sets);
     assert_eq!(fine.bulk_body().unwrap(), body);
     for case in [&coarse, &fine] {
         let per_area = case.scales.block_size.powi(2) / (case.scales.young_modulus * body.thickness[0]);
@@ -214,6 +213,61 @@ fn what_a_bulk_body_does_not_have_is_refused() {
     assert!(refusal(&[bulk, &two]).contains("it must be"));
     assert!(refusal(&[bulk, &two, "slider.height='1 mm'"]).contains("is not read where"));
     assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
+}
+
+/// The load of a textured block goes to the blocks in contact within a pitch, in metres, whatever the mesh; all
+/// of it arrives.
+#[test]
+fn load_is_shared_within_a_pitch() {
+    let patch = format!("{DIMPLES}array = [2, 2]");
+    let load = |text: &str, sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        let surface = &case(text, &sets).model.surface;
+        (0..surface.n_blocks())
+            .map(|b| surface.normal_force(b))
+            .collect::<Vec<f64>>()
+    };
+    let bulk = "slider.body='bulk'";
+    let found = load(&patch, &[bulk]);
+    // A tenth of a pitch is 1 block: the pitch has 10.
+    assert_eq!(load(&patch, &["load.redistribute={ within = '200 um' }"]), found);
+    let total: f64 = found.iter().sum();
+    assert!((total / 2500.0 - 1.0).abs() < 1e-12, "{total}");
+    // Far from the patch nothing is added; near it more than equal sharing gives.
+    let equal = load(&patch, &[])[0];
+    assert!(found[0] == 1.0 && equal > 1.0, "{} {equal}", found[0]);
+    let largest = found.iter().copied().fold(0.0, f64::max);
+    assert!(largest > 1.2, "{largest}");
+    let finer = load(
+        &patch,
+        &[bulk, "slider.blocks=[100,100]", "slider.block_size='10 um'"],
+    );
+    let largest_finer = finer.iter().copied().fold(0.0, f64::max);
+    assert!(
+        (largest_finer / largest - 1.0).abs() < 0.1,
+        "{largest_finer} {largest}"
+    );
+}
+
+#[test]
+fn a_texture_without_a_pitch_says_how_near() {
+    let single = "slider = { blocks = [50, 50], block_size = '20 um', body = 'bulk' }\n[[texture]]\nshape = 'cavity'\nlambda = '50 um'";
+    let refused = |sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        Case::parse(single, "case", "", &sets).unwrap_err().to_string()
+    };
+    assert!(
+        refused(&[]).contains("texture 0 has no pitch that says how near"),
+        "{}",
+        refused(&[])
+    );
+    let too_near = refused(&["load.redistribute={ within = '30 um' }"]);
+    assert!(
+        too_near.contains("no block in contact is within 1.5 blocks of block"),
+        "{too_near}"
+    );
+    assert!(refused(&["load.redistribute={ within = '3 km' }"]).contains("it must be"));
+    assert!(refused(&["load.redistribute='all'"]).contains("it must be true, false, or a distance"));
 }
 
 /// Poisson's ratio of the sheets stays that of their springs, and small features have waves beyond the fit.

@@ -5,8 +5,8 @@ use slipfront::Edges;
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{
-    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, KineticFriction, Pattern, RunTime, Shape,
-    Snapshots, Texture,
+    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, KineticFriction, Pattern, Redistribute,
+    RunTime, Shape, Snapshots, Texture,
 };
 
 use super::{files, notes};
@@ -58,7 +58,7 @@ fn overrides_change_what_they_name() {
     assert_eq!(case.load.pressure.si(), 2e5);
     assert_eq!(case.slider.edges, [Edges::Periodic; 2]);
     assert_eq!(case.slider.blocks, [5, 5]);
-    assert!(!case.load.redistribute);
+    assert_eq!(case.load.redistribute, Redistribute::All(false));
     assert_eq!(case.drive.direction, 90.0);
     let case = good("set_pair_of_a_texture");
     let lambda = "3um".parse().unwrap();

@@ -8,9 +8,9 @@ use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
     Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed,
     DriveStiffness, Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Level, Load,
-    Loading, Mask, Missing, Motion, Outline, Output, Pattern, Pitch, Polygon, Profile, RunTime, Shape,
-    SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep,
-    Velocity, VelocityLaw,
+    Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon, Profile, Redistribute,
+    RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture,
+    Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -149,7 +149,9 @@ fn load() -> impl Strategy<Value = Load> {
     let field = prop::option::of(file(&["npy", "csv"])).prop_map(|field| (None, field));
     let local = prop_oneof![profile, field];
     let pressure = quantity(-9, 14, &["kPa", "Pa"]);
-    (pressure, any::<bool>(), local).prop_map(|(pressure, redistribute, (profile, pressure_field))| Load {
+    let near = length().prop_map(|within| Redistribute::Near(Near { within }));
+    let redistribute = prop_oneof![2 => any::<bool>().prop_map(Redistribute::All), 1 => near];
+    (pressure, redistribute, local).prop_map(|(pressure, redistribute, (profile, pressure_field))| Load {
         pressure,
         redistribute,
         profile,

@@ -16,6 +16,7 @@ mod mask_outline;
 mod mesh;
 mod outline;
 mod pattern;
+mod sharing;
 mod texture;
 mod whole;
 
@@ -28,6 +29,7 @@ pub use load::{Adhesion, Contact, Load, pressure_along};
 pub use mask_outline::outline as mask_outline;
 pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};
+pub use sharing::share_load;
 pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
 
 use std::ops::Range;

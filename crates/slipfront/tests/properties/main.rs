@@ -11,6 +11,7 @@ mod openings;
 mod ranks;
 #[path = "../reference/mod.rs"]
 mod reference;
+mod sharing;
 
 use proptest::prelude::*;
 use slipfront::communicator::Alone;
