@@ -39,6 +39,10 @@ const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 const STEP_ERROR: f64 = 0.25;
 const STEP_POINTS: usize = 5;
 
+/// Number of times by which the time step is halved at the most for whole searches. At still finer steps a curve
+/// that is near already is followed.
+const SEARCHED_HALVINGS: u32 = 5;
+
 /// Number of searches, and runs of a generation.
 const SEARCHES: usize = 5;
 const DRAFTS: usize = 24;
@@ -86,6 +90,11 @@ impl Closest {
     /// Whether the differences are no white noise.
     pub fn is_correlated(&self) -> bool {
         self.correlation > self.most_correlated
+    }
+
+    /// Whether the records differ over their whole length by little more than the noise.
+    fn is_nearly_passed(&self) -> bool {
+        self.is_refused() && self.share == 1.0 && self.noise_ratio < NEAR
     }
 
     /// Differences of every record in units of the noise, over this share of the records.
@@ -148,15 +157,21 @@ pub fn closest(
         begin: (0..set_up.unknowns.len()).map(begin).collect(),
         maker,
     };
-    let of_case = search.closest(set_up)?;
-    if of_case.is_refused() {
-        let fine = fine_enough(search.maker, set_up, drawn, noise)?;
+    let (mut set_up, mut found) = (set_up.clone(), search.closest(set_up)?);
+    if found.closest.is_refused() {
+        let fine = fine_enough(search.maker, &set_up, drawn, noise)?;
         if fine.halvings > set_up.halvings {
-            let found = search.closest(&fine)?;
-            return Ok(Some((fine, found)));
+            (found, set_up) = (search.closest(&fine)?, fine);
         }
     }
-    Ok(Some((set_up.clone(), of_case)))
+    // Phases of slips may still move by what is left of the step.
+    while found.closest.is_nearly_passed() && set_up.halvings < MOST_HALVINGS {
+        set_up = set_up.halved(1);
+        let whole = Part::of(&set_up, 1.0);
+        let begin = search.judge(&whole, vec![found.numbers])?;
+        found = search.descend(&whole, begin)?;
+    }
+    Ok(Some((set_up, found.closest)))
 }
 
 /// The set-up with the largest time step whose curves are those of the finest one, but for less than the
@@ -172,7 +187,7 @@ fn fine_enough(
         let runs = Runs::new(set_up, points, FIRST_SURFACE);
         maker.curves(CalibrationStage::Closest, &runs)
     };
-    let finest = set_up.halved(MOST_HALVINGS);
+    let finest = set_up.halved(SEARCHED_HALVINGS);
     let of_finest = curves(&finest)?;
     let is_same = |(one, other): (&Curves, &Curves)| {
         let mut records = one.iter().zip(other).zip(&set_up.conditions);
@@ -180,7 +195,7 @@ fn fine_enough(
             apart(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
         })
     };
-    for times in 0..MOST_HALVINGS {
+    for times in 0..SEARCHED_HALVINGS {
         let coarse = set_up.halved(times);
         if curves(&coarse)?.iter().zip(&of_finest).all(is_same) {
             return Ok(coarse);
@@ -210,27 +225,28 @@ struct Found {
 
 impl Search<'_, '_> {
     /// The closest curve of a set-up. Searches end where the differences are noise.
-    fn closest(&mut self, set_up: &SetUp) -> Result<Closest, StudyError> {
-        let mut found = vec![self.from(set_up, 0)?];
-        let mut best = found[0];
+    fn closest(&mut self, set_up: &SetUp) -> Result<Found, StudyError> {
+        let mut best = self.from(set_up, 0)?;
+        let mut before = vec![best.closest];
         for number in 1..SEARCHES {
-            if !best.is_refused() {
+            if !best.closest.is_refused() {
                 break;
             }
             let next = self.from(set_up, number)?;
-            if next.is_closer_than(&best) || !next.is_refused() {
+            let closest = next.closest;
+            if closest.is_closer_than(&best.closest) || !closest.is_refused() {
                 best = next;
             }
-            if found.iter().any(|before| next.agrees_with(before)) {
+            if before.iter().any(|before| closest.agrees_with(before)) {
                 break;
             }
-            found.push(next);
+            before.push(closest);
         }
         Ok(best)
     }
 
     /// The closest curve of the search of this number.
-    fn from(&mut self, set_up: &SetUp, number: usize) -> Result<Closest, StudyError> {
+    fn from(&mut self, set_up: &SetUp, number: usize) -> Result<Found, StudyError> {
         let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);
         let mut draws = draws(Stream::Closest, number, 0);
         let [first, longer @ ..] = PARTS;
@@ -245,7 +261,7 @@ impl Search<'_, '_> {
             let begin = self.judge(&part, vec![best.numbers])?;
             best = self.over(&part, begin, &mut adaptation, &mut draws)?;
         }
-        Ok(best.closest)
+        Ok(best)
     }
 
     /// The closest curve over a part of the records: by descent, and by generations where that does not lead

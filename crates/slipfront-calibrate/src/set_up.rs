@@ -14,7 +14,7 @@ use slipfront_study::identity::physics;
 use slipfront_study::{StudyError, TrainingError};
 
 /// Number of times by which the time step of a case is halved at the most.
-pub(crate) const MOST_HALVINGS: u32 = 5;
+pub(crate) const MOST_HALVINGS: u32 = 7;
 
 /// Conditions of one record.
 #[derive(Clone, Debug, PartialEq)]
