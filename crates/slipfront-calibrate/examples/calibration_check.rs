@@ -43,8 +43,8 @@ use crate::velocity_steps::{KEYS, RANGES, SPACING, friction};
 /// Standard deviation of the noise, over the mean of friction.
 const NOISE: f64 = 0.01;
 
-/// Time step of the runs that become records. An experiment has none: this one is a twelfth of the finest of a
-/// calibration of these cases.
+/// Time step of the runs that become records. An experiment has none: this one is a twelfth of the finest of
+/// a calibration of these cases.
 const RECORD_STEP: f64 = 0.001;
 
 /// Runs that are drawn from an estimate.

@@ -39,8 +39,8 @@ const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 const STEP_ERROR: f64 = 0.25;
 const STEP_POINTS: usize = 5;
 
-/// Number of times by which the time step is halved at the most for whole searches. At still finer steps a curve
-/// that is near already is followed.
+/// Number of times by which the time step is halved at the most for whole searches. At still finer steps a
+/// curve that is near already is followed.
 const SEARCHED_HALVINGS: u32 = 5;
 
 /// Number of searches, and runs of a generation.

@@ -62,8 +62,8 @@ impl Model {
 }
 
 /// A number that is kept of every block of a sheet above the lowest one, after the columns of the law of
-/// friction: all columns of one sheet, then those of the sheet above it. Velocities are those of the instant of
-/// [`BlockColumn::VelocityX`].
+/// friction: all columns of one sheet, then those of the sheet above it. Velocities are those of the instant
+/// of [`BlockColumn::VelocityX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SheetColumn {
     DisplacementX,

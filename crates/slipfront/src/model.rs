@@ -146,8 +146,8 @@ impl Model {
         &self.sheets
     }
 
-    /// Stiffness of the spring through which the drive pulls a block where all blocks of a sheet move alike: of
-    /// the drive spring, and of the springs between sheets that follow it in series.
+    /// Stiffness of the spring through which the drive pulls a block where all blocks of a sheet move alike:
+    /// of the drive spring, and of the springs between sheets that follow it in series.
     pub(crate) fn mount_stiffness(&self) -> f64 {
         sheets::stiffness_in_series(&self.sheets, self.drive.k_drive)
     }
@@ -293,9 +293,9 @@ impl Model {
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// The last factor is the mass of a stack of sheets of relative thickness h_k. V* counts as 0 under a held drive; a coefficient that depends on the speed is taken at V*; for springs
-    /// in contact half the mean threshold stands for kinetic friction. All `ranks` of a lattice must call
-    /// this together.
+    /// The last factor is the mass of a stack of sheets of relative thickness h_k. V* counts as 0 under a
+    /// held drive; a coefficient that depends on the speed is taken at V*; for springs in contact half the
+    /// mean threshold stands for kinetic friction. All `ranks` of a lattice must call this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self
@@ -323,7 +323,7 @@ impl Model {
     /// ```
     ///
     /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
-    /// this time, `path(t) = V* t*`. Of a stack of sheets, with its stiffness in series, it is that of slow
+    /// this time, `path(t) = V* t*`. A stack of sheets takes the stiffness in series, which holds for slow
     /// loading: the sheets above swing about it. All `ranks` of a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.mount_stiffness(), self.drive.v_star);

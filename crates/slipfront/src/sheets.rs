@@ -24,8 +24,8 @@ pub(crate) fn mass(sheets: &[Sheet]) -> f64 {
     sheets.iter().fold(1.0, |mass, sheet| mass + sheet.thickness)
 }
 
-/// Stiffness with which a drive spring of stiffness `k_drive` on the highest sheet pulls the lowest one, where
-/// all blocks of a sheet move alike: `1/(1/k_s + sum 1/g_k)`.
+/// Stiffness with which a drive spring of stiffness `k_drive` on the highest sheet pulls the lowest one,
+/// where all blocks of a sheet move alike: `1/(1/k_s + sum 1/g_k)`.
 pub(crate) fn stiffness_in_series(sheets: &[Sheet], k_drive: f64) -> f64 {
     sheets
         .iter()

@@ -126,8 +126,8 @@ impl Simulation {
     }
 
     /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the number
-    /// of the column, the first block, and the values. The columns are [`BlockColumn::ALL`], those of the law of
-    /// friction and those of the sheets above the lowest, together [`Model::n_columns`].
+    /// of the column, the first block, and the values. The columns are [`BlockColumn::ALL`], those of the law
+    /// of friction and those of the sheets above the lowest, together [`Model::n_columns`].
     ///
     /// # Errors
     /// Errors of `write`.

@@ -31,15 +31,15 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
     4.0 / (lag + (lag * lag + 4.0 * all).sqrt())
 }
 
-/// Largest eigenvalue of the springs of a block to its neighbours, `2 sum_j k_ij e_ij e_ij^T/m`, of a block in
-/// the middle of equal ones.
+/// Largest eigenvalue of the springs of a block to its neighbours, `2 sum_j k_ij e_ij e_ij^T/m`, of a block
+/// in the middle of equal ones.
 const SPRINGS_OF_A_BLOCK: f64 = OMEGA_MAX_SQUARED - K_DRIVE;
 
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
-    /// [`dt_star_limit`], the bound of the paper's slider; of a stack of sheets that of equal blocks held by the
-    /// springs between the sheets. Friction and damping do not lower it. All `ranks`
-    /// of a lattice must call this together.
+    /// [`dt_star_limit`], the bound of the paper's slider; of a stack of sheets that of equal blocks held by
+    /// the springs between the sheets. Friction and damping do not lower it. All `ranks` of a lattice must
+    /// call this together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = self.friction.contact_stiffness();

@@ -406,8 +406,8 @@ fn records_of_another_law_are_refused_and_conditions_count() {
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
 }
 
-/// A record that was computed at the step of the case passes, though its slips begin at whole steps: at a finer
-/// step they would not.
+/// A record that was computed at the step of the case passes, though its slips begin at whole steps: at a
+/// finer step they would not.
 #[test]
 fn a_run_at_a_coarse_step_passes() {
     let folder = tempfile::tempdir().unwrap();

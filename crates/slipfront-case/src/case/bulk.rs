@@ -108,8 +108,8 @@ impl Case {
         ))
     }
 
-    /// Sentences on what the stack leaves out of a bulk body: another Poisson's ratio than that of its sheets,
-    /// and waves that are shorter than those of the fit.
+    /// Sentences on what the stack leaves out of a bulk body: another Poisson's ratio than that of its
+    /// sheets, and waves that are shorter than those of the fit.
     pub(super) fn bulk_notes(&self) -> Vec<String> {
         let Some(body) = self.bulk_body() else {
             return Vec::new();

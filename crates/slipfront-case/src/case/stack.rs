@@ -8,8 +8,8 @@
 //! Z_along = G q/(1 - nu) (2 kappa cosh 2x + 1 + kappa^2 + 4 x^2)/(2 kappa sinh 2x + 4 x)     Z_across = G q coth x
 //! ```
 //!
-//! which are `G q/(1 - nu)` and `G q` of a deep body. Two sheets with the springs of the lattice, of thickness
-//! h_1 and h_2, a coupling g and a mount K, answer with
+//! which are `G q/(1 - nu)` and `G q` of a deep body. Two sheets with the springs of the lattice, of
+//! thickness h_1 and h_2, a coupling g and a mount K, answer with
 //!
 //! ```text
 //! Z = c E h_1 q^2 + g (K + c E h_2 q^2)/(g + K + c E h_2 q^2),   c = 9/8 along, 3/8 across, sqrt(27)/8 their mean
@@ -53,8 +53,8 @@ pub(super) struct Stack {
 /// A bulk body, with the stack of two sheets that stands for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BulkBody {
-    /// Longest wave length of the texture, m: its pitch if one array fills the slider, else the longer side of
-    /// the slider.
+    /// Longest wave length of the texture, m: its pitch if one array fills the slider, else the longer side
+    /// of the slider.
     pub longest_wave: f64,
     /// Height of the body, m; infinite for a deep one.
     pub height: f64,
@@ -147,8 +147,8 @@ impl BulkBody {
         }
     }
 
-    /// Stiffness of the stack over that of the body at a wave length in m, less 1, in the geometric mean of both
-    /// directions.
+    /// Stiffness of the stack over that of the body at a wave length in m, less 1, in the geometric mean of
+    /// both directions.
     pub(super) fn excess(&self, young_modulus: f64, wave_length: f64) -> f64 {
         let q = TAU / wave_length;
         let [along, across] = response(q * self.height, self.poisson);
@@ -156,7 +156,8 @@ impl BulkBody {
         self.stiffness(young_modulus, q) / (shear_modulus * q * (along * across).sqrt()) - 1.0
     }
 
-    /// Traction over displacement of the stack at wave number q, in the geometric mean of both directions, Pa/m.
+    /// Traction over displacement of the stack at wave number q, in the geometric mean of both directions,
+    /// Pa/m.
     fn stiffness(&self, young_modulus: f64, q: f64) -> f64 {
         let [lower, upper] = self.thickness.map(|h| OF_SHEET * young_modulus * h * q * q);
         let above = self.mount + upper;

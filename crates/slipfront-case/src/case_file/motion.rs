@@ -77,9 +77,9 @@ impl Load {
     expecting = "expected true, false, or a distance such as { within = \"400 um\" }"
 )]
 pub enum Redistribute {
-    /// All of them, or none: then the load of textured blocks is lost.
+    /// All blocks in contact, or none: then the load of textured blocks is lost.
     All(bool),
-    /// Those near each textured block.
+    /// The blocks in contact near each textured block.
     Near(Near),
 }
 

@@ -41,15 +41,15 @@ key_rows! {
         pub thickness: Option<Length> = key("", quantity("m", within(1e-12, 1e3)))
             .title("thickness", "h", "m")
             .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes, and what to write for a bulk body."),
-        /// What the slider is made of: a sheet, or a bulk body, for which a stack of two sheets with the
-        /// springs of the lattice takes the place of the one; only the lower one is in friction.
+        /// Kind of body: a sheet, or a bulk body, for which a stack of two sheets with the springs of the
+        /// lattice takes the place of the one. Friction acts on the lower one.
         #[serde(deserialize_with = "word", skip_serializing_if = "Body::is_sheet")]
         pub body: Body = key("\"sheet\"", KeyKind::Words(names_of::<Body>))
             .note("See [bulk bodies](../model.md#bulk-bodies)."),
         /// Height of a bulk body, from the contact to the face by which it is driven.
         pub height: Option<Length> = key("", quantity("m", within(1e-12, 1e6))).without("deep: many pitches")
             .title("height", "H", "m"),
-        /// Poisson's ratio of a bulk body. Of the sheets it stays 1/3.
+        /// Poisson's ratio of a bulk body. The sheets keep 1/3.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
         /// The sheets of a bulk body in place of those that follow from height and Poisson's ratio, from the
@@ -107,8 +107,8 @@ key_rows! {
     pub struct SheetOfStack {
         /// Thickness of the sheet.
         pub thickness: Length = key("", THICKNESS_OF_SHEET),
-        /// Stiffness per area of the springs from its blocks to those of the sheet above, of the last sheet to
-        /// the drive.
+        /// Stiffness per area of the springs from its blocks to those of the sheet above, of the last sheet
+        /// to the drive.
         pub coupling: StiffnessPerArea = key("", STIFFNESS_PER_AREA),
     }
 }
@@ -138,8 +138,8 @@ const GRADE: KeyKind = KeyKind::Table("{ along = \"x\", from = 1, to = 0.1 }", G
 
 /// Thickness of a sheet of a stack.
 const THICKNESS_OF_SHEET: KeyKind = quantity("m", within(1e-12, 1e3));
-/// Fewest and most sheets of a stack: with one there is nothing to couple, and three are within 0.1 % of a deep
-/// body.
+/// Fewest and most sheets of a stack: with one there is nothing to couple, and three are within 0.1 % of a
+/// deep body.
 const SHEETS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// Largest number of all blocks.

@@ -14,7 +14,7 @@ pub enum Outline {
     Mask,
 }
 
-/// What the slider is made of.
+/// Kind of body that a slider is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Body {

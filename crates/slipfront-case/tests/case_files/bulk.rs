@@ -112,8 +112,8 @@ fn the_stack_follows_from_the_longest_wave() {
     }
 }
 
-/// In the units of the lattice, `k_s = K l^2/(E h_1)` and `g* = g l^2/(E h_1)`; on finer blocks the body is the
-/// one of the coarser.
+/// In the units of the lattice, `k_s = K l^2/(E h_1)` and `g* = g l^2/(E h_1)`; on finer blocks the body is
+/// the one of the coarser.
 #[test]
 fn the_model_has_the_sheets_of_the_body() {
     let text = DIMPLES;
@@ -215,8 +215,8 @@ fn what_a_bulk_body_does_not_have_is_refused() {
     assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
 }
 
-/// The load of a textured block goes to the blocks in contact within a pitch, in metres, whatever the mesh; all
-/// of it arrives.
+/// The load of a textured block goes to the blocks in contact within a pitch, in metres, whatever the mesh;
+/// all of it arrives.
 #[test]
 fn load_is_shared_within_a_pitch() {
     let patch = format!("{DIMPLES}array = [2, 2]");

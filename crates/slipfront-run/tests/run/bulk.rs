@@ -3,10 +3,10 @@
 use slipfront_case::case::Case;
 use slipfront_run::run_summary::run_summary;
 
-/// A square array of dimples half a pitch wide, R* = 0.5, in a deep body of nu = 1/4 whose load is shared by all
-/// blocks in contact: `w p (1 - nu)/G` with `w = (mu_s - mu_k) p_c/D_c` and the pressure `p_c` of these blocks,
-/// and the reductions of static friction in % by a quasi-static spectral solver of the half-space. A lattice of
-/// springs in three dimensions with inertia found 6.33 for the second and 25.64 for the fourth.
+/// A square array of dimples half a pitch wide, R* = 0.5, in a deep body of nu = 1/4 whose load is shared by
+/// all blocks in contact: `w p (1 - nu)/G` with `w = (mu_s - mu_k) p_c/D_c` and the pressure `p_c` of these
+/// blocks, and the reductions of static friction in % by a quasi-static spectral solver of the half-space. A
+/// lattice of springs in three dimensions with inertia found 6.33 for the second and 25.64 for the fourth.
 const REDUCTIONS: [(f64, f64); 5] = [(1.0, 3.05), (2.0, 6.48), (5.0, 15.2), (10.0, 25.5), (20.0, 34.1)];
 
 /// Reduction of static friction in %, where blocks in contact carry the load of textured ones within so far.
@@ -29,8 +29,8 @@ fn reduction(weakening: f64, within: &str) -> f64 {
     100.0 * (1.0 - summary.static_friction_star)
 }
 
-/// Two sheets find the reductions of the body within 8 %, and up to a fifth more where load is shared within a
-/// pitch, which loads the rims of the dimples.
+/// Two sheets find the reductions of the body within 8 %, and up to a fifth more where load is shared within
+/// a pitch, which loads the rims of the dimples.
 #[test]
 fn dimples_in_a_body_reduce_friction_as_they_do_in_a_half_space() {
     for (weakening, expected) in REDUCTIONS {

@@ -9,18 +9,18 @@ use crate::lattice::{Edges, Lattice};
 /// Number of blocks whose marks fit into a word.
 const MARKS: usize = u64::BITS as usize;
 
-/// Pressures, over the mean one, of the blocks in some rows after each textured block has left its load, in equal
-/// parts, to the blocks in contact whose centres are at most `distance` blocks away from its own. Blocks in
-/// contact have their load over `factor`, which [`Load::Redistributed`](super::Load::Redistributed) gives to
-/// each; textured ones keep their pressure. The total is exact but for rounding of each load.
+/// Pressures, over the mean one, of the blocks in some rows after each textured block has left its load, in
+/// equal parts, to the blocks in contact whose centres are at most `distance` blocks away from its own.
+/// Blocks in contact have their load over `factor`, which [`Load::Redistributed`](super::Load::Redistributed)
+/// gives to each; textured ones keep their pressure. The total is exact but for rounding of each load.
 ///
 /// ```text
 /// F_i = p_i + sum_j p_j/n_j   over textured blocks j near i,   n_j the number of blocks in contact near j
 /// ```
 ///
-/// `textured` and `exists` have a mark for every block of these rows, and `pressure` has their `p_i`; all exist,
-/// or have an equal pressure, if there are none. All `ranks` of a lattice must call this together, and find the
-/// same bits for any number of them.
+/// `textured` and `exists` have a mark for every block of these rows, and `pressure` has their `p_i`; all
+/// exist, or have an equal pressure, if there are none. All `ranks` of a lattice must call this together, and
+/// find the same bits for any number of them.
 ///
 /// # Errors
 /// [`SurfaceError::NoContactNear`] if there is no block in contact near a textured one.

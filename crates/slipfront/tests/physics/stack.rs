@@ -1,5 +1,5 @@
-//! Stacks of sheets: blocks one above the other as masses on springs, waves along and across, and the stability
-//! of the step.
+//! Stacks of sheets: blocks one above the other as masses on springs, waves along and across, and the
+//! stability of the step.
 
 use std::f64::consts::TAU;
 
@@ -65,7 +65,8 @@ fn a_sheet_that_is_held_below_swings() {
     }
 }
 
-/// Stuck blocks that are displaced in a wave take the traction `Z u`, where the sheets above have come to rest:
+/// Stuck blocks that are displaced in a wave take the traction `Z u`, where the sheets above have come to
+/// rest:
 ///
 /// ```text
 /// Z_k = h_k c(q) + 1/(1/g_k+1 + 1/Z_k+1),   c = 2 (k_1 + k_2)(1 - cos q) along, 2 k_2 (1 - cos q) across

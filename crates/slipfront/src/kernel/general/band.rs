@@ -110,8 +110,8 @@ pub(super) struct Band {
     relative_springs: Option<[Vec<f64>; 4]>,
     dampers: Option<Dampers>,
     pub(super) sums: BandSums,
-    /// Sums of energies: kinetic half a step before and after, of the drive springs, and of the springs between
-    /// sheets.
+    /// Sums of energies: kinetic half a step before and after, of the drive springs, and of the springs
+    /// between sheets.
     pub(super) energy_sums: [RunningSum; 4],
     /// Energies of the springs between blocks of each sheet along each bond, one number per row.
     pub(super) row_energies: Vec<[Vec<f64>; 4]>,

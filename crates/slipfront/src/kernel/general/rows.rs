@@ -86,8 +86,8 @@ impl Rows {
         }
     }
 
-    /// Adds the motion of the first and the last row of this band to `ends`, one component after the other, for
-    /// the bands below and above; nothing where there is none.
+    /// Adds the motion of the first and the last row of this band to `ends`, one component after the other,
+    /// for the bands below and above; nothing where there is none.
     pub(super) fn read_ends(&self, own: &State, ends: &mut [Vec<f64>; 2]) {
         let Some(Beside { has, has_dampers, .. }) = &self.beside else {
             return;
