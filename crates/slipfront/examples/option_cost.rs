@@ -20,8 +20,8 @@ use slipfront::surface::{
 };
 use slipfront::{
     Ageing, ContactSprings, Coulomb, Drive, Edge, Execution, Friction, FrictionLaw, Kernel, Lattice, Loading,
-    Model, Outline, Program, RateAndState, Rotation, Simulation, Slider, SlipWeakening, State, Surface,
-    VectorField, Weakening, scales,
+    Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, Slider, SlipWeakening, State,
+    Surface, VectorField, Weakening, scales,
 };
 
 const V_STAR: f64 = 0.03;
@@ -55,12 +55,14 @@ pub(crate) enum Choice {
     Literal,
     RateAndState,
     ContactSprings,
+    /// A sheet above the lattice, as a deep body has.
+    Stack,
 }
 
 use Choice::{Disc, Grading, LoadProfile, Viscosity};
 
 /// The options that are measured, with their names.
-pub(crate) const MEASURED: [(&str, &[Choice]); 23] = [
+pub(crate) const MEASURED: [(&str, &[Choice]); 24] = [
     ("plain", &[]),
     ("edge drive", &[Choice::EdgeDrive]),
     ("load profile", &[LoadProfile]),
@@ -85,6 +87,7 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 23] = [
     ("ageing", &[Choice::Ageing]),
     ("rate and state", &[Choice::RateAndState]),
     ("contact springs", &[Choice::ContactSprings]),
+    ("stack of two sheets", &[Choice::Stack]),
     (
         "graded disc, rotation, viscosity, ageing",
         &[Grading, Disc, Choice::Rotation, Viscosity, Choice::Ageing],
@@ -185,6 +188,13 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     if has(Choice::Program) {
         let segments = [(V_STAR, 5.0), (0.5 * V_STAR, 9.0), (V_STAR, f64::INFINITY)];
         model.drive.program = Some(Arc::new(Program::new(segments)));
+    }
+    if has(Choice::Stack) {
+        let sheet = Sheet {
+            thickness: 8.5,
+            coupling: 1.0,
+        };
+        model = model.with_sheets(vec![sheet]);
     }
     if has(Choice::Held) {
         model.drive.loading = Loading::Held {
