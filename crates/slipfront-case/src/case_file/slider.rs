@@ -245,6 +245,24 @@ impl Slider {
                 format!("`{key}` has no meaning with `slider.body` = \"bulk\": {why}; leave it out, or take \"sheet\"")
             });
         }
+        let [nx, ny] = self.blocks;
+        if nx.min(ny) == 1 {
+            return check.refuse("blocks", |key| {
+                format!(
+                    "`{key}` is [{nx}, {ny}]: a bulk body needs several blocks along x and along y; take \"sheet\" for a chain or a single block"
+                )
+            });
+        }
+        if let Some(height) = &self.height
+            && height.si() < self.block_size.si()
+        {
+            return check.refuse("height", |key| {
+                format!(
+                    "`{key}` is \"{height}\", less than a block of \"{}\": take smaller blocks, or a sheet of this `thickness`",
+                    self.block_size
+                )
+            });
+        }
         let Some(sheets) = &self.sheets else {
             return Ok(());
         };

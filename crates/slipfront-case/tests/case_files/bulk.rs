@@ -212,6 +212,13 @@ fn what_a_bulk_body_does_not_have_is_refused() {
     let two = one.replace("}]", "}, { thickness = '2 km', coupling = '1e15 N/m^3' }]");
     assert!(refusal(&[bulk, &two]).contains("it must be"));
     assert!(refusal(&[bulk, &two, "slider.height='1 mm'"]).contains("is not read where"));
+    for blocks in ["[1, 1]", "[50, 1]"] {
+        assert!(
+            refusal(&[bulk, &format!("slider.blocks={blocks}")])
+                .contains("several blocks along x and along y")
+        );
+    }
+    assert!(refusal(&[bulk, "slider.height='19 um'"]).contains("less than a block of \"20 um\""));
     assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
 }
 

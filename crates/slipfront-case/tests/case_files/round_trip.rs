@@ -116,7 +116,9 @@ fn bulk() -> impl Strategy<Value = Slider> {
     let sheet = (length(), quantity(0, 20, &["N/m^3"]));
     let sheet = sheet.prop_map(|(thickness, coupling)| SheetOfStack { thickness, coupling });
     let sheets = prop::collection::vec(sheet, 2..=4).prop_map(|sheets| (None, None, Some(sheets)));
-    let by_height = (prop::option::of(length()), prop::option::of(0.0..0.5));
+    // As high as the largest block at the least.
+    let height = quantity(2, 6, &["km"]);
+    let by_height = (prop::option::of(height), prop::option::of(0.0..0.5));
     let by_height = by_height.prop_map(|(height, poisson)| (height, poisson, None));
     (slider(), prop_oneof![by_height, sheets]).prop_map(|(slider, (height, poisson, sheets))| Slider {
         body: Body::Bulk,
