@@ -160,9 +160,10 @@ pub fn closest(
     let (mut set_up, mut found) = (set_up.clone(), search.closest(set_up)?);
     if found.closest.is_refused() {
         let fine = fine_enough(search.maker, &set_up, drawn, noise)?;
-        if fine.halvings > set_up.halvings {
-            (found, set_up) = (search.closest(&fine)?, fine);
+        if fine.halvings == set_up.halvings {
+            return Ok(Some((set_up, found.closest)));
         }
+        (found, set_up) = (search.closest(&fine)?, fine);
     }
     // Phases of slips may still move by what is left of the step.
     while found.closest.is_nearly_passed() && set_up.halvings < MOST_HALVINGS {
