@@ -87,6 +87,10 @@ fn digest(case: &Case) -> blake3::Hash {
         number(value);
     }
     number(f64::from(u8::from(drive.rotation.is_some())));
+    for sheet in model.sheets() {
+        number(sheet.thickness);
+        number(sheet.coupling);
+    }
     for segment in drive.program.iter().flat_map(|program| program.segments()) {
         number(segment.v_star);
         number(segment.from_star);

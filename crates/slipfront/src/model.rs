@@ -148,7 +148,7 @@ impl Model {
 
     /// Stiffness of the spring through which the drive pulls a block where all blocks of a sheet move alike:
     /// of the drive spring, and of the springs between sheets that follow it in series.
-    pub(crate) fn mount_stiffness(&self) -> f64 {
+    pub fn mount_stiffness(&self) -> f64 {
         sheets::stiffness_in_series(&self.sheets, self.drive.k_drive)
     }
 
