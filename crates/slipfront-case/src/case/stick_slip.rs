@@ -32,8 +32,8 @@ impl Case {
     /// ```
     ///
     /// and the step with which they are good to 0.1 %. There is none where the drive is stiffer than
-    /// [critical](RateAndState::critical_stiffness), where blocks or sheets do not move as one, or where slips are so
-    /// large that the spring pushes back, since these differ from each other in any step.
+    /// [critical](RateAndState::critical_stiffness), where blocks or sheets do not move as one, or where
+    /// slips are so large that the spring pushes back, since these differ from each other in any step.
     pub fn coarse_for_stick_slip(&self) -> Option<String> {
         let model = &self.model;
         let Friction::RateAndState(law) = &model.friction else {
