@@ -57,32 +57,13 @@ impl Checkpoint {
 impl Model {
     /// Number of columns of a checkpoint; a column holds one number per block.
     pub fn n_columns(&self) -> usize {
-        BlockColumn::ALL.len() + self.friction.n_columns() + SheetColumn::ALL.len() * self.sheets.len()
+        BlockColumn::ALL.len() + self.n_memory_columns()
     }
-}
 
-/// A number that is kept of every block of a sheet above the lowest one, after the columns of the law of
-/// friction: all columns of one sheet, then those of the sheet above it. Velocities are those of the instant
-/// of [`BlockColumn::VelocityX`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SheetColumn {
-    DisplacementX,
-    DisplacementY,
-    VelocityX,
-    VelocityY,
-}
-
-impl SheetColumn {
-    pub(crate) const ALL: [Self; 4] = [
-        Self::DisplacementX,
-        Self::DisplacementY,
-        Self::VelocityX,
-        Self::VelocityY,
-    ];
-
-    /// All columns of so many sheets, with the number of the sheet, from 0 for the lowest above the lattice.
-    pub(crate) fn of_sheets(sheets: usize) -> impl Iterator<Item = (usize, Self)> {
-        (0..sheets).flat_map(|sheet| Self::ALL.map(|column| (sheet, column)))
+    /// Number of columns beside [`BlockColumn::ALL`]: those of the law of friction, then for every sheet above
+    /// the lowest one displacement and velocity along x and y, at the instants of the columns of that one.
+    pub(crate) fn n_memory_columns(&self) -> usize {
+        self.friction.n_columns() + 4 * self.sheets.len()
     }
 }
 

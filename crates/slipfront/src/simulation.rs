@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::checkpoint::{BlockColumn, Checkpoint, SheetColumn};
+use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::{Clock, Rest};
 use crate::communicator::{Communicator, lowest_rank};
 use crate::error::RunError;
@@ -140,22 +140,12 @@ impl Simulation {
             engine.read_column(column, first, values);
             write(column as usize, first, values)
         })?;
-        let n_blocks = self.model.surface.n_blocks();
-        let of_law = BlockColumn::ALL.len()..;
-        for (column, number) in (0..self.model.friction.n_columns()).zip(of_law) {
-            BlockColumn::for_each_part_of_one(n_blocks, |first, values| {
+        (0..self.model.n_memory_columns()).try_for_each(|column| {
+            BlockColumn::for_each_part_of_one(self.model.surface.n_blocks(), |first, values| {
                 engine.read_memory(self.time_star(), column, first, values);
-                write(number, first, values)
-            })?;
-        }
-        let of_sheets = BlockColumn::ALL.len() + self.model.friction.n_columns()..;
-        for ((sheet, column), number) in SheetColumn::of_sheets(self.model.sheets.len()).zip(of_sheets) {
-            BlockColumn::for_each_part_of_one(n_blocks, |first, values| {
-                engine.read_sheet(sheet, column, first, values);
-                write(number, first, values)
-            })?;
-        }
-        Ok(())
+                write(BlockColumn::ALL.len() + column, first, values)
+            })
+        })
     }
 
     /// Steps until `stop`, and shows every instant, including the last, to the observers that are due. All

@@ -6,9 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
     /// `sum w u` over the blocks that the drive springs pull, those of the highest sheet, with the relative
-    /// stiffness `w` of these springs. For a drive that rotates the two
-    /// components are not x and y, but along the [direction](crate::Drive::direction_at) `g` of each block
-    /// and across it, to its left.
+    /// stiffness `w` of these springs. For a drive that rotates the two components are not x and y, but along
+    /// the [direction](crate::Drive::direction_at) `g` of each block and across it, to its left.
     pub displacement: [f64; 2],
     /// Sum `sum w v` at t_n, the mean of the half steps around it, in the components of `displacement`.
     pub velocity: [f64; 2],

@@ -7,8 +7,10 @@
 
 use std::f64::consts::TAU;
 
+use slipfront::lattice::POISSON_RATIO;
+
 use super::runnable::Case;
-use super::stack::BulkBody;
+use super::stack::{BulkBody, shear_modulus};
 use super::textures::{pitch, regular_pitch};
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
@@ -16,10 +18,6 @@ use slipfront_base::number_format::{four_digits, with_si_prefix};
 const THICK: f64 = 1.0 / 3.0;
 /// Share by which a thickness may be too large: rounding of lengths, and of a thickness to four digits.
 const ROUNDING: f64 = 1e-3;
-/// Poisson's ratio of the springs between blocks.
-const NU: f64 = 1.0 / 3.0;
-/// Shear modulus `G = E/(2 (1 + nu))` over Young's modulus.
-const SHEAR: f64 = 1.0 / (2.0 * (1.0 + NU));
 /// Critical size of a long strip on a rigid base in units of `G/((1 - nu) w)`: an eigenvalue, which is 2.313
 /// to 2.319 on 400 cells.
 const STRIP: f64 = 2.316;
@@ -59,10 +57,8 @@ impl Case {
         let (model, scales) = (&self.model, &self.scales);
         // On a block it is w l^2 in units of E h.
         let weakening = model.weakening().filter(|weakening| *weakening > 0.0)?;
-        let of_sheet = SHEAR / (1.0 - NU);
-        let modulus = self
-            .bulk_body()
-            .map_or(of_sheet, |body| body.effective_modulus(1.0));
+        let poisson = self.bulk_body().map_or(POISSON_RATIO, |body| body.poisson);
+        let modulus = shear_modulus(1.0, poisson) / (1.0 - poisson);
         let blocks = STRIP * modulus / weakening * (scales.block_size / scales.thickness);
         (model.lattice.nx > 1 && model.lattice.ny > 1).then_some(blocks)
     }
@@ -115,25 +111,21 @@ impl Case {
             return Vec::new();
         };
         let ratio = 1.0 / (1.0 - body.poisson);
-        let unlike = (body.poisson - NU).abs() > LIKE_POISSON;
+        let unlike = (body.poisson - POISSON_RATIO).abs() > LIKE_POISSON;
         let unlike = unlike.then(|| {
             format!(
                 "the sheets have Poisson's ratio 1/3, so that this stack is 1.73 times as stiff along a wave as across it, and the body, of \
                  `slider.poisson` = {}, {} times: of textures it found {}",
                 four_digits(body.poisson),
                 four_digits(ratio),
-                if body.poisson > NU {
+                if body.poisson > POISSON_RATIO {
                     "6 to 27 % less than such a body at 0.49"
                 } else {
                     "1 to 7 % more than such a body at 0.25"
                 }
             )
         });
-        let feature = self
-            .clearance()
-            .feature
-            .map(|blocks| blocks * self.scales.block_size);
-        let short = feature.and_then(|feature| {
+        let short = self.texture_lengths().feature.and_then(|feature| {
             let excess = body.excess(self.scales.young_modulus, 2.0 * feature);
             (excess > LARGE_EXCESS).then(|| {
                 format!(
@@ -192,7 +184,8 @@ impl TextureLengths {
 /// h = (2/3) nu/((1 - nu^2) q)
 /// ```
 fn fitting_thickness(pitch: f64) -> f64 {
-    2.0 / 3.0 * NU / (1.0 - NU * NU) * (pitch / TAU)
+    let nu = POISSON_RATIO;
+    2.0 / 3.0 * nu / (1.0 - nu * nu) * (pitch / TAU)
 }
 
 /// Range of what a texture changes in a bulk body over what it changes in a sheet of this thickness over the

@@ -15,6 +15,8 @@ use crate::quantity::Length;
 /// Quantities that follow from a case file without the files that it names.
 pub(super) struct Derived {
     pub(super) scales: Scales,
+    /// The stack that the slider is, if it is not one sheet.
+    pub(super) stack: Option<Stack>,
     pub(super) groups: Groups,
     pub(super) budget: Budget,
     pub(super) friction: Friction,
@@ -30,7 +32,7 @@ impl Derived {
         ranks: &Ranks,
         to_run: bool,
     ) -> Result<Self, CaseError> {
-        let scales = scales(file);
+        let (scales, stack) = scales_and_stack(file);
         let groups = Groups::of(file, &scales)?;
         check_correlation(file)?;
         let n_ranks = ranks.communicator.size();
@@ -50,6 +52,7 @@ impl Derived {
         budget.check_case(file, to_run)?;
         Ok(Self {
             scales,
+            stack,
             groups,
             budget,
             friction,
@@ -59,6 +62,11 @@ impl Derived {
 
 /// Units of the dimensionless quantities of a case file, with the thickness of the lowest sheet of a stack.
 pub fn scales(file: &CaseFile) -> Scales {
+    scales_and_stack(file).0
+}
+
+/// Units of a case file, and the stack from which the thickness in them is.
+fn scales_and_stack(file: &CaseFile) -> (Scales, Option<Stack>) {
     let block_size = file.slider.block_size.si();
     let of_sheet = Scales {
         block_size,
@@ -68,9 +76,12 @@ pub fn scales(file: &CaseFile) -> Scales {
         pressure: file.load.pressure.si(),
         mu_static_mean: file.friction.mu_static,
     };
-    let lowest = Stack::of(file, &of_sheet).map(|stack| stack.thickness[0]);
-    Scales {
-        thickness: lowest.unwrap_or(of_sheet.thickness),
+    let stack = Stack::of(file, &of_sheet);
+    let scales = Scales {
+        thickness: stack
+            .as_ref()
+            .map_or(of_sheet.thickness, |stack| stack.thickness[0]),
         ..of_sheet
-    }
+    };
+    (scales, stack)
 }

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
 
+use super::derived::Derived;
 use super::files::Watch;
-use super::groups::{Groups, within};
+use super::groups::within;
 use super::inputs::Inputs;
-use super::stack::Stack;
 use crate::case_file::{
     Attached, AutoOrStiffness, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
@@ -57,13 +57,13 @@ pub(super) fn attach(
 /// stack of sheets has its own mount.
 pub(super) fn drive(
     file: &CaseFile,
-    scales: &Scales,
-    groups: &Groups,
+    derived: &Derived,
     (lattice, rows): (&Lattice, &Range<usize>),
     slider: &Slider,
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
-    let k_drive = match (Stack::of(file, scales), total(file, scales)) {
+    let (scales, groups) = (&derived.scales, &derived.groups);
+    let k_drive = match (&derived.stack, total(file, scales)) {
         (Some(stack), _) => scales.stiffness_of_area(stack.mount()),
         (None, Some(total)) => total / slider.sum_of_drive_springs(lattice),
         (None, None) => each(file, scales),

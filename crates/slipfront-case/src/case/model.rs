@@ -13,7 +13,6 @@ use super::files::Watch;
 use super::inputs::{Inputs, NamedFiles};
 use super::ranks::Ranks;
 use super::slider::GivenBlocks;
-use super::stack::Stack;
 use super::textures;
 use super::topography::Topography;
 use crate::case_file::{CaseError, CaseFile};
@@ -86,17 +85,13 @@ pub(super) fn make(
         clipped: meshed.clipped,
         empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
     };
-    let drive = drive(
-        file,
-        scales,
-        groups,
-        (&lattice, &rows),
-        &slider,
-        ranks.communicator,
-    )?;
+    let drive = drive(file, derived, (&lattice, &rows), &slider, ranks.communicator)?;
     let (damping, friction) = (damping(groups.omega_star), derived.friction);
     let model = Model::of_rows(lattice, rows, surface, drive, damping, groups.epsilon, friction);
-    let sheets = Stack::of(file, scales).map_or(Vec::new(), |stack| stack.sheets(scales));
+    let sheets = derived
+        .stack
+        .as_ref()
+        .map_or(Vec::new(), |stack| stack.sheets(scales));
     Ok((model.with_slider(slider).with_sheets(sheets), texture))
 }
 

@@ -21,14 +21,13 @@
 
 use std::f64::consts::TAU;
 
+use slipfront::lattice::POISSON_RATIO;
 use slipfront::{Lattice, Scales, Sheet};
 
 use super::textures::regular_pitch;
 use crate::case_file::{Body, CaseFile};
 use crate::quantity::Length;
 
-/// Poisson's ratio of a body for which none is given, that of the springs between blocks.
-const POISSON: f64 = 1.0 / 3.0;
 /// Geometric mean of the stiffness of a sheet along and across, over `E h q^2`.
 const OF_SHEET: f64 = 0.649_519_052_838_329;
 /// Ratio of the largest to the smallest wave number of the fit.
@@ -116,7 +115,7 @@ impl BulkBody {
         let blocks = pitch.unwrap_or(nx.max(ny) as f64);
         Some(Self::new(
             slider.young_modulus.si(),
-            slider.poisson.unwrap_or(POISSON),
+            slider.poisson.unwrap_or(POISSON_RATIO),
             slider.height.as_ref().map_or(f64::INFINITY, Length::si),
             blocks * scales.block_size,
         ))
@@ -133,7 +132,7 @@ impl BulkBody {
             error,
         } = Fit::of(q_a * height, poisson);
         let upper = coupling * coupling / residue;
-        let shear_modulus = young_modulus / (2.0 * (1.0 + poisson));
+        let shear_modulus = shear_modulus(young_modulus, poisson);
         let per_area = shear_modulus * q_a;
         let thickness = |of_mean: f64| of_mean * shear_modulus / (OF_SHEET * young_modulus * q_a);
         Self {
@@ -152,8 +151,8 @@ impl BulkBody {
     pub(super) fn excess(&self, young_modulus: f64, wave_length: f64) -> f64 {
         let q = TAU / wave_length;
         let [along, across] = response(q * self.height, self.poisson);
-        let shear_modulus = young_modulus / (2.0 * (1.0 + self.poisson));
-        self.stiffness(young_modulus, q) / (shear_modulus * q * (along * across).sqrt()) - 1.0
+        let of_body = shear_modulus(young_modulus, self.poisson) * q * (along * across).sqrt();
+        self.stiffness(young_modulus, q) / of_body - 1.0
     }
 
     /// Traction over displacement of the stack at wave number q, in the geometric mean of both directions,
@@ -164,10 +163,15 @@ impl BulkBody {
         lower + self.coupling * above / (self.coupling + above)
     }
 
-    /// `G/(1 - nu)` of the body, Pa.
-    pub(super) fn effective_modulus(&self, young_modulus: f64) -> f64 {
-        young_modulus / (2.0 * (1.0 + self.poisson) * (1.0 - self.poisson))
+    /// The longest and the shortest wave length of the fit, m.
+    pub fn waves(&self) -> [f64; 2] {
+        [self.longest_wave, self.longest_wave / RANGE]
     }
+}
+
+/// `G = E/(2 (1 + nu))`.
+pub(super) fn shear_modulus(young_modulus: f64, poisson: f64) -> f64 {
+    young_modulus / (2.0 * (1.0 + poisson))
 }
 
 /// Traction over displacement along and across a wave of wave number q, over G q, for `x = q H`.
@@ -331,7 +335,7 @@ mod tests {
     fn a_deep_body_has_known_sheets() {
         let (young_modulus, poisson, q_a) = (1.0, 0.25, 1.0);
         let body = BulkBody::new(young_modulus, poisson, f64::INFINITY, TAU / q_a);
-        let m = young_modulus / (2.0 * (1.0 + poisson)) / (1.0 - poisson).sqrt();
+        let m = shear_modulus(young_modulus, poisson) / (1.0 - poisson).sqrt();
         let scaled = [
             body.thickness[0] * OF_SHEET / m,
             body.thickness[1] * OF_SHEET / m,

@@ -15,6 +15,11 @@ fn case(text: &str, overrides: &[String]) -> Case {
     Case::parse(text, "case", "", overrides).unwrap_or_else(|error| panic!("{text}\n{overrides:?}\n{error}"))
 }
 
+/// Settings as a user writes them for `--set`.
+fn sets(sets: &[&str]) -> Vec<String> {
+    sets.iter().map(|set| (*set).to_owned()).collect()
+}
+
 /// The note on a slider of this thickness, which is one of its warnings.
 fn note(text: &str, thickness: &str) -> Option<String> {
     let case = case(text, &[format!("slider.thickness=\"{thickness}\"")]);
@@ -169,9 +174,8 @@ fn sheets_may_be_given() {
 
 #[test]
 fn what_a_bulk_body_does_not_have_is_refused() {
-    let refusal = |sets: &[&str]| {
-        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-        let refused = Case::parse(DIMPLES, "case", "", &sets).unwrap_err();
+    let refusal = |given: &[&str]| {
+        let refused = Case::parse(DIMPLES, "case", "", &sets(given)).unwrap_err();
         refused.to_string()
     };
     let bulk = "slider.body=\"bulk\"";
@@ -227,9 +231,8 @@ fn what_a_bulk_body_does_not_have_is_refused() {
 #[test]
 fn load_is_shared_within_a_pitch() {
     let patch = format!("{DIMPLES}array = [2, 2]");
-    let load = |text: &str, sets: &[&str]| {
-        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-        let surface = &case(text, &sets).model.surface;
+    let load = |text: &str, given: &[&str]| {
+        let surface = &case(text, &sets(given)).model.surface;
         (0..surface.n_blocks())
             .map(|b| surface.normal_force(b))
             .collect::<Vec<f64>>()
@@ -259,9 +262,10 @@ fn load_is_shared_within_a_pitch() {
 #[test]
 fn a_texture_without_a_pitch_says_how_near() {
     let single = "slider = { blocks = [50, 50], block_size = '20 um', body = 'bulk' }\n[[texture]]\nshape = 'cavity'\nlambda = '50 um'";
-    let refused = |sets: &[&str]| {
-        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-        Case::parse(single, "case", "", &sets).unwrap_err().to_string()
+    let refused = |given: &[&str]| {
+        Case::parse(single, "case", "", &sets(given))
+            .unwrap_err()
+            .to_string()
     };
     assert!(
         refused(&[]).contains("texture 0 has no pitch that says how near"),
@@ -280,10 +284,9 @@ fn a_texture_without_a_pitch_says_how_near() {
 /// Poisson's ratio of the sheets stays that of their springs, and small features have waves beyond the fit.
 #[test]
 fn what_the_stack_leaves_out_is_noted() {
-    let notes = |text: &str, sets: &[&str]| {
-        let mut all = vec!["slider.body=\"bulk\"".to_owned()];
-        all.extend(sets.iter().map(|set| (*set).to_owned()));
-        case(text, &all).warnings().join("\n")
+    let notes = |text: &str, given: &[&str]| {
+        let all = [&["slider.body=\"bulk\""], given].concat();
+        case(text, &sets(&all)).warnings().join("\n")
     };
     assert!(!notes(DIMPLES, &[]).contains("sheets"));
     assert!(notes(DIMPLES, &["slider.poisson=0.49"]).contains("6 to 27 % less"));

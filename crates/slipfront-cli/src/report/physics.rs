@@ -10,9 +10,6 @@ use slipfront_case::case_file::{
 
 use super::summary::notes;
 
-/// Shortest wave length, over the longest one, for which the stack of a bulk body is fitted.
-const SHORTEST_WAVE: f64 = 0.125;
-
 /// The resolved physics of a case, as a tree.
 pub fn physics(case: &Case) -> String {
     let mut branches = vec![("slider", slider(case))];
@@ -70,7 +67,7 @@ fn body(case: &Case) -> Option<String> {
     } else {
         "a deep body".to_owned()
     };
-    let waves = [1.0, SHORTEST_WAVE].map(|share| with_si_prefix(share * bulk.longest_wave, "m"));
+    let waves = bulk.waves().map(|wave| with_si_prefix(wave, "m"));
     Some(format!(
         "{height} of nu = {}: sheets of {lower} and {upper}, {:.3e} N/m^3 between them, {:.3e} N/m^3 to the drive, within {:.1} % for waves \
          of {} to {}",

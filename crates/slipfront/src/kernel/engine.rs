@@ -1,7 +1,7 @@
 //! The interface of every kernel.
 
 use super::block::{Block, Field};
-use crate::checkpoint::{BlockColumn, MotionBounds, SheetColumn};
+use crate::checkpoint::{BlockColumn, MotionBounds};
 use crate::clock::Clock;
 use crate::friction::ContactTotals;
 use crate::model::Model;
@@ -68,11 +68,7 @@ pub(crate) trait Engine: Send + Sync {
         ContactTotals::default()
     }
 
-    /// Reads a column of the memory of the law of friction for the blocks from `first` on, at the present t*;
-    /// `column` counts the law's own [`Friction::n_columns`](crate::friction::Friction::n_columns).
+    /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*; `column`
+    /// counts from 0, and first the law's own [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
-
-    /// Reads a column of a checkpoint of a sheet above the lowest one, counted from 0, for the blocks from
-    /// `first` on; a kernel that computes no stacks is not asked for any.
-    fn read_sheet(&self, _sheet: usize, _column: SheetColumn, _first: usize, _values: &mut [f64]) {}
 }

@@ -71,8 +71,7 @@ pub fn share_load(
     let shares = Rows::new(lattice, |b| shares[b]);
     let after = |b: usize| {
         if contact[b] {
-            // Sums over rows are exact, and each fits; those of many rows are added as numbers.
-            (pressure(b) + quantum * disc.sum_of_large(&shares, b)) / factor
+            (pressure(b) + quantum * disc.sum(&shares, b) as f64) / factor
         } else {
             pressure(b)
         }
@@ -140,18 +139,11 @@ impl<'a> Disc<'a> {
         }
     }
 
-    /// Sum over the blocks near block `b`.
-    fn sum(&self, rows: &Rows, b: usize) -> i64 {
+    /// Sum over the blocks near block `b`; over all rows it may be larger than the sum over one can.
+    fn sum(&self, rows: &Rows, b: usize) -> i128 {
         let mut sum = 0;
-        self.for_each_part(b, |j, columns| sum += rows.sum(j, columns));
-        sum
-    }
-
-    /// Sum over the blocks near block `b` of numbers whose sum over all rows may be larger than an integer.
-    fn sum_of_large(&self, rows: &Rows, b: usize) -> f64 {
-        let mut sum = 0_i128;
         self.for_each_part(b, |j, columns| sum += i128::from(rows.sum(j, columns)));
-        sum as f64
+        sum
     }
 
     /// Visits the blocks near block `b`, each once: parts of rows, beyond periodic edges at the other side.

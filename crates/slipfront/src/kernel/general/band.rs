@@ -167,6 +167,20 @@ impl Band {
         }
     }
 
+    /// Columns of a checkpoint beside those of every block, see [`Model::n_memory_columns`].
+    pub(super) fn memory(&self) -> Vec<&[f64]> {
+        let mut columns = self.contact.columns();
+        columns.extend(self.sheets.iter().flat_map(UpperSheet::columns));
+        columns
+    }
+
+    /// Columns of a checkpoint beside those of every block, to be filled.
+    pub(super) fn memory_mut(&mut self) -> Vec<&mut [f64]> {
+        let mut columns = self.contact.columns_mut();
+        columns.extend(self.sheets.iter_mut().flat_map(UpperSheet::columns_mut));
+        columns
+    }
+
     /// Finds the values that follow from the memory of the law of friction, after a checkpoint has restored
     /// it.
     pub(super) fn resume(&mut self, model: &Model) {

@@ -26,7 +26,7 @@ use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::vectors;
-use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds, SheetColumn};
+use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::fixed_point::RunningSum;
@@ -175,20 +175,10 @@ impl General {
             );
             Ok(())
         })?;
-        for column in 0..model.friction.n_columns() {
+        for column in 0..model.n_memory_columns() {
             BlockColumn::for_each_part_of_one(n, |first, values| {
                 read(BlockColumn::ALL.len() + column, first, values)?;
-                kernel.write(first, values, |band| {
-                    band.contact.columns_mut().swap_remove(column)
-                });
-                Ok(())
-            })?;
-        }
-        let of_sheets = BlockColumn::ALL.len() + model.friction.n_columns()..;
-        for ((sheet, column), number) in SheetColumn::of_sheets(model.sheets.len()).zip(of_sheets) {
-            BlockColumn::for_each_part_of_one(n, |first, values| {
-                read(number, first, values)?;
-                kernel.write(first, values, |band| band.sheets[sheet].column_mut(column));
+                kernel.write(first, values, |band| band.memory_mut().swap_remove(column));
                 Ok(())
             })?;
         }
@@ -216,6 +206,16 @@ impl General {
                 values[of_values].copy_from_slice(&array(&one.band)[own]);
             }
         }
+    }
+
+    /// Motion of all blocks of a sheet.
+    fn motion_of(&self, sheet: impl Fn(&Band) -> &State) -> State {
+        let mut state = State::at_rest(self.bands.last().map_or(0, |one| one.blocks.end));
+        self.read(0, &mut state.displacement.x, |band| &sheet(band).displacement.x);
+        self.read(0, &mut state.displacement.y, |band| &sheet(band).displacement.y);
+        self.read(0, &mut state.velocity.x, |band| &sheet(band).velocity.x);
+        self.read(0, &mut state.velocity.y, |band| &sheet(band).velocity.y);
+        state
     }
 
     /// The band of block `b`, and the number of the block in it.
@@ -392,35 +392,14 @@ impl Engine for General {
     }
 
     fn state(&self) -> State {
-        let mut state = State::at_rest(self.bands.last().map_or(0, |one| one.blocks.end));
-        self.read(0, &mut state.displacement.x, |band| &band.state.displacement.x);
-        self.read(0, &mut state.displacement.y, |band| &band.state.displacement.y);
-        self.read(0, &mut state.velocity.x, |band| &band.state.velocity.x);
-        self.read(0, &mut state.velocity.y, |band| &band.state.velocity.y);
-        state
+        self.motion_of(|band| &band.state)
     }
 
     fn sheets(&self) -> Vec<State> {
-        let n = self.bands.last().map_or(0, |one| one.blocks.end);
         let sheets = self.bands.first().map_or(0, |one| one.band.sheets.len());
-        let of_sheet = |sheet: usize| {
-            let mut state = State::at_rest(n);
-            for one in &self.bands {
-                let State {
-                    displacement,
-                    velocity,
-                } = &one.band.sheets[sheet].state;
-                for (to, from) in [
-                    (&mut state.displacement, displacement),
-                    (&mut state.velocity, velocity),
-                ] {
-                    to.x[one.blocks.clone()].copy_from_slice(&from.x);
-                    to.y[one.blocks.clone()].copy_from_slice(&from.y);
-                }
-            }
-            state
-        };
-        (0..sheets).map(of_sheet).collect()
+        (0..sheets)
+            .map(|sheet| self.motion_of(|band| &band.sheets[sheet].state))
+            .collect()
     }
 
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
@@ -458,12 +437,8 @@ impl Engine for General {
         self.contact_totals
     }
 
-    fn read_sheet(&self, sheet: usize, column: SheetColumn, first: usize, values: &mut [f64]) {
-        self.read(first, values, |band| band.sheets[sheet].column(column));
-    }
-
     fn read_memory(&self, _: f64, column: usize, first: usize, values: &mut [f64]) {
-        self.read(first, values, |band| band.contact.columns()[column]);
+        self.read(first, values, |band| band.memory().swap_remove(column));
     }
 }
 

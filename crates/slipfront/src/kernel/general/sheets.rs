@@ -6,7 +6,6 @@ use super::drive::DrivenBlocks;
 use super::rows::Rows;
 use super::springs::{lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, dot_products};
-use crate::checkpoint::SheetColumn;
 use crate::fixed_point::RunningSum;
 use crate::forces::{part, part_mut};
 use crate::friction::Integrator;
@@ -45,25 +44,21 @@ impl UpperSheet {
         }
     }
 
-    /// A column of a checkpoint.
-    pub(super) fn column(&self, column: SheetColumn) -> &[f64] {
-        match column {
-            SheetColumn::DisplacementX => &self.state.displacement.x,
-            SheetColumn::DisplacementY => &self.state.displacement.y,
-            // Half a step before the present instant, which is evaluated again when it resumes.
-            SheetColumn::VelocityX => &self.velocity.x,
-            SheetColumn::VelocityY => &self.velocity.y,
-        }
+    /// Columns of a checkpoint, see [`Model::n_memory_columns`].
+    pub(super) fn columns(&self) -> [&[f64]; 4] {
+        let u = &self.state.displacement;
+        // Half a step before the present instant, which is evaluated again when it resumes.
+        let v = &self.velocity;
+        [&u.x, &u.y, &v.x, &v.y]
     }
 
-    /// The array from which a run goes on that resumes with a column of a checkpoint.
-    pub(super) fn column_mut(&mut self, column: SheetColumn) -> &mut [f64] {
-        match column {
-            SheetColumn::DisplacementX => &mut self.state.displacement.x,
-            SheetColumn::DisplacementY => &mut self.state.displacement.y,
-            SheetColumn::VelocityX => &mut self.state.velocity.x,
-            SheetColumn::VelocityY => &mut self.state.velocity.y,
-        }
+    /// The arrays from which a run goes on that resumes with the columns of a checkpoint.
+    pub(super) fn columns_mut(&mut self) -> [&mut [f64]; 4] {
+        let State {
+            displacement: u,
+            velocity: v,
+        } = &mut self.state;
+        [&mut u.x, &mut u.y, &mut v.x, &mut v.y]
     }
 
     /// Velocities of some blocks half a step before and after, within a step.
