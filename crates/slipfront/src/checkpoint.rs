@@ -60,8 +60,9 @@ impl Model {
         BlockColumn::ALL.len() + self.n_memory_columns()
     }
 
-    /// Number of columns beside [`BlockColumn::ALL`]: those of the law of friction, then for every sheet above
-    /// the lowest one displacement and velocity along x and y, at the instants of the columns of that one.
+    /// Number of columns beside [`BlockColumn::ALL`]: those of the law of friction, then for every sheet
+    /// above the lowest one displacement and velocity along x and y, at the instants of the columns of that
+    /// one.
     pub(crate) fn n_memory_columns(&self) -> usize {
         self.friction.n_columns() + 4 * self.sheets.len()
     }

@@ -68,7 +68,8 @@ pub(crate) trait Engine: Send + Sync {
         ContactTotals::default()
     }
 
-    /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*; `column`
-    /// counts from 0, and first the law's own [`Friction::n_columns`](crate::friction::Friction::n_columns).
+    /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*;
+    /// `column` counts from 0, and first the law's own
+    /// [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
 }
