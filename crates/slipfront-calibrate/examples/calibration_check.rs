@@ -210,7 +210,13 @@ impl Trained {
         let mut watch = |_: &_| {};
         let maker = &mut RunMaker::new(&go_on, 0, &mut watch);
         let stage = CalibrationStage::Prediction;
-        let found = closest(maker, set_up, &points, &values, NOISE).map_err(failed)?;
+        // The search for the closest curve takes most of the time, and a record that is refused needs none.
+        let is_refused = clipped.is_some() || estimate.misfit.is_refused();
+        let found = if is_refused {
+            None
+        } else {
+            closest(maker, set_up, &points, &values, NOISE).map_err(failed)?
+        };
         let (of_step, closest) = found.unzip();
         let judged_by = of_step.as_ref().unwrap_or(set_up);
         let predicted = Predicted::run(maker, stage, judged_by, points, NOISE).map_err(failed)?;
@@ -229,7 +235,7 @@ impl Trained {
         let by_comparison = comparison.is_refused();
         let by_closest = closest.as_ref().is_some_and(Closest::is_refused);
         Ok(Judged {
-            is_refused: clipped.is_some() || estimate.misfit.is_refused() || by_comparison || by_closest,
+            is_refused: is_refused || by_comparison || by_closest,
             by_comparison,
             by_closest,
             misses: misses.contains(&true),

@@ -50,7 +50,7 @@ pub(crate) const CSV_TABLE: Target = Target {
     },
     time: Time::READING,
     mutations: 3000,
-    repetitions: 60,
+    repetitions: 20,
     long: long_tables,
 };
 
@@ -103,7 +103,7 @@ pub(crate) const HEIGHT_MAP: Target = Target {
         per_byte: 2 * 8 * 1040,
     },
     time: Time::DRAWN,
-    mutations: 1500,
+    mutations: 700,
     repetitions: 20,
     long: long_maps,
 };

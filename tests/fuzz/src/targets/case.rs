@@ -29,7 +29,7 @@ pub(crate) const CASE_FILE: Target = Target {
     },
     time: Time::READING,
     mutations: 3000,
-    repetitions: 100,
+    repetitions: 30,
     long,
 };
 

@@ -33,7 +33,7 @@ pub(crate) const FIELDS: Target = Target {
     },
     time: Time::READING,
     mutations: 2000,
-    repetitions: 40,
+    repetitions: 15,
     long: || {
         let mut files = long_headers();
         // Many instants of one block.

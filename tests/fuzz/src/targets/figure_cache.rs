@@ -23,7 +23,7 @@ pub(crate) const FIGURE_CACHE: Target = Target {
     },
     time: Time::READING,
     mutations: 2000,
-    repetitions: 40,
+    repetitions: 15,
     long: Vec::new,
 };
 

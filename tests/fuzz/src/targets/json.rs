@@ -37,7 +37,7 @@ pub(crate) const SUMMARY: Target = Target {
     },
     time: Time::READING,
     mutations: 2000,
-    repetitions: 60,
+    repetitions: 20,
     long: || long_objects("", ""),
 };
 
@@ -55,7 +55,7 @@ pub(crate) const MANIFEST: Target = Target {
     },
     time: Time::READING,
     mutations: 500,
-    repetitions: 40,
+    repetitions: 15,
     long: long_manifests,
 };
 

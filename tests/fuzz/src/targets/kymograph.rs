@@ -34,7 +34,7 @@ pub(crate) const KYMOGRAPH: Target = Target {
     },
     time: Time::READING,
     mutations: 2000,
-    repetitions: 40,
+    repetitions: 15,
     long: long_headers,
 };
 

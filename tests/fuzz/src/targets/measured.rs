@@ -24,8 +24,8 @@ pub(crate) const MEASURED: Target = Target {
         per_byte: 128,
     },
     time: Time::READING,
-    mutations: 2000,
-    repetitions: 60,
+    mutations: 1000,
+    repetitions: 20,
     long,
 };
 

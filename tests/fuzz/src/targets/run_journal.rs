@@ -22,7 +22,7 @@ pub(crate) const RUN_JOURNAL: Target = Target {
     },
     time: Time::READING,
     mutations: 300,
-    repetitions: 40,
+    repetitions: 15,
     long,
 };
 

@@ -24,7 +24,7 @@ pub(crate) const SERIES: Target = Target {
     },
     time: Time::READING,
     mutations: 2000,
-    repetitions: 60,
+    repetitions: 20,
     long: || long(&csv(1), &csv(0)),
 };
 

@@ -22,8 +22,8 @@ pub(crate) const STUDY_FILE: Target = Target {
         per_byte: 1024,
     },
     time: Time::READING,
-    mutations: 200,
-    repetitions: 60,
+    mutations: 100,
+    repetitions: 20,
     long,
 };
 

@@ -27,8 +27,8 @@ pub(crate) const WORKBOOK: Target = Target {
         per_byte: 256,
     },
     time: Time::DRAWN,
-    mutations: 1500,
-    repetitions: 60,
+    mutations: 700,
+    repetitions: 20,
     long,
 };
 
