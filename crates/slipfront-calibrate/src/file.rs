@@ -10,7 +10,7 @@ use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, who
 use slipfront_case::key_rows;
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::instrument::Instrument;
+use slipfront_run::instrument::{HELD_DRIVE, Instrument};
 use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::names::RUN_JOURNAL;
 use slipfront_run::run_curve::steps_to;
@@ -38,10 +38,6 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
 
 /// Table of the file that describes the measuring chain.
 const INSTRUMENT: &str = "instrument";
-
-/// Why an instrument with memory does not go with a held drive.
-const HELD_DRIVE: &str = "a held drive has no time while blocks slide, and load cells, filters and samplings need one: remove \
-                          `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone";
 
 /// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of
 /// four, more are a system of equations that memory is too small for.

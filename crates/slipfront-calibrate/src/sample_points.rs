@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use slipfront_run::instrument::Instrument;
+use slipfront_run::interpolation::interpolate;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::RunCurve;
 
@@ -189,18 +190,7 @@ impl SamplePoints {
 
     /// Means over neighbours of y, interpolated between the values at x, which never fall.
     fn averages(&self, x: &[f64], y: &[f64]) -> Vec<f64> {
-        let mut after = 0;
-        let values = self.x.iter().map(|&place| {
-            while after + 1 < x.len() && x[after] < place {
-                after += 1;
-            }
-            let before = after.saturating_sub(1);
-            if x[after] <= place || x[after] == x[before] {
-                return y[after];
-            }
-            let share = ((place - x[before]) / (x[after] - x[before])).max(0.0);
-            y[before] + share * (y[after] - y[before])
-        });
+        let values = self.x.iter().map(|&place| interpolate(x, y, place));
         self.merge(&values.collect::<Vec<_>>())
     }
 

@@ -21,6 +21,7 @@ pub mod folder_error;
 mod friction_unit;
 mod front;
 pub mod instrument;
+pub mod interpolation;
 pub mod leg;
 pub mod manifest;
 pub mod measured;

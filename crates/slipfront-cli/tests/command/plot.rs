@@ -286,7 +286,7 @@ fn a_filtered_record_is_compared_with_filtered_curves() {
     let held = line.replace(" a ", " held ");
     let said = workspace.fail(&format!("{held} --instrument rig.toml -o none"), 2);
     assert!(
-        said.contains("the drive of held is held and has no time while blocks slide"),
+        said.contains("held: a held drive has no time while blocks slide"),
         "{said}"
     );
     assert!(!workspace.exists("none"));

@@ -1,6 +1,7 @@
 //! A measuring chain: the record that it makes of friction.
 
 use super::filter::{FirstOrder, SecondOrder, average, passed};
+use crate::interpolation::interpolate;
 
 /// The measuring chain, in SI units. The signal passes the fields in their order.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,21 +114,9 @@ fn butterworth(order: u32, cutoff: f64, time: &[f64], signal: &mut [f64]) {
 
 /// Values that are taken at multiples of 1/rate and held until the next one.
 fn held(time: &[f64], signal: &[f64], rate: f64) -> Vec<f64> {
-    let mut after = 0;
-    let mut value_at = |place: f64| {
-        while after + 1 < time.len() && time[after] < place {
-            after += 1;
-        }
-        let before = after.saturating_sub(1);
-        let span = time[after] - time[before];
-        let share = if span > 0.0 {
-            ((place - time[before]) / span).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
-        signal[before] + share * (signal[after] - signal[before])
-    };
     // A time that rounding has put just below a multiple belongs to it.
     let tick = |time: f64| (time * rate + 1e-9).floor() / rate;
-    time.iter().map(|&time| value_at(tick(time))).collect()
+    time.iter()
+        .map(|&at| interpolate(time, signal, tick(at)))
+        .collect()
 }

@@ -7,6 +7,10 @@ mod keys;
 pub use self::chain::Instrument;
 pub use self::keys::{InstrumentError, InstrumentKeys};
 
+/// Why an instrument with memory does not go with a held drive, and the remedy.
+pub const HELD_DRIVE: &str = "a held drive has no time while blocks slide, and load cells, filters and samplings need one: remove \
+                              `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone";
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{PI, TAU};

@@ -9,6 +9,7 @@ use thiserror::Error;
 use crate::error::ResultsError;
 use crate::fields::FieldsError;
 use crate::folder_error::FolderError;
+use crate::instrument::HELD_DRIVE;
 use crate::series::SeriesError;
 
 /// An error of pictures, or of the results from which they are drawn.
@@ -90,9 +91,7 @@ pub enum RecordError {
         other: String,
     },
     #[error(
-        "the drive of {} is held and has no time while blocks slide, and load cells, filters and samplings need one: run the case without \
-        `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone",
-        .0.display()
+        "{}: {HELD_DRIVE}", .0.display()
     )]
     HeldDrive(PathBuf),
 }

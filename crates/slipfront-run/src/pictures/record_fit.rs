@@ -1,5 +1,7 @@
 //! The place of a measured record on the curve of a run: how far its times or displacements are shifted.
 
+use crate::interpolation::interpolate;
+
 /// Times or displacements that never fall, and the friction at each.
 pub(super) type Points<'p> = (&'p [f64], &'p [f64]);
 
@@ -33,17 +35,10 @@ const SAME_SHIFT: f64 = 0.05;
 /// Largest number of shifts that are refined.
 const MAX_FITTING: usize = 8;
 
-/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its
-/// ends.
+/// Value at `x` of a curve by linear interpolation; none beyond its ends.
 fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
-    let after = xs.partition_point(|&other| other < x);
-    let (&from, &to) = (xs.get(after.saturating_sub(1))?, xs.get(after)?);
-    if x < from {
-        return None;
-    }
-    let share = if to > from { (x - from) / (to - from) } else { 0.0 };
-    let (y, end) = (ys[after.saturating_sub(1)], ys[after]);
-    Some(y + share * (end - y))
+    let [from, to] = ends(xs);
+    (from..=to).contains(&x).then(|| interpolate(xs, ys, x))
 }
 
 /// Distance between a record, shifted, and a curve, over the points of the record within the curve; none if
