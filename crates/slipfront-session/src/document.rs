@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront_base::ordered::map_of;
 use slipfront_base::text::truncated;
-use slipfront_case::case::{Case, Files, FilesInMemory, Ranks, Watch};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks, Watch, key_of_body};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use toml::{Table, Value};
 
@@ -154,6 +154,18 @@ impl Document {
         let mut twin = self.clone();
         twin.keys.remove("texture");
         twin
+    }
+
+    /// The slider without texture with which this case is compared, of the same body.
+    pub(crate) fn twin(&self) -> Self {
+        let twin = self.without_texture();
+        let key = CaseFile::parse(&self.toml(), &self.name, &[]).ok();
+        let key = key.as_ref().and_then(key_of_body);
+        let Some((key, value)) = key else {
+            return twin;
+        };
+        let with_body = twin.with([(key.to_owned(), Some(Value::from(value)))]);
+        with_body.unwrap_or(twin)
     }
 
     /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as

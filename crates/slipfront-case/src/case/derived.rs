@@ -8,7 +8,7 @@ use super::budget::Budget;
 use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::ranks::Ranks;
-use super::stack::Stack;
+use super::stack::{Stack, longest_wave};
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
 
@@ -65,17 +65,33 @@ pub fn scales(file: &CaseFile) -> Scales {
     scales_and_stack(file).0
 }
 
-/// Units of a case file, and the stack from which the thickness in them is.
-fn scales_and_stack(file: &CaseFile) -> (Scales, Option<Stack>) {
+/// A key and its value that make a slider without texture the bulk body of this case: both are then fitted
+/// for the same wave lengths, and differ in the texture alone. There is none of a sheet, or where the case
+/// says it itself.
+pub fn key_of_body(file: &CaseFile) -> Option<(&'static str, String)> {
+    if file.slider.longest_wave.is_some() {
+        return None;
+    }
+    let longest = longest_wave(file, &scales_of_sheet(file))?;
+    Some(("slider.longest_wave", format!("{longest:e} m")))
+}
+
+/// Units of a case file whose slider is one sheet.
+fn scales_of_sheet(file: &CaseFile) -> Scales {
     let block_size = file.slider.block_size.si();
-    let of_sheet = Scales {
+    Scales {
         block_size,
         thickness: file.slider.thickness.as_ref().map_or(block_size, Length::si),
         young_modulus: file.slider.young_modulus.si(),
         density: file.slider.density.si(),
         pressure: file.load.pressure.si(),
         mu_static_mean: file.friction.mu_static,
-    };
+    }
+}
+
+/// Units of a case file, and the stack from which the thickness in them is.
+fn scales_and_stack(file: &CaseFile) -> (Scales, Option<Stack>) {
+    let of_sheet = scales_of_sheet(file);
     let stack = Stack::of(file, &of_sheet);
     let scales = Scales {
         thickness: stack

@@ -26,7 +26,7 @@ mod warnings;
 mod whole_slider;
 
 pub use self::budget::{Budget, PICTURES, PROGRAM, memory_of_movie};
-pub use self::derived::scales;
+pub use self::derived::{key_of_body, scales};
 pub use self::files::{Files, FilesInMemory, OpenFile, Watch};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};

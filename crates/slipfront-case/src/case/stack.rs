@@ -106,18 +106,11 @@ impl BulkBody {
     /// stack. The thickness of `scales` is not read.
     pub(super) fn of(file: &CaseFile, scales: &Scales) -> Option<Self> {
         let slider = &file.slider;
-        if slider.body == Body::Sheet || slider.sheets.is_some() {
-            return None;
-        }
-        let [nx, ny] = slider.blocks.map(|count| count as usize);
-        let lattice = Lattice::with_edges(nx, ny, slider.edges);
-        let pitch = regular_pitch(&file.texture, scales, &lattice);
-        let blocks = pitch.unwrap_or(nx.max(ny) as f64);
         Some(Self::new(
             slider.young_modulus.si(),
             slider.poisson.unwrap_or(POISSON_RATIO),
             slider.height.as_ref().map_or(f64::INFINITY, Length::si),
-            blocks * scales.block_size,
+            longest_wave(file, scales)?,
         ))
     }
 
@@ -167,6 +160,22 @@ impl BulkBody {
     pub fn waves(&self) -> [f64; 2] {
         [self.longest_wave, self.longest_wave / RANGE]
     }
+}
+
+/// Longest wave length for which the stack of a case stands for its body, m; none of a sheet, or where
+/// `slider.sheets` gives the stack. The thickness of `scales` is not read.
+pub(super) fn longest_wave(file: &CaseFile, scales: &Scales) -> Option<f64> {
+    let slider = &file.slider;
+    if slider.body == Body::Sheet || slider.sheets.is_some() {
+        return None;
+    }
+    let [nx, ny] = slider.blocks.map(|count| count as usize);
+    let of_texture = || {
+        let lattice = Lattice::with_edges(nx, ny, slider.edges);
+        let pitch = regular_pitch(&file.texture, scales, &lattice);
+        pitch.unwrap_or(nx.max(ny) as f64) * scales.block_size
+    };
+    Some(slider.longest_wave.as_ref().map_or_else(of_texture, Length::si))
 }
 
 /// `G = E/(2 (1 + nu))`.

@@ -52,6 +52,11 @@ key_rows! {
         /// Poisson's ratio of a bulk body. The sheets keep 1/3.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
+        /// Longest wave length, down to an eighth of which the sheets answer as the bulk body does. The
+        /// slider without texture that a reduction compares with has the one of its texture.
+        pub longest_wave: Option<Length> = key("", quantity("m", within(1e-12, 1e6)))
+            .without("pitch of the one array that fills the slider, else the longer side of the slider")
+            .title("longest wave length", "", "m"),
         /// The sheets of a bulk body in place of those that follow from height and Poisson's ratio, from the
         /// lowest on.
         pub sheets: Option<Vec<SheetOfStack>> = key("", KeyKind::Table(
@@ -206,9 +211,11 @@ impl Slider {
     fn check_body(&self, check: &Check) -> Result<(), CaseError> {
         check.value("height", &self.height)?;
         check.value("poisson", &self.poisson)?;
+        check.value("longest_wave", &self.longest_wave)?;
         let of_bulk = [
             ("height", self.height.is_some()),
             ("poisson", self.poisson.is_some()),
+            ("longest_wave", self.longest_wave.is_some()),
             ("sheets", self.sheets.is_some()),
         ];
         if self.body == Body::Sheet {
@@ -266,7 +273,7 @@ impl Slider {
         let Some(sheets) = &self.sheets else {
             return Ok(());
         };
-        if let Some((key, _)) = of_bulk[..2].iter().find(|(_, is_given)| *is_given) {
+        if let Some((key, _)) = of_bulk[..3].iter().find(|(_, is_given)| *is_given) {
             return check.refuse(key, |key| {
                 format!("`{key}` is not read where `slider.sheets` gives the stack: leave one of them out")
             });

@@ -91,6 +91,7 @@ fn slider() -> impl Strategy<Value = Slider> {
                 body: Body::Sheet,
                 height: None,
                 poisson: None,
+                longest_wave: None,
                 sheets: None,
                 young_modulus,
                 density,
@@ -115,26 +116,33 @@ fn slider() -> impl Strategy<Value = Slider> {
 fn bulk() -> impl Strategy<Value = Slider> {
     let sheet = (length(), quantity(0, 20, &["N/m^3"]));
     let sheet = sheet.prop_map(|(thickness, coupling)| SheetOfStack { thickness, coupling });
-    let sheets = prop::collection::vec(sheet, 2..=4).prop_map(|sheets| (None, None, Some(sheets)));
+    let sheets = prop::collection::vec(sheet, 2..=4).prop_map(|sheets| (None, None, None, Some(sheets)));
     // As high as the largest block at the least.
     let height = quantity(2, 6, &["km"]);
-    let by_height = (prop::option::of(height), prop::option::of(0.0..0.5));
-    let by_height = by_height.prop_map(|(height, poisson)| (height, poisson, None));
-    (slider(), prop_oneof![by_height, sheets]).prop_map(|(slider, (height, poisson, sheets))| Slider {
-        body: Body::Bulk,
-        thickness: None,
-        height,
-        poisson,
-        sheets,
-        outline: Outline::Rectangle,
-        outline_file: None,
-        viscosity_time_star: 0.0,
-        stiffness_field: None,
-        stiffness_grade: None,
-        density_field: None,
-        density_grade: None,
-        ..slider
-    })
+    let by_height = (
+        prop::option::of(height),
+        prop::option::of(0.0..0.5),
+        prop::option::of(length()),
+    );
+    let by_height = by_height.prop_map(|(height, poisson, longest)| (height, poisson, longest, None));
+    (slider(), prop_oneof![by_height, sheets]).prop_map(
+        |(slider, (height, poisson, longest_wave, sheets))| Slider {
+            body: Body::Bulk,
+            thickness: None,
+            height,
+            poisson,
+            longest_wave,
+            sheets,
+            outline: Outline::Rectangle,
+            outline_file: None,
+            viscosity_time_star: 0.0,
+            stiffness_field: None,
+            stiffness_grade: None,
+            density_field: None,
+            density_grade: None,
+            ..slider
+        },
+    )
 }
 
 fn load() -> impl Strategy<Value = Load> {
