@@ -57,8 +57,8 @@ impl Kernel {
         self.for_law(&model.friction, is_viscous, rotates)
     }
 
-    /// The kernel that computes models with this law of friction, with or without dampers and a rotation, when
-    /// this one is asked for.
+    /// The kernel that computes models with this law of friction, with or without dampers and a rotation,
+    /// when this one is asked for.
     pub fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
         let is_fused = friction.needs().is_fused && !has_dampers && !rotates;
         if is_fused { self } else { Self::General }

@@ -1,5 +1,5 @@
-//! Options that the general kernel alone computes, and stacks under laws that it alone computes, have the same
-//! bits on several ranks and threads as on one, and go on from a checkpoint on any other number of them.
+//! Options that the general kernel alone computes, among them stacks under such laws, have the same bits on
+//! several ranks and threads as on one, and go on from a checkpoint on any other number of them.
 
 use slipfront::communicator::Alone;
 use slipfront::{

@@ -2,7 +2,9 @@
 //! any number of threads and ranks, whether or not blocks at rest may be skipped, and across checkpoints.
 
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Communicator, Edges, Kernel, Model, Sheet, Simulation, SlipWeakening, Weakening};
+use slipfront::{
+    Communicator, Edges, Kernel, Model, RunError, Sheet, Simulation, SlipWeakening, Stop, Weakening,
+};
 use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, groove, thrown};
@@ -37,7 +39,13 @@ fn steps(slider: &Slider) -> u64 {
 
 const SHAPES: [[usize; 2]; 7] = [[1, 1], [1, 20], [14, 9], [25, 25], [3, 400], [300, 5], [700, 3]];
 
-#[test_matrix([1, 2], [[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic], [Edges::Periodic, Edges::Periodic]])]
+#[test_matrix(
+    [1, 2],
+    [
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    ]
+)]
 fn the_kernels_agree(n_sheets: usize, edges: [Edges; 2]) {
     for blocks in SHAPES.into_iter().filter(|blocks| has_room(*blocks, edges)) {
         let slider = Slider {
@@ -109,7 +117,13 @@ fn thresholds_that_change(law: usize) {
     });
 }
 
-#[test_matrix([1, 2], [[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic], [Edges::Periodic, Edges::Periodic]])]
+#[test_matrix(
+    [1, 2],
+    [
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    ]
+)]
 fn the_same_bits_over_threads(n_sheets: usize, edges: [Edges; 2]) {
     for blocks in [[1, 1], [64, 40], [3, 400], [300, 5]] {
         if has_room(blocks, edges) {
@@ -128,7 +142,13 @@ fn held_drives(has_program: bool) {
     assert_same_bits(&stack(&slider, 2), slider.dt_star, None, 2 * steps(&slider));
 }
 
-#[test_matrix([1, 2], [[Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic], [Edges::Periodic, Edges::Periodic]])]
+#[test_matrix(
+    [1, 2],
+    [
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    ]
+)]
 fn the_same_bits_over_ranks(n_sheets: usize, edges: [Edges; 2]) {
     for blocks in [[1, 5], [64, 40], [3, 400], [300, 5]] {
         if has_room(blocks, edges) {
@@ -145,8 +165,7 @@ fn the_same_bits_over_ranks(n_sheets: usize, edges: [Edges; 2]) {
     }
 }
 
-/// Fields of the lowest sheet, before and after its blocks slip; those of single blocks follow the pull of the
-/// sheet above.
+/// Fields of the lowest sheet, in which the pull of the sheet above has the place of the drive.
 #[test_matrix([[Edges::Free; 2], [Edges::Periodic; 2]], [1e-6, 1e-2])]
 fn fields_are_those_of_single_blocks(edges: [Edges; 2], epsilon: f64) {
     let slider = Slider {
@@ -163,4 +182,22 @@ fn fields_are_those_of_single_blocks(edges: [Edges; 2], epsilon: f64) {
         assert_fields_match_blocks(&simulation);
         (0..20).for_each(|_| go(&mut simulation, false));
     }
+}
+
+/// A sheet above that diverges first ends the run as one in friction does.
+#[test]
+fn a_stack_that_diverges_ends_the_run() {
+    let slider = Slider {
+        blocks: [12, 9],
+        ..Slider::default()
+    };
+    // Springs to a light sheet, which alone swings too fast for the step.
+    let light = Sheet {
+        thickness: 0.1,
+        coupling: 2.0,
+    };
+    let model = slider.model().with_sheets(vec![light]);
+    let mut simulation = Simulation::new(model, 0.5, None, fused());
+    let error = simulation.run(Stop::at_step(100_000), &mut []).unwrap_err();
+    assert!(matches!(error, RunError::NotFinite { .. }), "{error}");
 }

@@ -664,9 +664,10 @@ impl Band {
                 let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
                 let elements = self.elements(t);
                 let (first, n) = (self.halo + elements.start, elements.len());
-                let above = upper
-                    .first()
-                    .map_or_else(Above::default, |above| above.above(first, n));
+                let above = match upper.first() {
+                    Some(above) if HAS_ABOVE => above.above(first, n),
+                    _ => Above::default(),
+                };
                 let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0);
                 let mut sums = Sums::zero(simd);
                 friction::<S, ENERGY, DIFFER, HAS_ABOVE>(simd, *step, quanta, (arrays, above), &mut sums);
@@ -850,8 +851,8 @@ impl Band {
         thresholds.kinetic_impulse(k) * mass * velocity_to_force
     }
 
-    /// Springs to the east of the eight elements from `first` on, counted from the front halo, of a sheet with
-    /// such displacements.
+    /// Springs to the east of the eight elements from `first` on, counted from the front halo, of a sheet
+    /// with such displacements.
     #[inline(always)]
     fn east_springs<S: Simd, G: Geometry>(
         &self,

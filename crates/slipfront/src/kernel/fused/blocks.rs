@@ -203,8 +203,8 @@ fn squares_over_factors<S: Simd, G: Geometry>(
     [over(0), over(1), over(2), over(3)]
 }
 
-/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west in a sheet
-/// of such a relative thickness, from the squares of their forces over it: see [`integers`].
+/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from
+/// the squares of their forces over the relative thickness of the sheet: see [`integers`].
 #[inline(always)]
 fn spring_energies<S: Simd>(
     simd: S,
@@ -489,8 +489,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 }
 
 impl Sums<i64, f64> {
-    /// These sums over blocks of a sheet under others, without those over the drive springs, which pull the
-    /// highest one.
+    /// Leaves out the sums over the drive springs, which pull the highest sheet, for one below others.
     pub(super) fn below_others(self) -> Self {
         Self {
             displacement: [0; 2],
