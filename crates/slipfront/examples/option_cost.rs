@@ -79,6 +79,7 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 24] = [
     ("grading", &[Grading]),
     ("disc", &[Disc]),
     ("graded disc, weakening", &[Grading, Disc, Choice::Weakening]),
+    ("stack of two sheets", &[Choice::Stack]),
     ("plain, general kernel", &[]),
     ("reversal", &[Choice::Reversal]),
     ("literal", &[Choice::Literal]),
@@ -87,7 +88,6 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 24] = [
     ("ageing", &[Choice::Ageing]),
     ("rate and state", &[Choice::RateAndState]),
     ("contact springs", &[Choice::ContactSprings]),
-    ("stack of two sheets", &[Choice::Stack]),
     (
         "graded disc, rotation, viscosity, ageing",
         &[Grading, Disc, Choice::Rotation, Viscosity, Choice::Ageing],

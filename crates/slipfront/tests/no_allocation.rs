@@ -8,7 +8,7 @@ use std::cell::Cell;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Schedule, Scheduled};
 use slipfront::surface::{Coefficients, Distribution, Load};
-use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Stop, Surface};
+use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Sheet, Simulation, Stop, Surface};
 
 /// The system's allocator, counting calls per thread.
 struct Counting;
@@ -89,17 +89,23 @@ fn a_step_allocates_nothing() {
         FrictionLaw::Reversal,
         FrictionLaw::Literal,
     ] {
-        let model = model(law);
-        for kernel in [Kernel::General, Kernel::Fused] {
-            let execution = Execution {
-                kernel,
-                ..Execution::default()
-            };
-            let mut simulation = Simulation::new(model.clone(), 0.1, None, execution);
-            let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
-            assert_eq!(calls, 0, "{law:?} {kernel:?}");
-            // 1000 steps go through onset, which comes at t* = 82 here.
-            assert!(law == FrictionLaw::Literal || simulation.peak().ended);
+        let above = Sheet {
+            thickness: 2.0,
+            coupling: 2.0,
+        };
+        for sheets in [Vec::new(), vec![above; 2]] {
+            let model = model(law).with_sheets(sheets);
+            for kernel in [Kernel::General, Kernel::Fused] {
+                let execution = Execution {
+                    kernel,
+                    ..Execution::default()
+                };
+                let mut simulation = Simulation::new(model.clone(), 0.1, None, execution);
+                let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
+                assert_eq!(calls, 0, "{law:?} {kernel:?}");
+                // 1000 steps go through onset, which comes at t* = 82 here.
+                assert!(law == FrictionLaw::Literal || simulation.peak().ended);
+            }
         }
     }
 }

@@ -503,25 +503,29 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     let many = |options: &[bool]| options.iter().filter(|is_used| **is_used).count() as f64;
     let own = 2.0 * many(&varies) + 2.0 * many(&[has_outline, has_pressures]);
     let blocks_differ = own > 0.0;
-    let stepped = match kernel(file, friction) {
-        Kernel::Fused if varies.contains(&true) || needs.varies => 22.0,
-        Kernel::Fused => 10.0 + own,
+    let (stepped, of_sheet) = match kernel(file, friction) {
+        Kernel::Fused if varies.contains(&true) || needs.varies => (22.0, FUSED_NUMBERS_OF_SHEET),
+        Kernel::Fused => (10.0 + own, FUSED_NUMBERS_OF_SHEET),
         Kernel::General => {
-            let of_sheets = NUMBERS_OF_SHEET * file.slider.n_sheets_above() as f64;
-            29.0 + if blocks_differ { 9.0 } else { 0.0 }
-                + if is_viscous(file) { 12.0 } else { 0.0 }
-                + of_sheets
+            let differing = if blocks_differ { 9.0 } else { 0.0 };
+            let dampers = if is_viscous(file) { 12.0 } else { 0.0 };
+            (29.0 + differing + dampers, NUMBERS_OF_SHEET)
         }
     };
-    [3.0 + own, stepped + 2.0 * needs.columns as f64]
+    let of_sheets = of_sheet * file.slider.n_sheets_above() as f64;
+    [3.0 + own, stepped + of_sheets + 2.0 * needs.columns as f64]
 }
 
 /// Numbers of each block of the whole lattice while the load of textured blocks is shared among those near
 /// them: two marks, pressures as numbers and as bits, and sums of counts and of shares.
 const SHARED: f64 = 6.0;
 
-/// Numbers of a block in a sheet above the lowest: displacement, velocities before and after, force of the
-/// springs in the sheet, along each bond, and from above.
+/// Numbers of a block in a sheet above the lowest under the fused kernel: displacement and velocity, and room
+/// for a column of a checkpoint.
+const FUSED_NUMBERS_OF_SHEET: f64 = 5.0;
+
+/// Numbers of a block in a sheet above the lowest under the general kernel: displacement, velocities before
+/// and after, force of the springs in the sheet, along each bond, and from above.
 const NUMBERS_OF_SHEET: f64 = 18.0;
 
 /// Ratio of the memory of the general kernel on several threads, each of which has the rows beside its own,
@@ -534,12 +538,7 @@ fn is_viscous(file: &CaseFile) -> bool {
 
 /// The kernel that computes the model of a case file.
 fn kernel(file: &CaseFile, friction: &Friction) -> Kernel {
-    Kernel::default().for_law(
-        friction,
-        is_viscous(file),
-        file.drive.motion == Motion::Rotation,
-        file.slider.n_sheets_above() > 0,
-    )
+    Kernel::default().for_law(friction, is_viscous(file), file.drive.motion == Motion::Rotation)
 }
 
 #[cfg(test)]

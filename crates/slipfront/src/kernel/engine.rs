@@ -38,11 +38,8 @@ pub(crate) trait Engine: Send + Sync {
     /// Displacements now and velocities half a step later of all blocks.
     fn state(&self) -> State;
 
-    /// Displacements now and velocities half a step later of all blocks of the sheets above the lowest, for a
-    /// kernel that computes stacks.
-    fn sheets(&self) -> Vec<State> {
-        Vec::new()
-    }
+    /// Displacements now and velocities half a step later of all blocks of the sheets above the lowest.
+    fn sheets(&self) -> Vec<State>;
 
     /// A column of a checkpoint: its values of the blocks from `first` on.
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);

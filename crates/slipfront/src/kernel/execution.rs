@@ -17,8 +17,7 @@ pub enum Kernel {
     /// The general kernel: one pass over the blocks per equation, for every model.
     General,
     /// The fused kernel: one sweep for all equations. The general kernel computes the models that this one
-    /// does not: [some laws of friction](crate::Needs::is_fused), internal viscosity, drives that rotate, and
-    /// stacks of sheets.
+    /// does not: [some laws of friction](crate::Needs::is_fused), internal viscosity, and drives that rotate.
     #[default]
     Fused,
 }
@@ -55,13 +54,13 @@ impl Kernel {
     /// The kernel that computes a model when this one is asked for.
     pub fn for_model(self, model: &Model) -> Self {
         let (is_viscous, rotates) = (model.slider.is_viscous(), model.drive.rotation.is_some());
-        self.for_law(&model.friction, is_viscous, rotates, !model.sheets.is_empty())
+        self.for_law(&model.friction, is_viscous, rotates)
     }
 
-    /// The kernel that computes models with this law of friction, with or without dampers, a rotation and a
-    /// stack of sheets, when this one is asked for.
-    pub fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool, is_stack: bool) -> Self {
-        let is_fused = friction.needs().is_fused && !has_dampers && !rotates && !is_stack;
+    /// The kernel that computes models with this law of friction, with or without dampers and a rotation,
+    /// when this one is asked for.
+    pub fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
+        let is_fused = friction.needs().is_fused && !has_dampers && !rotates;
         if is_fused { self } else { Self::General }
     }
 

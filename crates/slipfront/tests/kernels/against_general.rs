@@ -38,6 +38,7 @@ fn means(totals: &Totals, n_blocks: usize) -> Vec<f64> {
         stored.kinetic,
         stored.lattice,
         stored.drive_springs,
+        stored.between_sheets,
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
         sums.extend(pair);
@@ -70,14 +71,22 @@ fn assert_alike(fused: &Simulation, general: &Simulation) {
         (stresses[0] - stresses[1]).abs() < ROUNDING,
         "step {step}: {stresses:?}"
     );
-    let (here, there) = (fused.state(), general.state());
-    for (a, b) in [
-        (&here.displacement, &there.displacement),
-        (&here.velocity, &there.velocity),
-    ] {
-        let far = distance(a, b);
-        // Only blocks without friction come to move by more than 1.
-        assert!(far < ROUNDING * largest(b), "step {step}: {far:e} apart");
+    let all = |run: &Simulation| {
+        std::iter::once(run.state())
+            .chain(run.sheets())
+            .collect::<Vec<State>>()
+    };
+    let (here, there) = (all(fused), all(general));
+    assert_eq!(here.len(), there.len());
+    for (here, there) in here.iter().zip(&there) {
+        for (a, b) in [
+            (&here.displacement, &there.displacement),
+            (&here.velocity, &there.velocity),
+        ] {
+            let far = distance(a, b);
+            // Only blocks without friction come to move by more than 1.
+            assert!(far < ROUNDING * largest(b), "step {step}: {far:e} apart");
+        }
     }
 }
 

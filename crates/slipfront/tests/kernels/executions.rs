@@ -36,13 +36,14 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
     bits(&numbers)
 }
 
-/// x and y of the displacements, then of the velocities.
-pub(crate) fn state(simulation: &Simulation) -> [Vec<u64>; 4] {
-    let State {
-        displacement,
-        velocity,
-    } = simulation.state();
-    [displacement.x, displacement.y, velocity.x, velocity.y].map(|field| bits(&field))
+/// x and y of the displacements, then of the velocities, of the lattice and of the sheets above.
+pub(crate) fn state(simulation: &Simulation) -> Vec<Vec<u64>> {
+    let of = |State {
+                  displacement: u,
+                  velocity: v,
+              }| [u.x, u.y, v.x, v.y].map(|field| bits(&field));
+    let states = std::iter::once(simulation.state()).chain(simulation.sheets());
+    states.flat_map(of).collect()
 }
 
 /// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in

@@ -1,16 +1,17 @@
-//! Options that the general kernel alone computes have the same bits on several ranks and threads as on one,
-//! and go on from a checkpoint on any other number of them.
+//! Options that the general kernel alone computes, among them stacks under such laws, have the same bits on
+//! several ranks and threads as on one, and go on from a checkpoint on any other number of them.
 
 use slipfront::communicator::Alone;
 use slipfront::{
     Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model, RateAndState,
-    Rotation, Sheet,
+    Rotation,
 };
 use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, thrown, varied};
 use crate::executions::assert_same_bits;
 use crate::ranks::{assert_goes_on, assert_same_with};
+use crate::stacks::SHEETS;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Variety {
@@ -86,8 +87,7 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
                 model.drive.rotation = Some(turned);
             }
             Stack => {
-                let sheet = |thickness, coupling| Sheet { thickness, coupling };
-                *model = model.clone().with_sheets(vec![sheet(2.0, 1.5), sheet(7.0, 0.4)]);
+                *model = model.clone().with_sheets(SHEETS.to_vec());
             }
         }
     }
@@ -98,7 +98,7 @@ use Variety::{Ages, Differ, Law, RateAndState as RateState, Springs, Stack, Turn
 #[test_matrix(
     [
         &[Law(FrictionLaw::Reversal)], &[Law(FrictionLaw::Literal), Differ], &[Viscous], &[Ages], &[RateState],
-        &[Springs], &[Turns], &[Stack], &[Stack, RateState], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
+        &[Springs], &[Turns], &[Stack, RateState], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
         &[Springs, Turns, Differ]
     ],
     [Edges::Free, Edges::Periodic]
@@ -133,7 +133,7 @@ fn the_same_bits_over_threads(options: &'static [Variety], edges: Edges) {
     assert_same_bits(&model, slider.dt_star, Some(&from), 30);
 }
 
-#[test_matrix([&[Viscous, Differ, Turns], &[RateState], &[Stack]], [Edges::Free, Edges::Periodic])]
+#[test_matrix([&[Viscous, Differ, Turns], &[RateState], &[Stack, Ages]], [Edges::Free, Edges::Periodic])]
 fn the_same_bits_over_threads_of_ranks(options: &'static [Variety], edges: Edges) {
     // Three bands on each of the three ranks that have two threads: one has bands alone beside it.
     let blocks = [40, 240];

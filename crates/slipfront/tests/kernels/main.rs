@@ -98,4 +98,5 @@ mod ranks;
 mod rest_and_widths;
 mod sliders;
 mod small_velocities;
+mod stacks;
 mod variations;

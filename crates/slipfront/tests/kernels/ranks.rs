@@ -22,7 +22,7 @@ use crate::{bits, columns, fused, go, has_room, sliders};
 /// its first slips and fields.
 struct Shown {
     steps: Vec<Vec<u64>>,
-    states: Vec<[Vec<u64>; 4]>,
+    states: Vec<Vec<Vec<u64>>>,
     first_slip: Vec<u64>,
     fields: Vec<Vec<Vec<f32>>>,
 }

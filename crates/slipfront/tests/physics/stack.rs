@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use slipfront::communicator::Alone;
 use slipfront::lattice::{K_DIAGONAL, K_STRAIGHT};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Sheet, Simulation, State, Surface, VectorField};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Sheet, State, Surface, VectorField};
 use test_case::test_matrix;
 
 use crate::common::{at_rest, from_state};
@@ -189,7 +189,7 @@ fn energy_is_balanced() {
     let model = model(lattice, 0.05, 0.1, &SHEETS);
     let error = |dt: f64| {
         let mut curve = Curve::every(1);
-        let mut simulation = Simulation::new(model.clone(), dt, None, slipfront::Execution::default());
+        let mut simulation = at_rest(&model, dt);
         let steps = (400.0 / dt) as u64;
         simulation
             .run(Stop::at_step(steps), &mut [Scheduled::always(&mut curve)])

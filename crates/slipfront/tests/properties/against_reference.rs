@@ -625,8 +625,13 @@ fn kernels_agree_with_the_reference() {
         for kernel in fused.into_iter().chain([Kernel::General]) {
             compare(&setting, kernel, &mut seen.borrow_mut())?;
         }
-        let used = setting.options().into_iter();
-        for (option, is_used) in used.chain([("fused kernel", fused.is_some())]) {
+        let is_stack = !setting.model.sheets().is_empty();
+        let of_fused = [
+            ("fused kernel", fused.is_some()),
+            ("stack on the fused kernel", fused.is_some() && is_stack),
+            ("stack on the general kernel", fused.is_none() && is_stack),
+        ];
+        for (option, is_used) in setting.options().into_iter().chain(of_fused) {
             *reached.borrow_mut().entry(option).or_insert(0) += usize::from(is_used);
         }
         Ok(())

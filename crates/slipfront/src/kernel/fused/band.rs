@@ -13,6 +13,7 @@ use super::blocks::{
 use super::layout::{Layout, TILE};
 use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
+use super::sheets::{Above, UpperSheet};
 use super::springs::Geometry;
 use super::step::Step;
 use super::thresholds::Thresholds;
@@ -125,6 +126,8 @@ pub(super) struct Band {
     pub(super) variations: Option<Variations>,
     /// Thresholds of a law of friction under which they change.
     pub(super) thresholds: Option<Thresholds>,
+    /// The sheets above, which friction does not reach.
+    pub(super) upper: Vec<UpperSheet>,
     /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone,
     /// takes the arrays without it.
     scratch: Mutex<Scratch>,
@@ -213,7 +216,6 @@ impl Band {
         let first = tiles.start * TILE;
         let len = whole_vectors((tiles.end * TILE).min(layout.len()) - first);
         let halo = halo(layout);
-        let ring = whole_vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
         let bytes = || vec![0; len / LANES];
         let mut band = Self {
             first_tile: tiles.start,
@@ -242,12 +244,16 @@ impl Band {
             variations: blocks_differ
                 .then(|| Variations::new(layout, model, moduli, halo, first..first + len)),
             thresholds: Thresholds::of(model, len),
+            upper: model
+                .sheets
+                .iter()
+                .map(|sheet| UpperSheet::new(*sheet, layout.stride, len, halo))
+                .collect(),
             scratch: Mutex::new(Scratch {
-                upward: [(); 3].map(|()| Vectors::zeros(ring)),
-                lattice: Vectors::zeros(TILE),
                 drive: Vectors::zeros(TILE),
                 free: Vectors::zeros(TILE),
                 free_speed: Aligned::filled(TILE, 0.0),
+                ..Scratch::of_springs(layout.stride)
             }),
             stride: layout.stride,
         };
@@ -361,9 +367,42 @@ impl Band {
         }
     }
 
-    /// Displacement that an element will have after moving by `move_dt`.
-    pub(super) fn advanced(&self, k: usize, move_dt: f64) -> [f64; 2] {
-        let ([ux, uy], [vx, vy]) = (self.displacement.at(self.halo + k), self.velocity.at(k));
+    /// Displacements, with halos, and velocities of a sheet, the lowest being number 0.
+    #[inline(always)]
+    pub(super) fn of_sheet(&self, number: usize) -> [&Vectors; 2] {
+        match number.checked_sub(1) {
+            None => [&self.displacement, &self.velocity],
+            Some(number) => {
+                let UpperSheet {
+                    displacement,
+                    velocity,
+                    ..
+                } = &self.upper[number];
+                [displacement, velocity]
+            }
+        }
+    }
+
+    /// Displacements, with halos, and velocities of a sheet to be written, the lowest being number 0.
+    #[inline(always)]
+    pub(super) fn of_sheet_mut(&mut self, number: usize) -> [&mut Vectors; 2] {
+        match number.checked_sub(1) {
+            None => [&mut self.displacement, &mut self.velocity],
+            Some(number) => {
+                let UpperSheet {
+                    displacement,
+                    velocity,
+                    ..
+                } = &mut self.upper[number];
+                [displacement, velocity]
+            }
+        }
+    }
+
+    /// Displacement that an element of a sheet will have after moving by `move_dt`.
+    pub(super) fn advanced(&self, sheet: usize, k: usize, move_dt: f64) -> [f64; 2] {
+        let [displacement, velocity] = self.of_sheet(sheet);
+        let ([ux, uy], [vx, vy]) = (displacement.at(self.halo + k), velocity.at(k));
         [ux + move_dt * vx, uy + move_dt * vy]
     }
 
@@ -386,10 +425,13 @@ impl Band {
         }
         // Taken out, so that the band and its scratch arrays can be changed side by side.
         let mut scratch = std::mem::take(self.scratch());
+        let mut upper = std::mem::take(&mut self.upper);
+        self.begin_upper(simd, geometry, &step, ahead, &mut upper);
         if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
             // They are the springs of another band, or of the other end of this one, as well: computed twice,
             // they need no thread to wait for another.
-            self.upward(simd, geometry, &mut scratch, self.below(self.halo), self.halo);
+            let from = self.below(self.halo);
+            self.upward(simd, geometry, &self.displacement, &mut scratch, from, self.halo);
         }
         for t in 0..n_tiles {
             // No earlier than springs need it, so that the tile is still in the cache when its own turn
@@ -400,7 +442,10 @@ impl Band {
             let (task, elements) = (self.tasks[t], self.elements(t));
             if task.needs_springs {
                 let (from, to) = (self.halo + elements.start, self.halo + elements.end);
-                self.upward(simd, geometry, &mut scratch, from, to);
+                self.upward(simd, geometry, &self.displacement, &mut scratch, from, to);
+            }
+            if !upper.is_empty() {
+                self.upper_tiles(simd, geometry, (&step, quanta), energies, (t, ahead), &mut upper);
             }
             if task.active == 0 {
                 continue;
@@ -416,7 +461,7 @@ impl Band {
                     // which need the energy of each.
                     energies || task.settles,
                     t,
-                    &mut scratch,
+                    (&mut scratch, &upper),
                 );
             }
             if task.settles {
@@ -431,6 +476,7 @@ impl Band {
             }
         }
         *self.scratch() = scratch;
+        self.upper = upper;
         self.add_up();
     }
 
@@ -444,6 +490,7 @@ impl Band {
             let step = if tile.moving { 0 } else { tile.active_from_step };
             self.next_active_step = self.next_active_step.min(step);
         }
+        self.add_upper();
     }
 
     /// The first of the elements whose springs to the next row are needed below element `k`.
@@ -478,32 +525,31 @@ impl Band {
             return;
         }
         let elements = self.elements(t);
-        let (from, to) = (self.halo + elements.start, self.halo + elements.end);
-        let ux = self.displacement.x[from..to].as_chunks_mut().0;
-        let uy = self.displacement.y[from..to].as_chunks_mut().0;
-        let vx = self.velocity.x[elements.clone()].as_chunks().0;
-        let vy = self.velocity.y[elements].as_chunks().0;
-        let dt = splat(simd, step.move_dt);
-        for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
-            (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
-            (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
-        }
+        move_blocks(
+            simd,
+            step.move_dt,
+            &mut self.displacement,
+            &self.velocity,
+            self.halo,
+            elements,
+        );
     }
 
-    /// Forces of the springs to the next row of the elements `from..to`, into the ring buffer. A function of
-    /// its own, compiled once for all that call it.
+    /// Forces of the springs to the next row of the elements `from..to` of a sheet with such displacements,
+    /// into the ring buffer. A function of its own, compiled once for all that call it.
     #[inline(never)]
     pub(super) fn upward<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
+        displacement: &Vectors,
         scratch: &mut Scratch,
         from: usize,
         to: usize,
     ) {
         simd.vectorize(
             #[inline(always)]
-            || self.upward_here(simd, geometry, scratch, from, to),
+            || self.upward_here(simd, geometry, displacement, scratch, from, to),
         );
     }
 
@@ -512,6 +558,7 @@ impl Band {
         &self,
         simd: S,
         geometry: G,
+        displacement: &Vectors,
         scratch: &mut Scratch,
         from: usize,
         to: usize,
@@ -520,9 +567,9 @@ impl Band {
             let n = end - first;
             let north = first + self.stride;
             let vectors = first / LANES..end / LANES;
-            let here = chunks(&self.displacement, first, n);
+            let here = chunks(displacement, first, n);
             // Written out: an array's `map` costs more than its elements here.
-            let at = |k| chunks(&self.displacement, k, n);
+            let at = |k| chunks(displacement, k, n);
             let there = [at(north), at(north + 1), at(north - 1)];
             let [_, north_masks, north_east_masks, north_west_masks] = &self.masks;
             let masks = [
@@ -560,32 +607,54 @@ impl Band {
         (step, quanta): (&Step, &Quanta),
         energies: bool,
         t: usize,
-        scratch: &mut Scratch,
+        (scratch, upper): (&mut Scratch, &[UpperSheet]),
     ) {
-        self.lattice_forces(simd, geometry, t, scratch);
+        self.lattice_forces(simd, geometry, &self.displacement, t, scratch);
         let mut lattice_energy = 0;
         if energies {
             lattice_energy = self.lattice_energies(simd, geometry, quanta, t, scratch);
         }
-        match (G::BLOCKS_DIFFER, energies) {
-            // With all energies: compiled once more without them, it would save little.
-            (true, _) => self.friction_of_tile::<S, true, true>(simd, step, quanta, t, scratch),
-            (false, true) => self.friction_of_tile::<S, true, false>(simd, step, quanta, t, scratch),
-            (false, false) => self.friction_of_tile::<S, false, false>(simd, step, quanta, t, scratch),
+        if upper.is_empty() {
+            self.friction_with::<S, G, false>(simd, step, quanta, energies, t, (scratch, upper));
+        } else {
+            self.friction_with::<S, G, true>(simd, step, quanta, energies, t, (scratch, upper));
         }
         self.tiles[t].sums.lattice_energy = lattice_energy;
+    }
+
+    /// Eqs. 2 and 4-7 in a tile whose lattice forces are known, with its energies if they are needed.
+    #[inline(always)]
+    fn friction_with<S: Simd, G: Geometry, const HAS_ABOVE: bool>(
+        &mut self,
+        simd: S,
+        step: &Step,
+        quanta: &Quanta,
+        energies: bool,
+        t: usize,
+        arrays: (&mut Scratch, &[UpperSheet]),
+    ) {
+        match (G::BLOCKS_DIFFER, energies) {
+            // With all energies: compiled once more without them, it would save little.
+            (true, _) => self.friction_of_tile::<S, true, true, HAS_ABOVE>(simd, step, quanta, t, arrays),
+            (false, true) => {
+                self.friction_of_tile::<S, true, false, HAS_ABOVE>(simd, step, quanta, t, arrays);
+            }
+            (false, false) => {
+                self.friction_of_tile::<S, false, false, HAS_ABOVE>(simd, step, quanta, t, arrays);
+            }
+        }
     }
 
     /// Eqs. 2 and 4-7 in a tile whose lattice forces are known. A function of its own, compiled once for all
     /// formulas of springs.
     #[inline(never)]
-    fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool>(
+    fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
         &mut self,
         simd: S,
         step: &Step,
         quanta: &Quanta,
         t: usize,
-        scratch: &mut Scratch,
+        (scratch, upper): (&mut Scratch, &[UpperSheet]),
     ) {
         simd.vectorize(
             #[inline(always)]
@@ -594,12 +663,20 @@ impl Band {
                 // Tiles that are skipped lie in between, so that what is read next does not follow in memory.
                 let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
                 let elements = self.elements(t);
+                let (first, n) = (self.halo + elements.start, elements.len());
+                let above = match upper.first() {
+                    Some(above) if HAS_ABOVE => above.above(first, n),
+                    _ => Above::default(),
+                };
                 let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0);
                 let mut sums = Sums::zero(simd);
-                friction::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, &mut sums);
+                friction::<S, ENERGY, DIFFER, HAS_ABOVE>(simd, *step, quanta, (arrays, above), &mut sums);
                 let vectors = self.vectors(t).len();
                 let tile = &mut self.tiles[t];
                 tile.sums = sums.totals::<ENERGY>(quanta, vectors);
+                if HAS_ABOVE {
+                    tile.sums = tile.sums.below_others();
+                }
                 tile.moving = tile.sums.sliding > 0;
                 // What is known of its single vectors was so before this sweep.
                 tile.settled = false;
@@ -608,18 +685,20 @@ impl Band {
         );
     }
 
-    /// Eq. 3 in a tile. A function of its own, compiled once for all that call it.
+    /// Eq. 3 in a tile of a sheet with such displacements. A function of its own, compiled once for all that
+    /// call it.
     #[inline(never)]
     pub(super) fn lattice_forces<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
+        displacement: &Vectors,
         t: usize,
         scratch: &mut Scratch,
     ) {
         simd.vectorize(
             #[inline(always)]
-            || self.lattice_forces_here(simd, geometry, t, scratch),
+            || self.lattice_forces_here(simd, geometry, displacement, t, scratch),
         );
     }
 
@@ -628,19 +707,20 @@ impl Band {
         &self,
         simd: S,
         geometry: G,
+        displacement: &Vectors,
         t: usize,
         scratch: &mut Scratch,
     ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
         // The eight elements before may be of a tile that is skipped, and has left no springs.
-        let mut west = self.east_springs(simd, geometry, start - LANES);
+        let mut west = self.east_springs(simd, geometry, displacement, start - LANES);
         for (first, end, own, behind) in scratch.ring_segments(self.stride, start, self.halo + elements.end) {
             let n = end - first;
             let [north, north_east, north_west] = &scratch.upward;
             let arrays = LatticeLoop {
-                here: chunks(&self.displacement, first, n),
-                east: chunks(&self.displacement, first + 1, n),
+                here: chunks(displacement, first, n),
+                east: chunks(displacement, first + 1, n),
                 has_east: &self.masks[0][first / LANES..end / LANES],
                 to_east: self.spring_factors::<G>(0, first, n),
                 own: [
@@ -671,18 +751,39 @@ impl Band {
     ) -> i64 {
         let mut sum = 0;
         for v in self.vectors(t) {
-            let here = self.halo + v * LANES;
-            let own = here % scratch.ring();
-            let upward = |k: usize| load_vec2(simd, chunks(&scratch.upward[k], own, LANES), 0);
-            let east = self.east_springs(simd, geometry, here);
-            // Every block has the energy of the four springs that begin at it, so that each is counted once.
-            let springs = [east, upward(0), upward(1), upward(2)];
-            let factors = self.factors_of::<G>(v);
-            let energy = vector_energy::<S, G>(simd, springs, self.blocks[v], factors, quanta.lattice_energy);
+            let energy = self.lattice_energy(simd, geometry, quanta, (&self.displacement, 1.0), v, scratch);
             self.lattice_energy[v] = energy;
             sum += energy;
         }
         sum
+    }
+
+    /// Energy of the springs of a vector of a sheet with such displacements and relative thickness, as in
+    /// [`Sums`].
+    #[inline(always)]
+    pub(super) fn lattice_energy<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        quanta: &Quanta,
+        (displacement, thickness): (&Vectors, f64),
+        v: usize,
+        scratch: &Scratch,
+    ) -> i64 {
+        let here = self.halo + v * LANES;
+        let own = here % scratch.ring();
+        let upward = |k: usize| load_vec2(simd, chunks(&scratch.upward[k], own, LANES), 0);
+        let east = self.east_springs(simd, geometry, displacement, here);
+        // Every block has the energy of the four springs that begin at it, so that each is counted once.
+        let springs = [east, upward(0), upward(1), upward(2)];
+        let blocks = (self.blocks[v], thickness);
+        vector_energy::<S, G>(
+            simd,
+            springs,
+            blocks,
+            self.factors_of::<G>(v),
+            quanta.lattice_energy,
+        )
     }
 
     /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, whose lattice forces are at
@@ -750,11 +851,18 @@ impl Band {
         thresholds.kinetic_impulse(k) * mass * velocity_to_force
     }
 
-    /// Springs to the east of the eight elements from `first` on, counted from the front halo.
+    /// Springs to the east of the eight elements from `first` on, counted from the front halo, of a sheet
+    /// with such displacements.
     #[inline(always)]
-    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Vec2x8<S> {
-        let here = load_vec2(simd, chunks(&self.displacement, first, LANES), 0);
-        let there = load_vec2(simd, chunks(&self.displacement, first + 1, LANES), 0);
+    fn east_springs<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        displacement: &Vectors,
+        first: usize,
+    ) -> Vec2x8<S> {
+        let here = load_vec2(simd, chunks(displacement, first, LANES), 0);
+        let there = load_vec2(simd, chunks(displacement, first + 1, LANES), 0);
         let has_east = self.masks[0][first / LANES];
         let factors = self.spring_factors::<G>(0, first, LANES);
         let force = spring(simd, geometry, &Bond::EAST, has_east, here, there);
@@ -815,23 +923,43 @@ impl Band {
             if self.tiles[t].displacements_are_old {
                 self.measure_tile(simd, t);
             }
-            let tile = &self.tiles[t];
-            for (most, value) in self.extent.iter_mut().zip(tile.extent) {
-                *most = most.max(value);
+            let TileState {
+                extent, difference, ..
+            } = self.tiles[t];
+            self.include_measured((extent, difference));
+            for sheet in 0..self.upper.len() {
+                let measured = self.measured(simd, &self.upper[sheet].displacement, t);
+                self.include_measured(measured);
             }
-            for (most, value) in self.difference.iter_mut().zip(tile.difference) {
-                *most = most.max(value);
-            }
+        }
+    }
+
+    /// Enlarges the extent and the differences of the band to those of a tile of a sheet.
+    fn include_measured(&mut self, (extent, difference): ([f64; 4], [f64; 2])) {
+        for (most, value) in self.extent.iter_mut().zip(extent) {
+            *most = most.max(value);
+        }
+        for (most, value) in self.difference.iter_mut().zip(difference) {
+            *most = most.max(value);
         }
     }
 
     #[inline(always)]
     fn measure_tile<S: Simd>(&mut self, simd: S, t: usize) {
+        let (extent, difference) = self.measured(simd, &self.displacement, t);
+        let tile = &mut self.tiles[t];
+        (tile.extent, tile.difference) = (extent, difference);
+        tile.displacements_are_old = false;
+    }
+
+    /// [`TileState::extent`] and [`TileState::difference`] of tile `t` of a sheet with such displacements.
+    #[inline(always)]
+    fn measured<S: Simd>(&self, simd: S, displacement: &Vectors, t: usize) -> ([f64; 4], [f64; 2]) {
         let none = splat(simd, f64::NEG_INFINITY);
         let (mut extent, mut difference) = ([none; 4], [splat(simd, 0.0); 2]);
         for v in self.vectors(t) {
             let here = self.halo + v * LANES;
-            let u = load_vec2(simd, chunks(&self.displacement, here, LANES), 0);
+            let u = load_vec2(simd, chunks(displacement, here, LANES), 0);
             let [x, y] = or_else(simd, self.blocks[v], u, [none; 2]);
             let [left, down] = or_else(simd, self.blocks[v], [-u[0], -u[1]], [none; 2]);
             extent[0] = extent[0].max(x);
@@ -839,18 +967,18 @@ impl Band {
             extent[2] = extent[2].max(y);
             extent[3] = extent[3].max(down);
             for (present, there) in self.springs_of(v) {
-                let there = load_vec2(simd, chunks(&self.displacement, there, LANES), 0);
+                let there = load_vec2(simd, chunks(displacement, there, LANES), 0);
                 // Of blocks alone: what is stored beyond the last row may have neighbours that are not.
                 let [x, y] = zero_missing(simd, present & self.blocks[v], subtract(there, u));
                 difference[0] = difference[0].max(x.abs());
                 difference[1] = difference[1].max(y.abs());
             }
         }
-        let tile = &mut self.tiles[t];
         let [right, left, up, down] = extent;
-        tile.extent = [lane_max(right), lane_max(left), lane_max(up), lane_max(down)];
-        tile.difference = [lane_max(difference[0]), lane_max(difference[1])];
-        tile.displacements_are_old = false;
+        (
+            [lane_max(right), lane_max(left), lane_max(up), lane_max(down)],
+            [lane_max(difference[0]), lane_max(difference[1])],
+        )
     }
 
     /// Springs of vector `v` to the east, north, north-east and north-west: masks of those that exist, and
@@ -894,6 +1022,16 @@ impl Band {
 }
 
 impl Scratch {
+    /// Room for the springs of a tile in rows of so many elements.
+    pub(super) fn of_springs(stride: usize) -> Self {
+        let ring = whole_vectors(stride + 1 + TILE + LANES) + MIRROR;
+        Self {
+            upward: [(); 3].map(|()| Vectors::zeros(ring)),
+            lattice: Vectors::zeros(TILE),
+            ..Self::default()
+        }
+    }
+
     /// Number of elements in the ring buffer.
     #[inline(always)]
     fn ring(&self) -> usize {
@@ -923,6 +1061,25 @@ impl Scratch {
             let end = to.min(first + room);
             Some((std::mem::replace(&mut first, end), end, own, behind))
         })
+    }
+}
+
+/// Moves some elements of a band, whose displacements have a halo (Eq. 8), `u += dt v`.
+#[inline(always)]
+pub(super) fn move_blocks<S: Simd>(
+    simd: S,
+    dt: f64,
+    displacement: &mut Vectors,
+    velocity: &Vectors,
+    halo: usize,
+    elements: Range<usize>,
+) {
+    let [ux, uy] = chunks_mut(displacement, halo + elements.start, elements.len());
+    let [vx, vy] = chunks(velocity, elements.start, elements.len());
+    let dt = splat(simd, dt);
+    for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
+        (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
+        (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
     }
 }
 

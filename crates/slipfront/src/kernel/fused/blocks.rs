@@ -7,6 +7,7 @@ use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 
 use super::aligned::CacheLines;
 use super::quanta::Quanta;
+use super::sheets::{Above, pull_from_above};
 use super::springs::Geometry;
 use super::step::Step;
 use super::variations::Variation;
@@ -203,29 +204,29 @@ fn squares_over_factors<S: Simd, G: Geometry>(
 }
 
 /// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from
-/// the squares of their forces: see [`integers`].
+/// the squares of their forces over the relative thickness of the sheet: see [`integers`].
 #[inline(always)]
 fn spring_energies<S: Simd>(
     simd: S,
     [east, north, north_east, north_west]: [f64x8<S>; 4],
-    blocks: u8,
+    (blocks, thickness): (u8, f64),
     quantum: FixedPoint,
 ) -> i64x8<S> {
     // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
     let straight = east + north;
     let diagonal = north_east + north_west;
-    let energies = straight + splat(simd, 2.0) * diagonal;
+    let energies = splat(simd, thickness) * (straight + splat(simd, 2.0) * diagonal);
     let energies = zero_missing(simd, blocks, [energies, energies])[0];
     integers(energies, splat(simd, quantum.shift()))
 }
 
 /// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of
-/// [`Sums`].
+/// [`Sums`], from their forces over the relative thickness of the sheet.
 #[inline(always)]
 pub(super) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
     springs: [Vec2x8<S>; 4],
-    blocks: u8,
+    blocks: (u8, f64),
     factors: [Chunks; 4],
     quantum: FixedPoint,
 ) -> i64 {
@@ -293,7 +294,7 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) slipped: &'a mut [u8],
     /// The step at which each block in contact first slid.
     pub(super) first_slip: &'a mut [[u32; LANES]],
-    /// Drive forces `F_s`, found by [`free_motion`].
+    /// Drive forces `F_s`, or those of the sheet above, found by [`free_motion`].
     pub(super) drive: [ChunksMut<'a>; 2],
     /// Velocities that the blocks would have without friction, found by [`free_motion`].
     pub(super) free: [ChunksMut<'a>; 2],
@@ -340,18 +341,18 @@ pub(super) struct Sums<I, M, N = u32> {
 /// Numbers that [`integers`] adds for the sums of every step, and the centres of the displacements, for each
 /// of eight lanes.
 #[derive(Clone, Copy)]
-struct Shifts<S: Simd> {
-    centres: Vec2x8<S>,
+pub(super) struct Shifts<S: Simd> {
+    pub(super) centres: Vec2x8<S>,
     displacement: Vec2x8<S>,
     weighted_displacement: Vec2x8<S>,
     velocity: f64x8<S>,
-    motion_square: f64x8<S>,
+    pub(super) motion_square: f64x8<S>,
     friction_work: f64x8<S>,
 }
 
 impl<S: Simd> Shifts<S> {
     #[inline(always)]
-    fn of(simd: S, quanta: &Quanta) -> Self {
+    pub(super) fn of(simd: S, quanta: &Quanta) -> Self {
         let [x, y] = quanta.displacement;
         let [weighted_x, weighted_y] = quanta.weighted_displacement;
         Self {
@@ -386,7 +387,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Adds the contribution of eight blocks to the sum of `w (u - c)`.
     #[inline(always)]
-    fn add_displacement<const DIFFER: bool>(
+    pub(super) fn add_displacement<const DIFFER: bool>(
         &mut self,
         simd: S,
         shifts: &Shifts<S>,
@@ -408,7 +409,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Adds the contribution of eight blocks to the sum of `w v(t + dt/2)`.
     #[inline(always)]
-    fn add_velocity<const DIFFER: bool>(
+    pub(super) fn add_velocity<const DIFFER: bool>(
         &mut self,
         simd: S,
         shifts: &Shifts<S>,
@@ -424,7 +425,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Adds the contribution of eight blocks to the sum of `w (u - c)^2`.
     #[inline(always)]
-    fn add_stretch<const DIFFER: bool>(
+    pub(super) fn add_stretch<const DIFFER: bool>(
         &mut self,
         simd: S,
         quanta: &Quanta,
@@ -487,6 +488,18 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     }
 }
 
+impl Sums<i64, f64> {
+    /// Leaves out the sums over the drive springs, which pull the highest sheet, for one below others.
+    pub(super) fn below_others(self) -> Self {
+        Self {
+            displacement: [0; 2],
+            velocity: [0; 2],
+            displacement_square: 0,
+            ..self
+        }
+    }
+}
+
 impl Sums<i128, f64, u64> {
     /// Adds the sums of a tile or a band.
     pub(super) fn include<I: Copy + Into<i128>, N: Copy + Into<u64>>(&mut self, part: &Sums<I, f64, N>) {
@@ -542,13 +555,13 @@ impl Sums<i128, f64, u64> {
 
 /// The multiples of a quantum nearest to eight numbers, plus the bits of `shift`: see [`FixedPoint::shift`].
 #[inline(always)]
-fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
+pub(super) fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
     (numbers + shift).bitcast()
 }
 
 /// Sum of the multiples of a quantum in the [`integers`] of `vectors` vectors.
 #[inline(always)]
-fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
+pub(super) fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
     let added = ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64);
     lane_sum(lanes).wrapping_sub(added)
 }
@@ -586,7 +599,12 @@ fn rest<S: Simd>(
 /// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for
 /// vectors that do not [`rest`].
 #[inline(always)]
-fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut FrictionLoop) {
+fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool>(
+    simd: S,
+    step: Step,
+    arrays: &mut FrictionLoop,
+    above: Above,
+) {
     let n = arrays.free_speed.len();
     let (u, lattice) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
     let velocity = [&arrays.velocity[0][..n], &arrays.velocity[1][..n]];
@@ -598,7 +616,7 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
     let free_speed = &mut arrays.free_speed[..n];
     let variation = arrays.variation.first::<DIFFER>(n);
     for c in 0..n {
-        let mut drive = pull(simd, step, load_vec2(simd, u, c));
+        let mut drive = pull_from_above::<S, HAS_ABOVE>(simd, step, above, c, load_vec2(simd, u, c));
         let mut force_to_velocity = splat(simd, step.integrator.force_to_velocity);
         let before = load_vec2(simd, velocity, c);
         if DIFFER {
@@ -624,16 +642,18 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
 }
 
 /// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks
-/// at a time, and all sums that observers need at every step.
+/// at a time, and all sums that observers need at every step. Under other sheets the pull of the next one has
+/// the place of the drive, and sums over the drive springs are left out.
 #[inline(always)]
-pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
+pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
     simd: S,
     step: Step,
     quanta: &Quanta,
-    mut arrays: FrictionLoop,
+    (mut arrays, above): (FrictionLoop, Above),
     sums: &mut Sums<i64x8<S>, f64x8<S>>,
 ) {
-    free_motion::<S, DIFFER>(simd, step, &mut arrays);
+    let n = arrays.free_speed.len();
+    free_motion::<S, DIFFER, HAS_ABOVE>(simd, step, &mut arrays, above.first::<HAS_ABOVE>(n));
     let [vx, vy] = arrays.velocity;
     let n = vx.len();
     let vy = &mut vy[..n];
@@ -662,10 +682,12 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         let force = add(drive, lattice);
         if rest(simd, moving[c], before, force, &static_limit_squares[c]) {
             let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
-            sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
+            if !HAS_ABOVE {
+                sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
+            }
             let stress = zero_missing(simd, in_contact[c], drive);
             sums.stress_square = sums.stress_square.max(square(stress));
-            if ENERGY {
+            if ENERGY && !HAS_ABOVE {
                 sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
             }
             // Velocities, power and motion are zero: their sums get all these zeros at the end, at once.
@@ -697,8 +719,10 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         let both = zero_missing(simd, blocks[c], add(before, after));
         let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
         let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
-        sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
-        sums.add_velocity::<DIFFER>(simd, &shifts, after, variation.drive_springs, c);
+        if !HAS_ABOVE {
+            sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
+            sums.add_velocity::<DIFFER>(simd, &shifts, after, variation.drive_springs, c);
+        }
         sums.motion_square += integers(motion_square, shifts.motion_square);
         sums.friction_work += integers(dot(against, both), shifts.friction_work);
         sums.speed_square = sums.speed_square.max(square(after));
@@ -711,7 +735,9 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
             let motion = weighted::<S, DIFFER>(simd, motion, variation.mass, c);
             let motion = zero_missing(simd, blocks[c], [motion, zero])[0];
             sums.velocity_squares += integers(motion, shifts.motion_square);
-            sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
+            if !HAS_ABOVE {
+                sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
+            }
         }
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
     }

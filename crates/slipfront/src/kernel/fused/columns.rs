@@ -103,6 +103,37 @@ impl Band {
         }
     }
 
+    /// Takes over a column of the sheets above, of each displacement and velocity along x and y, from block
+    /// `first` on, as far as these blocks belong to the band.
+    pub(super) fn set_upper_column(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
+        let halo = self.halo;
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let [u, v] = self.of_sheet_mut(1 + column / 4);
+            let with_halo = halo + own.start..halo + own.end;
+            let array = match column % 4 {
+                0 => &mut u.x[with_halo],
+                1 => &mut u.y[with_halo],
+                2 => &mut v.x[own],
+                _ => &mut v.y[own],
+            };
+            array.copy_from_slice(&values[of_values]);
+        }
+    }
+
+    /// Writes to `values` a column of [`set_upper_column`](Self::set_upper_column).
+    pub(super) fn read_upper_column(&self, layout: &Layout, column: usize, first: usize, values: &mut [f64]) {
+        let [u, v] = self.of_sheet(1 + column / 4);
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let with_halo = self.halo + own.start..self.halo + own.end;
+            values[of_values].copy_from_slice(match column % 4 {
+                0 => &u.x[with_halo],
+                1 => &u.y[with_halo],
+                2 => &v.x[own],
+                _ => &v.y[own],
+            });
+        }
+    }
+
     /// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
     fn common(
         &self,

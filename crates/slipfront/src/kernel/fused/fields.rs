@@ -7,6 +7,7 @@ use fearless_simd::{Simd, SimdBase, SimdFloat};
 use super::band::{Band, Scratch, chunks};
 use super::blocks::pull;
 use super::layout::{Layout, TILE};
+use super::sheets::pull_from_above;
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
@@ -15,21 +16,24 @@ use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Block `b` at the given time of the drive. `motion` gives displacement and velocity of a block.
+/// Force of the drive spring on block `b` (Eq. 2), with the constant force.
+pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displacement: [f64; 2]) -> [f64; 2] {
+    let drive_spring = model.slider.drive_spring(b);
+    let force = model.drive.force(displacement, drive_time_star);
+    force.map(|force| drive_spring * force)
+}
+
+/// Block `b` under the given force of its drive spring or of the sheet above. `motion` gives displacement and
+/// velocity of a block.
 pub(super) fn block(
     model: &Model,
-    drive_time_star: f64,
     b: usize,
+    force_drive: [f64; 2],
     kinetic_force: f64,
     motion: impl Fn(usize) -> [[f64; 2]; 2],
 ) -> Block {
     let [displacement, velocity] = motion(b);
     let force_lattice = lattice_force(model, b, displacement, |b| motion(b)[0]);
-    let drive_spring = model.slider.drive_spring(b);
-    let force_drive = model
-        .drive
-        .force(displacement, drive_time_star)
-        .map(|force| drive_spring * force);
     Block {
         displacement,
         velocity,
@@ -99,8 +103,9 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
                     // Of tiles that follow one another, the springs in between are in the ring already.
                     let from = band.below(displaced.start).max(springs_end);
                     springs_end = displaced.end;
-                    band.upward(simd, geometry, &mut scratch, from, springs_end);
-                    band.lattice_forces(simd, geometry, t, &mut scratch);
+                    let u = &band.displacement;
+                    band.upward(simd, geometry, u, &mut scratch, from, springs_end);
+                    band.lattice_forces(simd, geometry, u, t, &mut scratch);
                     let mut forces = [[0.0; LANES]; TILE / LANES];
                     if band.tiles[t].moving {
                         for (j, i, blocks) in rows() {
@@ -164,10 +169,16 @@ fn stresses<S: Simd, G: Geometry>(
     let displacements = chunks(&band.displacement, band.halo + elements.start, n);
     let velocities = chunks(&band.velocity, elements.start, n);
     let lattice_forces = chunks(&scratch.lattice, 0, n);
+    let above = band.upper.first();
+    let above = above.map(|above| above.above(band.halo + elements.start, n));
     for (c, stress) in forces[..n / LANES].iter_mut().enumerate() {
         let velocity = load_vec2(simd, velocities, c);
         let lattice = load_vec2(simd, lattice_forces, c);
-        let mut drive = pull(simd, step, load_vec2(simd, displacements, c));
+        let u = load_vec2(simd, displacements, c);
+        let mut drive = match above {
+            Some(above) => pull_from_above::<S, true>(simd, step, above, c, u),
+            None => pull(simd, step, u),
+        };
         if let Some(variations) = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER) {
             let first = elements.start + c * LANES;
             drive = scale(

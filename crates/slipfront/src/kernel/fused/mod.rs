@@ -10,7 +10,8 @@
 //! velocity: 80 bytes, which bounds the speed on a lattice larger than the cache (`examples/large_step.rs`).
 //! Spring forces pass through a ring buffer that stays in the cache.
 //!
-//! A rank holds some rows and the displacements of the rows beside them ([`neighbours`]).
+//! A rank holds some rows and the displacements of the rows beside them ([`neighbours`]). Sheets above the
+//! lowest one are swept tile by tile with it ([`sheets`]).
 //!
 //! The trajectory has the same bits for any number of ranks and threads and any SIMD width, whether vectors
 //! are skipped or not: sums are sums of integers ([`quanta`]), and the choice between series and square root
@@ -28,6 +29,7 @@ mod neighbours;
 mod quanta;
 mod rest;
 mod schedule;
+mod sheets;
 mod sparse;
 mod springs;
 mod step;
@@ -120,6 +122,8 @@ pub(crate) struct Fused {
     /// Sum of the relative stiffness of all drive springs: the number of blocks where all are alike.
     drive_springs: f64,
     blocks_differ: bool,
+    /// Number of columns of a checkpoint that the law of friction has.
+    columns_of_law: usize,
 }
 
 impl Fused {
@@ -134,7 +138,7 @@ impl Fused {
     ) -> Self {
         let layout = Layout::new(&model.lattice, &model.rows);
         let (tiles, inner) = bands_of(&layout, threads);
-        let neighbours = Neighbours::new(communicator, &layout);
+        let neighbours = Neighbours::new(communicator, &layout, 1 + model.sheets.len());
         let moduli = Moduli::new(
             &model.slider,
             &model.lattice,
@@ -160,7 +164,8 @@ impl Fused {
             inner,
             threads,
             level: vectors::level(),
-            skips,
+            // Of a stack nothing rests, see `sheets`.
+            skips: skips && model.sheets.is_empty(),
             touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
             active_from_step: 0,
             swept_step: None,
@@ -177,12 +182,18 @@ impl Fused {
             largest,
             drive_springs: model.slider.sum_of_drive_springs(&model.lattice),
             blocks_differ: differ,
+            columns_of_law: model.friction.n_columns(),
             neighbours,
         };
         // From then on ghosts and halos follow those that move: at rest they must be right once.
         kernel.copy_ghosts(true);
         kernel.fill_halos(0.0, true);
         kernel
+    }
+
+    /// Number of sheets, the lowest included.
+    fn n_sheets(&self) -> usize {
+        self.bands.first().map_or(1, |band| 1 + band.upper.len())
     }
 
     /// Continues from a checkpoint. Every tile is swept at the next step, including those that could be
@@ -205,11 +216,14 @@ impl Fused {
             }
             Ok(())
         })?;
-        for column in 0..model.friction.n_columns() {
+        for column in 0..model.n_memory_columns() {
             BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
                 read(BlockColumn::ALL.len() + column, first, values)?;
                 for band in &mut kernel.bands {
-                    band.set_memory(&kernel.layout, column, first, values);
+                    match column.checked_sub(kernel.columns_of_law) {
+                        None => band.set_memory(&kernel.layout, column, first, values),
+                        Some(column) => band.set_upper_column(&kernel.layout, column, first, values),
+                    }
                 }
                 Ok(())
             })?;
@@ -347,7 +361,8 @@ impl Fused {
         let mut speed = [self.motion_bounds.speed];
         communicator.largest(&mut speed);
         self.motion_bounds.speed = speed[0];
-        if speed[0] == 0.0 {
+        // The drive pulls the highest sheet of a stack, which begins at rest.
+        if speed[0] == 0.0 || self.n_sheets() > 1 {
             return;
         }
         let fixed_point = FixedPoint::new(self.largest.drive_spring * speed[0]);
@@ -368,10 +383,10 @@ impl Fused {
     fn write_own_rows(&mut self, move_dt: f64) {
         let (stride, len) = (self.layout.stride, self.layout.len());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
-            // None beyond a free edge.
+            // None beyond a free edge; one sheet after the other.
             for k in 0..self.neighbours.own[end].len() {
-                let (band, at) = self.locate(first + k);
-                self.neighbours.own[end][k] = self.bands[band].advanced(at, move_dt);
+                let (band, at) = self.locate(first + k % stride);
+                self.neighbours.own[end][k] = self.bands[band].advanced(k / stride, at, move_dt);
             }
         }
     }
@@ -382,11 +397,14 @@ impl Fused {
         while element < elements.end {
             let (other, at) = self.locate(element);
             let n = (LANES - at % LANES).min(elements.end - element);
-            // What rests has been copied with its last move.
-            if all || self.bands[other].moving[at / LANES] != 0 {
-                for offset in 0..n {
-                    let u = self.bands[other].advanced(at + offset, move_dt);
-                    self.bands[b].displacement.set(k + offset, u);
+            for sheet in 0..self.n_sheets() {
+                // What rests has been copied with its last move.
+                if all || sheet > 0 || self.bands[other].moving[at / LANES] != 0 {
+                    for offset in 0..n {
+                        let u = self.bands[other].advanced(sheet, at + offset, move_dt);
+                        let [displacement, _] = self.bands[b].of_sheet_mut(sheet);
+                        displacement.set(k + offset, u);
+                    }
                 }
             }
             (element, k) = (element + n, k + n);
@@ -419,13 +437,28 @@ impl Fused {
                 if !all && band.tasks[at / TILE].active >> (at % TILE / LANES) & 1 == 0 {
                     continue;
                 }
-                let (u, v) = (band.displacement.at(band.halo + at), band.velocity.at(at));
                 let (to, k) = self.locate(ghost);
-                let band = &mut self.bands[to];
-                band.displacement.set(band.halo + k, u);
-                band.velocity.set(k, v);
-                band.set_moving(k, v != [0.0, 0.0]);
+                for sheet in 0..self.n_sheets() {
+                    let band = &self.bands[from];
+                    let [displacement, velocity] = band.of_sheet(sheet);
+                    let (u, v) = (displacement.at(band.halo + at), velocity.at(at));
+                    let band = &mut self.bands[to];
+                    let place = band.halo + k;
+                    let [displacement, velocity] = band.of_sheet_mut(sheet);
+                    displacement.set(place, u);
+                    velocity.set(k, v);
+                    if sheet == 0 {
+                        band.set_moving(k, v != [0.0, 0.0]);
+                    }
+                }
             }
+        }
+    }
+
+    /// Reads one of the columns of the sheets above, of the blocks from `first` on.
+    fn read_upper_column(&self, column: usize, first: usize, values: &mut [f64]) {
+        for band in &self.bands {
+            band.read_upper_column(&self.layout, column, first, values);
         }
     }
 
@@ -465,6 +498,18 @@ impl Fused {
         self.sums = Some((sums, *quanta));
     }
 
+    /// Energy of the springs between the sheets of a stack at the present step, at which the sweep has found
+    /// energies.
+    fn energy_between_sheets(&self, quanta: &Quanta) -> f64 {
+        if self.n_sheets() == 1 {
+            return 0.0;
+        }
+        let upper = self.bands.iter().flat_map(|band| &band.upper);
+        let mut words = split(upper.map(|sheet| sheet.energy_below).sum());
+        self.neighbours.communicator.sum(&mut words);
+        0.5 * quanta.between_sheets.value(join(words))
+    }
+
     /// Energies stored at the present step, if there was a sweep.
     fn stored_energy(&self, step: Step) -> Option<StoredEnergy> {
         let (sums, quanta) = self.sums.as_ref()?;
@@ -476,7 +521,7 @@ impl Fused {
             stretch_square += self.drive_springs * position * (position - 2.0 * mean);
         }
         Some(StoredEnergy {
-            between_sheets: 0.0,
+            between_sheets: self.energy_between_sheets(quanta),
             kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
             lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * K_STRAIGHT),
             drive_springs: 0.5 * step.k_drive * stretch_square.max(0.0),
@@ -514,10 +559,15 @@ impl Engine for Fused {
     }
 
     fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block {
+        let (band, k) = self.locate(self.layout.element_of(b));
+        let band = &self.bands[band];
+        let u = band.displacement.at(band.halo + k);
+        let force_drive = match band.upper.first() {
+            Some(above) => above.pull_on(band.halo + k, u),
+            None => fields::drive_force(model, clock.drive_time_star(), b, u),
+        };
         let kinetic_force = self.kinetic_force(model, b);
-        fields::block(model, clock.drive_time_star(), b, kinetic_force, |b| {
-            self.motion(b)
-        })
+        fields::block(model, b, force_drive, kinetic_force, |b| self.motion(b))
     }
 
     fn read_rows(
@@ -584,6 +634,22 @@ impl Engine for Fused {
         state
     }
 
+    fn sheets(&self) -> Vec<State> {
+        let n = self.layout.n_own_blocks();
+        let of_sheet = |sheet: usize| {
+            let mut state = State::at_rest(n);
+            let State {
+                displacement: u,
+                velocity: v,
+            } = &mut state;
+            for (number, values) in [&mut u.x, &mut u.y, &mut v.x, &mut v.y].into_iter().enumerate() {
+                self.read_upper_column(4 * sheet + number, 0, values);
+            }
+            state
+        };
+        (0..self.n_sheets() - 1).map(of_sheet).collect()
+    }
+
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         for band in &self.bands {
             band.read_column(&self.layout, self.dt_star, column, first, values);
@@ -593,6 +659,7 @@ impl Engine for Fused {
     fn into_first_slips(mut self: Box<Self>) -> Vec<f64> {
         for band in &mut self.bands {
             (band.displacement, band.velocity) = (Vectors::default(), Vectors::default());
+            band.upper = Vec::new();
         }
         let mut first_slips = vec![0.0; self.layout.n_own_blocks()];
         self.read_column(BlockColumn::FirstSlip, 0, &mut first_slips);
@@ -625,6 +692,10 @@ impl Engine for Fused {
     }
 
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
+        if let Some(column) = column.checked_sub(self.columns_of_law) {
+            self.read_upper_column(column, first, values);
+            return;
+        }
         for band in &self.bands {
             band.read_memory(&self.layout, time_star, column, first, values);
         }
@@ -667,9 +738,12 @@ fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>
 fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighbours) {
     for band in bands {
         for element in band.halos(layout).into_iter().flatten() {
-            if let Some(u) = neighbours.displacement(layout, element) {
-                let k = band.halo_index(element);
-                band.displacement.set(k, u);
+            let k = band.halo_index(element);
+            for sheet in 0..=band.upper.len() {
+                if let Some(u) = neighbours.displacement(layout, sheet, element) {
+                    let [displacement, _] = band.of_sheet_mut(sheet);
+                    displacement.set(k, u);
+                }
             }
         }
     }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::layout::Layout;
 use crate::communicator::Communicator;
 
-/// Displacements of the row below the first of this rank and of the row above the last, ghosts included; none
-/// beyond a free edge.
+/// Displacements of the row below the first of this rank and of the row above the last, ghosts included, one
+/// sheet after the other; none beyond a free edge.
 pub(super) struct Neighbours {
     pub(super) communicator: Arc<dyn Communicator>,
     /// The first and the last row of this rank, which are sent to the ranks below and above.
@@ -16,17 +16,17 @@ pub(super) struct Neighbours {
     rows: [Vec<[f64; 2]>; 2],
     /// Rows of the ranks below and above before the latest exchange.
     before: [Vec<[f64; 2]>; 2],
-    /// Elements of the rows beside this rank that have moved in the latest exchange, counted from the first
-    /// of this rank.
+    /// Elements of the lowest sheet in the rows beside this rank that have moved in the latest exchange,
+    /// counted from the first of this rank.
     pub(super) moved: Vec<isize>,
 }
 
 impl Neighbours {
-    pub(super) fn new(communicator: Arc<dyn Communicator>, layout: &Layout) -> Self {
+    pub(super) fn new(communicator: Arc<dyn Communicator>, layout: &Layout, n_sheets: usize) -> Self {
         let rows = || {
             layout
                 .has_neighbours()
-                .map(|has| vec![[0.0; 2]; if has { layout.stride } else { 0 }])
+                .map(|has| vec![[0.0; 2]; if has { n_sheets * layout.stride } else { 0 }])
         };
         Self {
             communicator,
@@ -55,7 +55,7 @@ impl Neighbours {
         self.moved.clear();
         let firsts = [-(layout.stride as isize), layout.len() as isize];
         for (first, (row, before)) in firsts.into_iter().zip(self.rows.iter().zip(&self.before)) {
-            for (element, (u, before)) in (first..).zip(row.iter().zip(before)) {
+            for (element, (u, before)) in (first..).zip(row.iter().zip(before).take(layout.stride)) {
                 // Compared with the exchange before, and not with what the other rank says of itself: nothing
                 // more has to be sent.
                 if u != before {
@@ -65,14 +65,16 @@ impl Neighbours {
         }
     }
 
-    /// Displacement of an element of the row below or above, counted from the first element of this rank.
-    pub(super) fn displacement(&self, layout: &Layout, element: isize) -> Option<[f64; 2]> {
-        let [below, above] = &self.rows;
-        match element {
-            ..0 => below.get(layout.stride.checked_add_signed(element)?),
-            _ => above.get((element as usize).checked_sub(layout.len())?),
-        }
-        .copied()
+    /// Displacement of an element of a sheet in the row below or above, counted from the first element of
+    /// this rank.
+    pub(super) fn displacement(&self, layout: &Layout, sheet: usize, element: isize) -> Option<[f64; 2]> {
+        let ([below, above], stride) = (&self.rows, layout.stride);
+        let (row, k) = match element {
+            ..0 => (below, stride.checked_add_signed(element)?),
+            _ => (above, (element as usize).checked_sub(layout.len())?),
+        };
+        // Beyond the row lies the next sheet.
+        (k < stride).then(|| row.get(sheet * stride + k))?.copied()
     }
 }
 

@@ -24,6 +24,8 @@ pub(super) struct Quanta {
     pub(super) friction_work: FixedPoint,
     /// Quanta of squares of spring forces over the factors of the springs.
     pub(super) lattice_energy: FixedPoint,
+    /// Quanta of `g (u_k+1 - u_k)^2` between the sheets of a stack.
+    pub(super) between_sheets: FixedPoint,
 }
 
 /// Factor for rounding in the bounds and in the numbers that they bound.
@@ -38,6 +40,8 @@ impl Quanta {
             modulus,
             drive_spring,
             mass,
+            thickness,
+            coupling,
             ..
         } = largest;
         Self {
@@ -48,13 +52,17 @@ impl Quanta {
             }),
             displacement_square: FixedPoint::new(MARGIN * drive_spring * (x * x + y * y)),
             velocity: FixedPoint::new(drive_spring * speed),
-            motion_square: FixedPoint::new(MARGIN * mass * 4.0 * speed * speed),
+            motion_square: FixedPoint::new(MARGIN * (mass * thickness) * 4.0 * speed * speed),
             // Friction stops a block at most.
             friction_work: FixedPoint::new(
                 MARGIN * mass * step.integrator.velocity_to_force * 2.0 * speed * speed,
             ),
             // Two straight springs, and two diagonal ones of half their stiffness that count twice.
-            lattice_energy: FixedPoint::new(MARGIN * modulus * 3.0 * spring_force * spring_force),
+            lattice_energy: FixedPoint::new(
+                MARGIN * (modulus * thickness) * 3.0 * spring_force * spring_force,
+            ),
+            // All blocks of a window, of whatever sheet, are at most its length apart.
+            between_sheets: FixedPoint::new(MARGIN * coupling * 4.0 * (x * x + y * y)),
         }
     }
 }
@@ -69,7 +77,13 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         // The force of a spring is at most its stiffness times the difference of the displacements of its
         // ends.
         force += largest.modulus * 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
-            + largest.drive_spring * (step.k_drive * stretch + step.constant_force[axis].abs());
+            + largest.inverse_thickness
+                * largest.drive_spring
+                * (step.k_drive * stretch + step.constant_force[axis].abs());
+        // Not so of one sheet, whose bits may not change where displacements are no numbers.
+        if largest.coupling > 0.0 {
+            force += largest.couplings_over_thickness * (high - low);
+        }
     }
     MARGIN * (bounds.speed + largest.inverse_mass * step.integrator.force_to_velocity * force)
 }

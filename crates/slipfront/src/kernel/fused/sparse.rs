@@ -11,6 +11,7 @@ use super::band::{Band, Scratch, chunks, chunks_mut};
 use super::blocks::{Sums, displacement_sums, friction, spring, times_factor, vector_energy};
 use super::layout::{TILE, VECTORS};
 use super::quanta::Quanta;
+use super::sheets::Above;
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{Chunks, LANES, Vec2x8, add, load, load_vec2, splat, subtract};
@@ -125,7 +126,8 @@ impl Band {
                     let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
                     let arrays =
                         self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, place);
-                    friction::<S, true, DIFFER>(simd, *step, quanta, arrays, &mut sums);
+                    let arrays = (arrays, Above::default());
+                    friction::<S, true, DIFFER, false>(simd, *step, quanta, arrays, &mut sums);
                     let rests = task.touched >> (v % VECTORS) & 1 == 0 && self.moving[v] == 0;
                     self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, place, rests);
                 }
@@ -266,7 +268,7 @@ impl Band {
         vector_energy::<S, G>(
             simd,
             own,
-            self.blocks[v],
+            (self.blocks[v], 1.0),
             self.factors_of::<G>(v),
             quanta.lattice_energy,
         )

@@ -15,6 +15,7 @@ use crate::communicator::Communicator;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::sheets::Sheet;
 
 /// Numbers of the elements of a band.
 #[derive(Debug)]
@@ -72,6 +73,15 @@ pub(super) struct LargestFactors {
     pub(super) drive_spring: f64,
     pub(super) mass: f64,
     pub(super) inverse_mass: f64,
+    /// Largest relative thickness of a sheet of a stack; 1 of a single sheet.
+    pub(super) thickness: f64,
+    /// Largest inverse of a relative thickness.
+    pub(super) inverse_thickness: f64,
+    /// Largest stiffness of the springs between two sheets; 0 of a single sheet.
+    pub(super) coupling: f64,
+    /// Largest stiffness of the springs of a block to the sheets above and below, over the thickness of its
+    /// own.
+    pub(super) couplings_over_thickness: f64,
 }
 
 impl LargestFactors {
@@ -93,7 +103,17 @@ impl LargestFactors {
         ];
         communicator.largest(&mut found);
         let [modulus, drive_spring, mass, inverse_mass] = found;
+        let of_sheets = |value: &dyn Fn(&Sheet) -> f64, lowest: f64| {
+            model.sheets.iter().map(value).fold(lowest, f64::max)
+        };
+        // Of each pair of sheets the springs pull both: on a sheet are at most two such sets.
+        let coupling = of_sheets(&|sheet| sheet.coupling, 0.0);
+        let inverse_thickness = of_sheets(&|sheet| 1.0 / sheet.thickness, 1.0);
         Self {
+            thickness: of_sheets(&|sheet| sheet.thickness, 1.0),
+            inverse_thickness,
+            coupling,
+            couplings_over_thickness: 2.0 * coupling * inverse_thickness,
             modulus,
             drive_spring,
             mass,
