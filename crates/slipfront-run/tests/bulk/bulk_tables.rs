@@ -60,8 +60,8 @@ fn main() {
     });
 
     println!(
-        "\nnu = 1/3, 4 x 4 pitches{:37}half-space   stack",
-        "w p (1 - nu)/G"
+        "\n{:36}{:>24}{:>12}{:>8}",
+        "4 x 4 pitches, nu = 1/3", "w p (1 - nu)/G", "half-space", "stack"
     );
     for (name, dimples) in ["band", "patch", "random"].into_iter().zip(patterns(PITCH)) {
         for (sharing, how) in [
@@ -71,7 +71,7 @@ fn main() {
             for w in [2.0, 10.0] {
                 let body = dimples.on_half_space(THIRD, w, sharing);
                 let stack = dimples.on_stack(THIRD, w, sharing, WITH_LITTLE_DRAG);
-                println!("{name:8}{how:28}{w:24}{body:10.2}{stack:8.2}");
+                println!("{name:8}{how:28}{w:24}{body:12.2}{stack:8.2}");
             }
         }
     }
