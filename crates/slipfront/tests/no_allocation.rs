@@ -89,9 +89,10 @@ fn a_step_allocates_nothing() {
         FrictionLaw::Reversal,
         FrictionLaw::Literal,
     ] {
+        // Stiff springs between sheets, so that a stack slips hardly later than a sheet.
         let above = Sheet {
-            thickness: 2.0,
-            coupling: 2.0,
+            thickness: 1.0,
+            coupling: 10.0,
         };
         for sheets in [Vec::new(), vec![above; 2]] {
             let model = model(law).with_sheets(sheets);

@@ -113,7 +113,7 @@ fn thresholds_that_change(law: usize) {
     against_general::assert_same(&model, slider.dt_star, None, steps(&slider));
     assert_same_bits(&model, slider.dt_star, None, steps(&slider));
     assert_goes_on(&slider, &|model, _| {
-        *model = model.clone().with_sheets(SHEETS.to_vec())
+        *model = model.clone().with_sheets(SHEETS.to_vec());
     });
 }
 
