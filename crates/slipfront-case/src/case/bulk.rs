@@ -119,9 +119,9 @@ impl Case {
                 four_digits(body.poisson),
                 four_digits(ratio),
                 if body.poisson > POISSON_RATIO {
-                    "6 to 27 % less than such a body at 0.49"
+                    "5 to 23 % less than such a body at 0.49"
                 } else {
-                    "1 to 7 % more than such a body at 0.25"
+                    "up to 14 % more than such a body at 0.25"
                 }
             )
         });

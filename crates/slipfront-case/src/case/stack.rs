@@ -12,11 +12,11 @@
 //! thickness h_1 and h_2, a coupling g and a mount K, answer with
 //!
 //! ```text
-//! Z = c E h_1 q^2 + g (K + c E h_2 q^2)/(g + K + c E h_2 q^2),   c = 9/8 along, 3/8 across, sqrt(27)/8 their mean
+//! Z = c E h_1 q^2 + g (K + c E h_2 q^2)/(g + K + c E h_2 q^2),   c = 9/8 along, 3/8 across
 //! ```
 //!
-//! It is fitted to the geometric mean of both directions, from the wave number q_a of the longest wave length
-//! of the texture to 8 q_a, so that the largest relative difference is least. `docs/model.md`, "Bulk bodies",
+//! The geometric mean of both directions is fitted to that of the body, from the wave number q_a of the
+//! longest wave length of the texture to 8 q_a, so that the largest relative difference is least. `docs/model.md`, "Bulk bodies",
 //! has what that means for answers.
 
 use std::f64::consts::TAU;
@@ -30,6 +30,8 @@ use crate::quantity::Length;
 
 /// Geometric mean of the stiffness of a sheet along and across, over `E h q^2`.
 const OF_SHEET: f64 = 0.649_519_052_838_329;
+/// Stiffness of a sheet along and across over [their mean](OF_SHEET): sqrt(3) and its inverse.
+const DIRECTIONS: [f64; 2] = [1.732_050_807_568_877_2, 0.577_350_269_189_625_8];
 /// Ratio of the largest to the smallest wave number of the fit.
 const RANGE: f64 = 8.0;
 /// Number of wave numbers of the fit, at equal ratios.
@@ -39,6 +41,9 @@ const POLE: [f64; 2] = [0.5, 1000.0];
 const STEPS: usize = 40;
 /// Number of times that the wave numbers are weighted anew.
 const WEIGHTINGS: usize = 15;
+/// Number of fits, each with the mean of both directions as the one before leaves it. The last ones differ by
+/// rounding.
+const FITS: usize = 8;
 
 /// A stack of sheets in SI units, from the lowest on.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,14 +122,7 @@ impl BulkBody {
     fn new(young_modulus: f64, poisson: f64, height: f64, longest_wave: f64) -> Self {
         let q_a = TAU / longest_wave;
         // In units of q_a, and of G q_a for stiffnesses per area.
-        let Fit {
-            lower,
-            coupling,
-            residue,
-            pole,
-            error,
-        } = Fit::of(q_a * height, poisson);
-        let upper = coupling * coupling / residue;
+        let fit = Fit::of(q_a * height, poisson);
         let shear_modulus = shear_modulus(young_modulus, poisson);
         let per_area = shear_modulus * q_a;
         let thickness = |of_mean: f64| of_mean * shear_modulus / (OF_SHEET * young_modulus * q_a);
@@ -132,10 +130,10 @@ impl BulkBody {
             longest_wave,
             height,
             poisson,
-            thickness: [thickness(lower), thickness(upper)],
-            coupling: coupling * per_area,
-            mount: (upper * pole - coupling) * per_area,
-            error,
+            thickness: [thickness(fit.lower), thickness(fit.upper())],
+            coupling: fit.coupling * per_area,
+            mount: fit.mount() * per_area,
+            error: fit.error,
         }
     }
 
@@ -151,9 +149,13 @@ impl BulkBody {
     /// Traction over displacement of the stack at wave number q, in the geometric mean of both directions,
     /// Pa/m.
     fn stiffness(&self, young_modulus: f64, q: f64) -> f64 {
-        let [lower, upper] = self.thickness.map(|h| OF_SHEET * young_modulus * h * q * q);
-        let above = self.mount + upper;
-        lower + self.coupling * above / (self.coupling + above)
+        let [along, across] = DIRECTIONS.map(|direction| {
+            let of_sheet = direction * OF_SHEET * young_modulus * q * q;
+            let [lower, upper] = self.thickness.map(|h| of_sheet * h);
+            let above = self.mount + upper;
+            lower + self.coupling * above / (self.coupling + above)
+        });
+        (along * across).sqrt()
     }
 
     /// The longest and the shortest wave length of the fit, m.
@@ -216,16 +218,60 @@ struct Fit {
 }
 
 impl Fit {
-    /// The best fit to a body of the height `q_a H`: the other numbers follow from the pole by linear
-    /// equations.
+    /// The best fit to a body of the height `q_a H`.
+    ///
+    /// One stiffness of a sheet for both directions, their mean, makes the fit a linear one. What that one
+    /// gives is not the mean of what the two give; the body is divided by their ratio, and fitted again.
     fn of(height: f64, poisson: f64) -> Self {
         let waves: [f64; WAVES] = std::array::from_fn(|k| libm::pow(RANGE, k as f64 / (WAVES - 1) as f64));
         let mean = |q: f64| {
             let [along, across] = response(q * height, poisson);
             q * (along * across).sqrt()
         };
-        let targets = waves.map(mean);
-        let at = |log_pole: f64| Self::with_pole(libm::exp(log_pole), &waves, &targets);
+        let of_body = waves.map(mean);
+        let mut found = Self::to(&waves, &of_body);
+        let mut share = 1.0;
+        for _ in 1..FITS {
+            let ratio = |k: usize| found.along(1.0, waves[k]) / found.mean(waves[k]);
+            let targets = std::array::from_fn(|k| of_body[k] * libm::pow(ratio(k), share));
+            let next = Self::to(&waves, &targets);
+            // Two sheets are more than a thin layer needs, and the thickness of one may fall below zero.
+            if next.lower > 0.0 && next.coupling > 0.0 && next.mount() > 0.0 {
+                found = next;
+            } else {
+                share *= 0.5;
+            }
+        }
+        let difference = |(q, of_body): (&f64, &f64)| (found.mean(*q) / of_body - 1.0).abs();
+        found.error = waves.iter().zip(&of_body).map(difference).fold(0.0, f64::max);
+        found
+    }
+
+    /// Stiffness of the upper sheet over q^2, `a_2`.
+    fn upper(&self) -> f64 {
+        self.coupling * self.coupling / self.residue
+    }
+
+    /// Stiffness of the mount, K.
+    fn mount(&self) -> f64 {
+        self.upper() * self.pole - self.coupling
+    }
+
+    /// Response at the wave number q where sheets have this stiffness, in units of [the mean](OF_SHEET).
+    fn along(&self, direction: f64, q: f64) -> f64 {
+        let square = direction * q * q;
+        self.lower * square + self.coupling - self.residue / (square + self.pole)
+    }
+
+    /// Geometric mean of the responses along and across.
+    fn mean(&self, q: f64) -> f64 {
+        let [along, across] = DIRECTIONS.map(|direction| self.along(direction, q));
+        (along * across).sqrt()
+    }
+
+    /// The fit of one response: the other numbers follow from the pole by linear equations.
+    fn to(waves: &[f64; WAVES], targets: &[f64; WAVES]) -> Self {
+        let at = |log_pole: f64| Self::with_pole(libm::exp(log_pole), waves, targets);
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let [mut low, mut high] = POLE.map(libm::log);
         let mut within =
@@ -333,13 +379,15 @@ mod tests {
                 }
                 // Between the wave numbers of the fit, 5 % apart, it is larger by 1.2e-4 at the most.
                 assert!((error - body.error).abs() < 3e-4, "{error} {body:?}");
+                eprintln!("{poisson:.2} {height} {error:.5} {:.4}", body.error);
                 largest = largest.max(error);
             }
         }
         assert!(largest < 0.02, "{largest}");
     }
 
-    /// The sheets of a deep body as another method of fitting found them, to 2 %.
+    /// The sheets of a deep body as a plain search over all four numbers found them, to 1 %: it ended when three
+    /// digits stood still.
     #[test]
     fn a_deep_body_has_known_sheets() {
         let (young_modulus, poisson, q_a) = (1.0, 0.25, 1.0);
@@ -348,11 +396,11 @@ mod tests {
         let scaled = [
             body.thickness[0] * OF_SHEET / m,
             body.thickness[1] * OF_SHEET / m,
-            m / body.coupling,
+            body.coupling / m,
             body.mount / m,
         ];
-        for (found, known) in scaled.into_iter().zip([0.0697, 0.588, 0.2466, 0.646]) {
-            assert!((found / known - 1.0).abs() < 0.02, "{found} {known}");
+        for (found, known) in scaled.into_iter().zip([0.0633, 0.604, 4.26, 0.575]) {
+            assert!((found / known - 1.0).abs() < 0.01, "{found} {known}");
         }
     }
 

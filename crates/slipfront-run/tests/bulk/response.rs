@@ -69,18 +69,18 @@ fn of_the_stack(case: &Case, poisson: f64, waves: usize) -> [f64; 2] {
 type Ratios = [(usize, [f64; 2]); 5];
 
 const DEEP: Ratios = [
-    (1, [1.061, 1.016]),
-    (2, [1.088, 0.919]),
-    (4, [1.060, 0.941]),
-    (8, [1.163, 0.912]),
-    (16, [1.686, 1.038]),
+    (1, [1.048, 0.974]),
+    (2, [1.096, 0.914]),
+    (4, [1.054, 0.948]),
+    (8, [1.115, 0.902]),
+    (16, [1.571, 0.989]),
 ];
 const GLUED: Ratios = [
-    (1, [1.028, 1.043]),
-    (2, [1.095, 0.927]),
-    (4, [1.125, 0.891]),
-    (8, [1.222, 0.862]),
-    (16, [1.740, 0.966]),
+    (1, [1.008, 1.009]),
+    (2, [1.094, 0.912]),
+    (4, [1.122, 0.892]),
+    (8, [1.172, 0.855]),
+    (16, [1.605, 0.919]),
 ];
 
 #[test]
@@ -106,14 +106,10 @@ fn a_stack_answers_waves_as_its_body_does() {
                 // Rounding of what was measured.
                 assert!((found - measured).abs() < 1e-3, "{waves}: {found} {measured}");
             }
-            // The fit takes one stiffness for a sheet, the mean of both directions: at the ends of its range
-            // the mean of the two answers is larger than the answer of the mean.
-            let bound = match waves {
-                2 | 4 => 0.02,
-                1 | 8 => 0.04,
-                _ => continue,
-            };
-            assert!((mean - 1.0).abs() < bound, "{waves}: {mean}");
+            // From the longest wave to an eighth of it, for which two sheets are fitted.
+            if waves <= 8 {
+                assert!((mean - 1.0).abs() < 0.02, "{waves}: {mean}");
+            }
         }
     }
 }
@@ -124,11 +120,11 @@ fn a_stack_answers_waves_as_its_body_does() {
 fn all_blocks_together_yield_less_than_in_a_body() {
     let poisson = 1.0 / 3.0;
     for (height, measured) in [
-        (0.05, 1.0016),
-        (0.1, 1.027),
-        (0.2, 1.267),
-        (0.5, 2.268),
-        (1.0, 4.255),
+        (0.05, 0.9985),
+        (0.1, 1.007),
+        (0.2, 1.208),
+        (0.5, 2.099),
+        (1.0, 3.898),
     ] {
         let case = bare(LONGEST, poisson, Some(height));
         let [coupling, mount] = [case.model.sheets()[0].coupling, case.model.drive.k_drive];

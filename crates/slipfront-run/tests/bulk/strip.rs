@@ -93,9 +93,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// and 2.316 G/L for slip across it: twice what K. Uenishi and J. R. Rice (2003) found for two elastic
 /// bodies.
 ///
-/// A stack holds more, by up to 20 % along and 5 % across, since its sheets are 3 times as stiff along as
-/// across; and in the geometric mean of both by 10 %, since a strip also has waves that are longer than those
-/// of the fit, which meet the mount.
+/// A stack holds more, by up to 18 % along and 4 % across, since its sheets are 3 times as stiff along as
+/// across; and in the geometric mean of both by 9 %, since a strip also has waves that are longer than those of
+/// the fit, which meet the mount.
 ///
 /// A strip of half the longest wave length is held by the mount above all.
 #[test]
@@ -121,7 +121,7 @@ fn strips_run_away_late() {
         })
     };
     // As measured, to a hundredth, in which strips of other numbers of blocks differ.
-    for (part, measured) in [(2, [1.25, 1.30]), (4, [1.16, 1.05]), (8, [1.19, 1.01])] {
+    for (part, measured) in [(2, [1.21, 1.24]), (4, [1.15, 1.03]), (8, [1.17, 1.00])] {
         let found = ratios(part);
         let mean = (found[0] * found[1]).sqrt();
         println!("1/{part} of the longest wave: {found:.3?}, mean {mean:.3}");

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
-mod bulk;
 mod fields;
 mod lateral_friction;
 mod regression;

@@ -838,23 +838,28 @@ fn the_guides_have_the_reductions_of_their_studies() {
         assert!(text.contains(&row), "{row}");
     }
     // The coarsest of three meshes; the others take minutes.
-    let steel = repository.join("cases/steel.toml");
-    workspace.write(
-        "steel.toml",
-        format!(
-            "base = '{}'\n[study]\nreplicates = 5\nreference = {{ texture = [] }}\n[[axes]]\nzip = {{ \"slider.blocks\" = [[100, 100]], \
-             \"slider.block_size\" = ['20 um'] }}\n",
-            steel.display()
-        ),
-    );
-    workspace.succeed("study steel.toml -q -o steel");
-    let points = workspace.results("steel").table("points.csv");
-    let point = points
-        .iter()
-        .find(|row| row["quantity"] == "static_reduction_percent")
-        .unwrap();
-    let number = |name: &str| point[name].parse::<f64>().unwrap();
-    let half = (number("high") - number("low")) / 2.0;
-    let row = format!("  20 um    13.46 % {:>19.2} \u{b1} {half:.2} ", number("mean"));
+    let coarsest = |case: &str, blocks: u32, size: &str, replicates: u32| {
+        workspace.write(
+            "coarsest.toml",
+            format!(
+                "base = '{}'\n[study]\nreplicates = {replicates}\nreference = {{ texture = [] }}\n[[axes]]\n\
+                 zip = {{ \"slider.blocks\" = [[{blocks}, {blocks}]], \"slider.block_size\" = ['{size}'] }}\n",
+                repository.join("cases").join(case).display()
+            ),
+        );
+        workspace.succeed(&format!("study coarsest.toml -q -o {case}"));
+        let points = workspace.results(case).table("points.csv");
+        let mut rows = points.into_iter();
+        rows.find(|row| row["quantity"] == "static_reduction_percent")
+            .unwrap()
+    };
+    let number = |point: &BTreeMap<String, String>, name: &str| point[name].parse::<f64>().unwrap();
+    let steel = coarsest("steel.toml", 100, "20 um", 5);
+    let half = (number(&steel, "high") - number(&steel, "low")) / 2.0;
+    let mean = number(&steel, "mean");
+    let row = format!("  20 um    13.46 % {mean:>19.2} \u{b1} {half:.2} ");
+    assert!(text.contains(&row), "{row}");
+    let pad = coarsest("pdms_pad.toml", 48, "50 um", 1);
+    let row = format!("    50 um    18.75 % {:>26.4} ", number(&pad, "mean"));
     assert!(text.contains(&row), "{row}");
 }
