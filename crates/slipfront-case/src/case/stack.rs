@@ -16,8 +16,8 @@
 //! ```
 //!
 //! The geometric mean of both directions is fitted to that of the body, from the wave number q_a of the
-//! longest wave length of the texture to 8 q_a, so that the largest relative difference is least. `docs/model.md`, "Bulk bodies",
-//! has what that means for answers.
+//! longest wave length of the texture to 8 q_a, so that the largest relative difference is least.
+//! `docs/model.md`, "Bulk bodies", has what that means for answers.
 
 use std::f64::consts::TAU;
 
@@ -386,8 +386,8 @@ mod tests {
         assert!(largest < 0.02, "{largest}");
     }
 
-    /// The sheets of a deep body as a plain search over all four numbers found them, to 1 %: it ended when three
-    /// digits stood still.
+    /// The sheets of a deep body as a plain search over all four numbers found them, to 1 %: it ended when
+    /// three digits stood still.
     #[test]
     fn a_deep_body_has_known_sheets() {
         let (young_modulus, poisson, q_a) = (1.0, 0.25, 1.0);

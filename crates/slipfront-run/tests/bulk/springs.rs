@@ -230,8 +230,8 @@ fn the_lattice_is_a_half_space_for_long_waves() {
     }
 }
 
-/// With inertia and a third dimension, dimples reduce friction as in the half-space. The stack finds more by a
-/// seventh: its sheets have Poisson's ratio 1/3, and here it is 1/4.
+/// With inertia and a third dimension, dimples reduce friction as in the half-space. The stack finds more by
+/// a seventh: its sheets have Poisson's ratio 1/3, and here it is 1/4.
 #[test]
 fn dimples_on_springs_reduce_friction_as_on_a_stack() {
     let (dimples, weakening) = (Dimples::array(16), 2.0);
