@@ -157,15 +157,13 @@ impl Document {
     }
 
     /// The slider without texture with which this case is compared, of the same body.
-    pub(crate) fn twin(&self) -> Self {
-        let twin = self.without_texture();
-        let key = CaseFile::parse(&self.toml(), &self.name, &[]).ok();
-        let key = key.as_ref().and_then(key_of_body);
-        let Some((key, value)) = key else {
-            return twin;
-        };
-        let with_body = twin.with([(key.to_owned(), Some(Value::from(value)))]);
-        with_body.unwrap_or(twin)
+    ///
+    /// # Errors
+    /// A sentence, if the keys are no case.
+    pub(crate) fn twin(&self) -> Result<Self, String> {
+        let file = CaseFile::parse(&self.toml(), &self.name, &[]).map_err(|error| error.to_string())?;
+        let body = key_of_body(&file).map(|(key, value)| (key.to_owned(), Some(Value::from(value))));
+        self.without_texture().with(body)
     }
 
     /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as

@@ -16,7 +16,11 @@ use crate::protocol::{Estimate, RepeatedReply};
 /// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first
 /// peak.
 pub(crate) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
-    let twin = document.has_texture().then(|| document.twin());
+    let twin = document.has_texture().then(|| document.twin()).transpose();
+    let twin = match twin {
+        Ok(twin) => twin,
+        Err(error) => return worker.tell(Event(EventKind::Repeated(Err(error)))),
+    };
     let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
     for &seed in seeds {
         let runs = documents

@@ -271,8 +271,8 @@ impl Plan {
         self.with_body_of_point(file, base, point, role, 0)
     }
 
-    /// The case file of a run. A reference gets the bulk body of its point, since sheets are fitted for the
-    /// wave lengths of a texture, which it has not.
+    /// The case file of a run. A reference gets the bulk body of its point, whatever texture it has itself:
+    /// sheets are fitted for the wave lengths of a texture, and a reduction compares textures on one body.
     fn with_body_of_point(
         &self,
         file: CaseFile,

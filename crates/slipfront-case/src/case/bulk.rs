@@ -51,7 +51,7 @@ impl Case {
     /// where strength falls with slip; none for a chain:
     ///
     /// ```text
-    /// L_c = 2.316 G/((1 - nu) w),   w = (mu_s - mu_k) P/D_c
+    /// L_c = 2.316 G/((1 - nu) w),   w = (mu_s - mu_k) P/D_c,   P on blocks in contact
     /// ```
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
@@ -114,31 +114,43 @@ impl Case {
         let unlike = (body.poisson - POISSON_RATIO).abs() > LIKE_POISSON;
         let unlike = unlike.then(|| {
             format!(
-                "the sheets have Poisson's ratio 1/3, so that this stack is 1.73 times as stiff along a wave as across it, and the body, of \
-                 `slider.poisson` = {}, {} times: of textures it found {}",
+                "the sheets have Poisson's ratio 1/3, so that this stack is about 1.73 times as stiff along a wave as across it, and the body, of \
+                 `slider.poisson` = {}, {} times: of arrays of dimples it found {}",
                 four_digits(body.poisson),
                 four_digits(ratio),
                 if body.poisson > POISSON_RATIO {
-                    "5 to 23 % less than such a body at 0.49"
+                    "23 to 5 % less than such a body at 0.49 where w p (1 - nu)/G is 1 to 20"
                 } else {
-                    "up to 14 % more than such a body at 0.25"
+                    "up to 14 % more than such a body at 0.25 where w p (1 - nu)/G is 1 to 20"
                 }
             )
         });
         let short = self.texture_lengths().feature.and_then(|feature| {
             let excess = body.excess(self.scales.young_modulus, 2.0 * feature);
-            (excess > LARGE_EXCESS).then(|| {
+            (2.0 * feature < body.longest_wave && excess > LARGE_EXCESS).then(|| {
                 format!(
                     "the smallest feature of {} is short for a slider whose longest wave length is {}: at twice the feature the stack is {:.0} % \
-                     stiffer than the body; one array with a `pitch` that fills the slider has its pitch for the longest wave, and \
-                     `slider.sheets` takes three sheets",
+                     stiffer than the body; one array with a `pitch` that fills the slider has its pitch for the longest wave, \
+                     `slider.longest_wave` gives another, and `slider.sheets` takes three sheets",
                     with_si_prefix(feature, "m"),
                     with_si_prefix(body.longest_wave, "m"),
                     100.0 * excess
                 )
             })
         });
-        unlike.into_iter().chain(short).collect()
+        let long = self.texture_lengths().pitch.and_then(|pitch| {
+            let excess = body.excess(self.scales.young_modulus, pitch);
+            (pitch > body.longest_wave && excess > LARGE_EXCESS).then(|| {
+                format!(
+                    "the longest wave length of the slider is {}, shorter than the pitch of {}: there the stack is {:.0} % stiffer than the \
+                     body; `slider.longest_wave` = \"{1}\" mends that",
+                    with_si_prefix(body.longest_wave, "m"),
+                    with_si_prefix(pitch, "m"),
+                    100.0 * excess
+                )
+            })
+        });
+        unlike.into_iter().chain(short).chain(long).collect()
     }
 
     /// The smallest feature and pitch of all textures.

@@ -42,8 +42,13 @@ const STEPS: usize = 40;
 /// Number of times that the wave numbers are weighted anew.
 const WEIGHTINGS: usize = 15;
 /// Number of fits, each with the mean of both directions as the one before leaves it. The last ones differ by
-/// rounding.
+/// less than a thousandth of the error.
 const FITS: usize = 8;
+/// Share of the lower sheet of the first fit that others keep at least.
+const LEAST_LOWER: f64 = 0.5;
+/// Wave number times height below which a glued layer yields by shear alone, with G/H, within a thousandth:
+/// the fit to longer waves would be one to rounding.
+const THIN: f64 = 0.05;
 
 /// A stack of sheets in SI units, from the lowest on.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,8 +62,8 @@ pub(super) struct Stack {
 /// A bulk body, with the stack of two sheets that stands for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BulkBody {
-    /// Longest wave length of the texture, m: its pitch if one array fills the slider, else the longer side
-    /// of the slider.
+    /// Longest wave length of the fit, m: the one that the case gives, else the pitch of its texture if one
+    /// array fills the slider, else the longer side of the slider.
     pub longest_wave: f64,
     /// Height of the body, m; infinite for a deep one.
     pub height: f64,
@@ -120,7 +125,7 @@ impl BulkBody {
     }
 
     fn new(young_modulus: f64, poisson: f64, height: f64, longest_wave: f64) -> Self {
-        let q_a = TAU / longest_wave;
+        let q_a = (TAU / longest_wave).max(THIN / height);
         // In units of q_a, and of G q_a for stiffnesses per area.
         let fit = Fit::of(q_a * height, poisson);
         let shear_modulus = shear_modulus(young_modulus, poisson);
@@ -230,13 +235,14 @@ impl Fit {
         };
         let of_body = waves.map(mean);
         let mut found = Self::to(&waves, &of_body);
+        let first = found.lower;
         let mut share = 1.0;
         for _ in 1..FITS {
             let ratio = |k: usize| found.along(1.0, waves[k]) / found.mean(waves[k]);
             let targets = std::array::from_fn(|k| of_body[k] * libm::pow(ratio(k), share));
             let next = Self::to(&waves, &targets);
-            // Two sheets are more than a thin layer needs, and the thickness of one may fall below zero.
-            if next.lower > 0.0 && next.coupling > 0.0 && next.mount() > 0.0 {
+            // Two sheets are more than a thin layer needs, and the thickness of one may fall to nothing.
+            if next.lower > LEAST_LOWER * first && next.coupling > 0.0 && next.mount() > 0.0 {
                 found = next;
             } else {
                 share *= 0.5;
@@ -366,7 +372,8 @@ mod tests {
         let mut largest = 0.0_f64;
         for poisson in [0.0, 0.1, 0.25, 1.0 / 3.0, 0.45, 0.49, 0.5] {
             for height in [
-                0.05, 0.1, 0.3, 0.5, 0.7, 0.8, 1.0, 1.2, 1.35, 1.5, 1.7, 2.0, 3.0, 5.0, 1e9,
+                1e-6, 1e-3, 0.05, 0.07, 0.088, 0.09, 0.1, 0.12, 0.15, 0.2, 0.3, 0.5, 0.7, 0.8, 1.0, 1.2,
+                1.35, 1.5, 1.7, 2.0, 3.0, 5.0, 1e9,
             ] {
                 let (young_modulus, q_a) = (2.6e9, 2.0e4);
                 let body = BulkBody::new(young_modulus, poisson, height / q_a, TAU / q_a);
@@ -379,7 +386,10 @@ mod tests {
                 }
                 // Between the wave numbers of the fit, 5 % apart, it is larger by 1.2e-4 at the most.
                 assert!((error - body.error).abs() < 3e-4, "{error} {body:?}");
-                eprintln!("{poisson:.2} {height} {error:.5} {:.4}", body.error);
+                eprintln!(
+                    "SC {poisson:.2} {height} {error:.5} {:.4} {:?} {}",
+                    body.error, body.thickness, body.coupling
+                );
                 largest = largest.max(error);
             }
         }

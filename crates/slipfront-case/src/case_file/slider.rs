@@ -52,8 +52,9 @@ key_rows! {
         /// Poisson's ratio of a bulk body. The sheets keep 1/3.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
-        /// Longest wave length, down to an eighth of which the sheets answer as the bulk body does. The
-        /// slider without texture that a reduction compares with has the one of its texture.
+        /// Longest wave length, down to an eighth of which the sheets answer as the bulk body does. Studies,
+        /// `converge` and the laboratory give it to the slider without texture with which they compare; give
+        /// it where you compare runs yourself.
         pub longest_wave: Option<Length> = key("", quantity("m", within(1e-12, 1e6)))
             .without("pitch of the one array that fills the slider, else the longer side of the slider")
             .title("longest wave length", "", "m"),

@@ -268,7 +268,7 @@ fn a_texture_without_a_pitch_says_how_near() {
             .to_string()
     };
     assert!(
-        refused(&[]).contains("texture 0 has no pitch that says how near"),
+        refused(&[]).contains("texture 0 is no array of several features"),
         "{}",
         refused(&[])
     );
@@ -289,11 +289,21 @@ fn what_the_stack_leaves_out_is_noted() {
         case(text, &sets(&all)).warnings().join("\n")
     };
     assert!(!notes(DIMPLES, &[]).contains("sheets"));
-    assert!(notes(DIMPLES, &["slider.poisson=0.49"]).contains("5 to 23 % less"));
+    assert!(notes(DIMPLES, &["slider.poisson=0.49"]).contains("23 to 5 % less"));
     assert!(notes(DIMPLES, &["slider.poisson=0.25"]).contains("up to 14 % more"));
     let small = "slider = { blocks = [100, 100], block_size = '10 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '15 um'\narray = [3, 3]\npitch = '100 um'";
     let noted = notes(small, &[]);
     assert!(noted.contains("at twice the feature the stack is"), "{noted}");
+    let noted = notes(DIMPLES, &["slider.longest_wave=\"100 um\""]);
+    assert!(
+        noted.contains("100 um, shorter than the pitch of 200 um: there the stack is 30 % stiffer"),
+        "{noted}"
+    );
+    assert!(
+        noted.contains("`slider.longest_wave` = \"200 um\" mends that"),
+        "{noted}"
+    );
+    assert!(!notes(DIMPLES, &["slider.longest_wave=\"200 um\""]).contains("stiffer than"));
 }
 
 #[test]

@@ -38,7 +38,7 @@ const MAX_FITTING: usize = 8;
 /// Value at `x` of a curve by linear interpolation; none beyond its ends.
 fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
     let [from, to] = ends(xs);
-    (from..=to).contains(&x).then(|| interpolate(xs, ys, x))
+    (!xs.is_empty() && (from..=to).contains(&x)).then(|| interpolate(xs, ys, x))
 }
 
 /// Distance between a record, shifted, and a curve, over the points of the record within the curve; none if

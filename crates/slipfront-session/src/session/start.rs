@@ -53,7 +53,7 @@ impl Session {
             self.twin = None;
             return Ok(());
         }
-        let document = document.twin();
+        let document = document.twin()?;
         let toml = document.toml();
         // What it depends on has not changed: it stays as far as it is.
         if let Some(twin) = &self.twin

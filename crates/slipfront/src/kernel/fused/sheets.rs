@@ -4,10 +4,10 @@
 //! loops for its springs; in place of friction it has the [pull](pull_from_above) of the sheets above and
 //! below. Its tile is taken through a step together with that of the lowest one, while both are in the cache.
 //!
-//! Nothing of a stack is skipped, whatever the kernel is asked for. While nothing moves around a stuck block
-//! of a single sheet, the drive alone tells when it slips; in a stack the drive moves the highest sheet in
-//! every step, and that one the force on every block below. Under a drive that stands the sheets above swing
-//! on.
+//! No vector of a stack is left out of a sweep, whatever the kernel is asked for. While nothing moves around
+//! a stuck block of a single sheet, the drive alone tells when it slips; in a stack the drive moves the
+//! highest sheet in every step, and that one the force on every block below. Under a drive that stands the
+//! sheets above swing on.
 
 use std::ops::Range;
 
