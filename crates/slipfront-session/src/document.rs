@@ -494,6 +494,20 @@ mod tests {
 
     /// Masks come back from their image unchanged, also where the width is no multiple of the eight blocks
     /// that a byte holds.
+    /// Sheets are fitted for the wave lengths of a texture, which a slider without one has not.
+    #[test]
+    fn a_bulk_body_is_compared_with_the_same_body() {
+        let text = "slider = { blocks = [32, 32], body = 'bulk' }\ndrive.v_star = 0.01\n\
+                    texture = [{ shape = 'cavity', lambda = '2 um', pitch = '8 um' }]";
+        let textured = document(text);
+        let [body, twin] = [&textured, &textured.twin().unwrap()]
+            .map(|document| document.case(&mut |_| true).unwrap().bulk_body().unwrap());
+        assert_eq!((body.longest_wave, body), (8e-6, twin));
+        // A sheet needs no key more.
+        let sheet = document("texture = [{ shape = 'cavity', coverage = 5 }]");
+        assert_eq!(sheet.twin().unwrap().toml(), sheet.without_texture().toml());
+    }
+
     #[test]
     fn a_mask_is_the_texture_it_was_painted_as() {
         for (nx, ny) in [(1, 2), (7, 3), (8, 8), (13, 5), (100, 9)] {

@@ -212,7 +212,7 @@ const RUNS: [&str; 7] = [
 ];
 
 /// Whole runs of other laws, in the other kernel, with events and snapshots, and of cases that read files.
-const OTHER_RUNS: [&str; 13] = [
+const OTHER_RUNS: [&str; 14] = [
     // Laws of friction that remember more.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
      friction.contact_stiffness_star=0.1",
@@ -225,6 +225,8 @@ const OTHER_RUNS: [&str; 13] = [
     "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
     "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
      time.duration_star=1;output.snapshots=[]",
+    // Two sheets.
+    "slider.blocks=[400,400];slider.body='bulk';time.duration_star=1;output.snapshots=[]",
     // Events of slip.
     "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
      drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
@@ -241,7 +243,7 @@ const OTHER_RUNS: [&str; 13] = [
 ];
 
 /// Options of a model: kernels, sliders, laws.
-const MODELS: [&str; 18] = [
+const MODELS: [&str; 20] = [
     "",
     ";slider.outline='disc'",
     ";slider.stiffness_grade={along='x',from=1,to=2}",
@@ -252,6 +254,8 @@ const MODELS: [&str; 18] = [
     ";friction.slip_weakening={length_star=0.5};friction.healing_time_star=1",
     ";slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};drive.attach='left';\
      load.profile={along='x',relative_slope=0.5}",
+    ";slider.body='bulk'",
+    ";slider.body='bulk';friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
     ";slider.viscosity_time_star=0.1",
     ";slider.outline='disc';slider.viscosity_time_star=0.1",
     ";slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};drive.attach='left';\
