@@ -366,6 +366,12 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
             .find(|length| length.name == "critical size, bulk body")
             .unwrap();
         assert_eq!(found.enough, None);
+        let of_body = text.replace(&format!("thickness = '{thickness}'"), "body = 'bulk'");
+        let of_body = case(&of_body, &[]).lengths();
+        let of_body = of_body.iter().find(|length| length.name == found.name).unwrap();
+        assert_eq!(of_body.enough, Some(3.0));
+        // Of some products and sums of equal numbers.
+        assert!((of_body.blocks / found.blocks - 1.0).abs() < 1e-12);
         // Of some products and sums of equal numbers.
         assert!(
             (found.metres / expected - 1.0).abs() < 1e-12,

@@ -58,6 +58,27 @@ fn dimples_on_a_stack_reduce_friction_as_in_a_half_space() {
     }
 }
 
+/// Blocks in a pitch, and the reduction in % of an array whose critical size is 0.116 pitches.
+const ON_BLOCKS: [(usize, f64); 4] = [(16, 33.6), (24, 35.1), (32, 35.4), (48, 35.3)];
+
+/// Three blocks in the critical size of a bulk body are enough for 2 % of a reduction, and two are not.
+#[test]
+fn three_blocks_in_the_critical_size_are_enough() {
+    let finest = ON_BLOCKS[3].1;
+    for (pitch, measured) in ON_BLOCKS {
+        let found = Dimples::array(pitch).on_stack(0.3, 20.0, Sharing::Equal, WITH_LITTLE_DRAG);
+        let blocks = 2.316 * pitch as f64 / 20.0;
+        println!("{blocks:.1} blocks in the critical size: {found:.2} %");
+        // Rounding of what was measured.
+        assert!((found - measured).abs() < 0.06, "{blocks}: {found}");
+        assert_eq!(
+            (found / finest - 1.0).abs() < 0.02,
+            blocks > 2.5,
+            "{blocks}: {found}"
+        );
+    }
+}
+
 /// Load that is shared within a pitch is carried by the rims of the dimples, which then slip first.
 #[test]
 fn an_array_whose_load_is_shared_within_a_pitch() {
