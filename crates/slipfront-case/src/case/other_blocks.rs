@@ -114,10 +114,12 @@ impl Case {
         for blocks in other.iter_mut().filter(|blocks| **blocks > 1) {
             let found = f64::from(*blocks) * finer;
             if found.fract() != 0.0 || found < 2.0 {
+                let times = 1.0 / finer;
+                let nearest = |blocks: u32| (f64::from(blocks) * finer).round().max(2.0) * times;
+                let [near_x, near_y] = [nx, ny].map(|blocks| if blocks > 1 { nearest(blocks) } else { 1.0 });
                 return Err(refuse(format!(
-                    "`slider.blocks` = [{nx}, {ny}] cannot be divided into blocks of {} times the size: take numbers that are multiples of {}",
-                    1.0 / finer,
-                    1.0 / finer
+                    "`slider.blocks` = [{nx}, {ny}] cannot be divided into blocks of {times} times the size: take numbers that are multiples \
+                     of {times}, such as [{near_x}, {near_y}]"
                 )));
             }
             if found > MAX_BLOCKS as f64 {

@@ -187,7 +187,10 @@ fn what_cannot_be_put_on_meshes_is_refused() {
     let workspace = Workspace::new();
     workspace.write("sheet.toml", SHEET);
     for (arguments, expected) in [
-        ("--set slider.blocks=[25,25]", "cannot be divided"),
+        (
+            "--set slider.blocks=[25,25]",
+            "take numbers that are multiples of 2, such as [26, 26]",
+        ),
         ("--set texture.0.coverage=0.01", "no block is textured"),
         ("--max-memory 0.001", "more than --max-memory 0.001 allows"),
         ("--max-memory nan", "more than --max-memory"),
