@@ -481,7 +481,7 @@ pub(crate) fn add_front(
     if let Some(during) = observers.times_of_front(numbers.transition)
         && let Some(front) = front::of_ranks(case, first_slips, during, communicator)
     {
-        numbers.add_front(&front, &case.scales);
+        numbers.add_front(&front, case.model.springs(), &case.scales);
     }
 }
 

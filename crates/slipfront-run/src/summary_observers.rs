@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
-use slipfront::lattice::shear_wave_speed;
+use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Quantiles, Scheduled};
 use slipfront::{Checkpoint, Scales, Simulation, StopReason};
 use slipfront_case::case::{Case, Topography};
@@ -235,7 +235,7 @@ fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_m
 
 impl Summary {
     /// Adds the values of the front.
-    pub(crate) fn add_front(&mut self, front: &LatticeFront, scales: &Scales) {
+    pub(crate) fn add_front(&mut self, front: &LatticeFront, springs: SpringStiffness, scales: &Scales) {
         let nucleations = front.nucleations.iter().map(|nucleation| NucleationSummary {
             x_m: nucleation.place[0] * scales.block_size,
             y_m: nucleation.place[1] * scales.block_size,
@@ -254,7 +254,7 @@ impl Summary {
             self.front_speed_c_s,
             self.front_speed_low_c_s,
             self.front_speed_high_c_s,
-        ] = speeds(1.0 / shear_wave_speed());
+        ] = speeds(1.0 / springs.shear_wave_speed());
         [
             self.front_speed_m_s,
             self.front_speed_low_m_s,

@@ -87,6 +87,7 @@ fn digest(case: &Case) -> blake3::Hash {
         number(value);
     }
     number(f64::from(u8::from(drive.rotation.is_some())));
+    number(model.springs().diagonal);
     for sheet in model.sheets() {
         number(sheet.thickness);
         number(sheet.coupling);

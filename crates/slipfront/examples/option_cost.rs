@@ -15,6 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use slipfront::communicator::Alone;
+use slipfront::lattice::SpringStiffness;
 use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, pressure_along,
 };
@@ -194,7 +195,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
             thickness: 8.5,
             coupling: 1.0,
         };
-        model = model.with_sheets(vec![sheet]);
+        model = model.with_sheets(vec![sheet], SpringStiffness::default());
     }
     if has(Choice::Held) {
         model.drive.loading = Loading::Held {

@@ -22,12 +22,6 @@ pub const POISSON_RATIO: f64 = 1.0 / 3.0;
 /// Square of the lattice's highest frequency, `omega_max^2 = 6.5 k_1/m`.
 pub const OMEGA_MAX_SQUARED: f64 = 6.5 * K_STRAIGHT;
 
-/// Speed of long shear waves, `c_S = sqrt(3/8)`, in blocks per unit of t*, of a slider whose blocks are
-/// alike.
-pub fn shear_wave_speed() -> f64 {
-    (0.5 * K_STRAIGHT).sqrt()
-}
-
 /// Largest stable time step, `dt* < 2/omega_max = 0.9058`, at any damping (D7, D11).
 pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()
@@ -58,6 +52,83 @@ pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
     };
     let n_waves = WAVES * WAVES;
     n_waves as f64 / ((0..n_waves).map(response).sum::<f64>() * k_drive)
+}
+
+/// Stiffness of the springs between neighbouring blocks, in units of `E h`.
+///
+/// ```
+/// use slipfront::lattice::{K_DIAGONAL, K_STRAIGHT, SpringStiffness};
+/// let SpringStiffness { straight, diagonal } = SpringStiffness::with_ratio(3.0);
+/// assert_eq!([straight, diagonal], [K_STRAIGHT, K_DIAGONAL]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringStiffness {
+    /// Springs to straight neighbours, `k_1`.
+    pub straight: f64,
+    /// Springs to diagonal neighbours, `k_2`.
+    pub diagonal: f64,
+}
+
+impl Default for SpringStiffness {
+    /// The springs of the paper, `k_1 = 3/4` and `k_2 = 3/8`: the only isotropic ones.
+    fn default() -> Self {
+        Self {
+            straight: K_STRAIGHT,
+            diagonal: K_DIAGONAL,
+        }
+    }
+}
+
+impl SpringStiffness {
+    /// Springs with which a lattice is `ratio` times as stiff along a long wave that runs along an axis as
+    /// across it, with the geometric mean of both that the paper's springs have:
+    ///
+    /// ```text
+    /// k_2 = sqrt(27/ratio)/8   k_1 = (ratio - 1) k_2   along: (k_1 + k_2) q^2 = ratio k_2 q^2   across: k_2 q^2
+    /// ```
+    ///
+    /// Only a ratio of 3 makes it isotropic: central springs of a square lattice have `C_12 = C_66`.
+    pub fn with_ratio(ratio: f64) -> Self {
+        let diagonal = (27.0 / ratio).sqrt() / 8.0;
+        Self {
+            straight: (ratio - 1.0) * diagonal,
+            diagonal,
+        }
+    }
+
+    /// The four bonds that, over all blocks, make every spring once, with these springs.
+    pub fn bonds(self) -> [Bond; 4] {
+        Bond::ALL.map(|bond| self.bond(bond))
+    }
+
+    /// A bond with one of these springs.
+    #[inline(always)]
+    pub(crate) fn bond(self, bond: Bond) -> Bond {
+        Bond {
+            stiffness: self.of(&bond),
+            ..bond
+        }
+    }
+
+    /// Stiffness against a strain along an axis that is uniform across it, `k_1 + k_2`.
+    pub fn along(self) -> f64 {
+        self.straight + self.diagonal
+    }
+
+    /// Speed of long shear waves along an axis, `c_S = sqrt(k_2)`, in blocks per unit of t*, of a slider
+    /// whose blocks are alike.
+    pub fn shear_wave_speed(self) -> f64 {
+        self.diagonal.sqrt()
+    }
+
+    /// Stiffness of the spring along a bond.
+    #[inline(always)]
+    pub(crate) fn of(self, bond: &Bond) -> f64 {
+        match bond.offset {
+            [0, _] | [_, 0] => self.straight,
+            _ => self.diagonal,
+        }
+    }
 }
 
 /// Boundary of the lattice at both ends of one axis.

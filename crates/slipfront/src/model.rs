@@ -8,7 +8,7 @@ use crate::communicator::Communicator;
 use crate::drive::{Drive, Loading, Program};
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
-use crate::lattice::{K_DRIVE, Lattice, springs_on_a_lone_block};
+use crate::lattice::{K_DRIVE, Lattice, SpringStiffness, springs_on_a_lone_block};
 use crate::sheets::{self, Sheet};
 use crate::slider::Slider;
 use crate::surface::Surface;
@@ -29,6 +29,8 @@ pub struct Model {
     pub(crate) slider: Slider,
     /// Sheets above the lattice, from the lowest on; none in the paper.
     pub(crate) sheets: Vec<Sheet>,
+    /// Springs between neighbouring blocks of every sheet.
+    pub(crate) springs: SpringStiffness,
     /// Friction of every block of these rows.
     pub surface: Surface,
     /// The drive of the slider.
@@ -75,6 +77,7 @@ impl Model {
             rows,
             slider: Slider::default(),
             sheets: Vec::new(),
+            springs: SpringStiffness::default(),
             surface,
             drive,
             damping,
@@ -93,18 +96,23 @@ impl Model {
         Self { slider, ..self }
     }
 
-    /// Returns the model with sheets above the lattice, from the lowest on. The drive springs pull the blocks
+    /// Returns the model with sheets above the lattice, from the lowest on, and with the springs that
+    /// neighbouring blocks of each of them and of the lattice itself have. The drive springs pull the blocks
     /// of the highest one.
     ///
     /// # Panics
     /// If blocks differ, there are dampers between them, or the drive rotates: no sheet above has these.
-    pub fn with_sheets(self, sheets: Vec<Sheet>) -> Self {
+    pub fn with_sheets(self, sheets: Vec<Sheet>, springs: SpringStiffness) -> Self {
         let is_plain = self.slider == Slider::default() && self.drive.rotation.is_none();
         assert!(
             is_plain || sheets.is_empty(),
             "a stack of sheets has equal blocks without dampers, and a drive that does not rotate"
         );
-        Self { sheets, ..self }
+        Self {
+            sheets,
+            springs,
+            ..self
+        }
     }
 
     /// Returns the model with the given loading of its drive.
@@ -128,6 +136,7 @@ impl Model {
             rows,
             slider: self.slider.of_some_blocks(&blocks),
             sheets: self.sheets.clone(),
+            springs: self.springs,
             surface: self.surface.of_some_blocks(&blocks),
             drive: self.drive.clone(),
             damping: self.damping,
@@ -144,6 +153,11 @@ impl Model {
     /// Sheets above the lattice, from the lowest on.
     pub fn sheets(&self) -> &[Sheet] {
         &self.sheets
+    }
+
+    /// Springs between neighbouring blocks of every sheet.
+    pub fn springs(&self) -> SpringStiffness {
+        self.springs
     }
 
     /// Stiffness of the spring through which the drive pulls a block where all blocks of a sheet move alike:

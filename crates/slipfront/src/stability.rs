@@ -1,7 +1,7 @@
 //! The largest time step with which a slider is stable.
 
 use crate::communicator::Communicator;
-use crate::lattice::{Bond, K_DRIVE, OMEGA_MAX_SQUARED, dt_star_limit};
+use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::sheets::largest_eigenvalue;
@@ -31,10 +31,6 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
     4.0 / (lag + (lag * lag + 4.0 * all).sqrt())
 }
 
-/// Largest eigenvalue of the springs of a block to its neighbours, `2 sum_j k_ij e_ij e_ij^T/m`, of a block
-/// in the middle of equal ones.
-const SPRINGS_OF_A_BLOCK: f64 = OMEGA_MAX_SQUARED - K_DRIVE;
-
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
     /// [`dt_star_limit`], the bound of the paper's slider; of a stack of sheets that of equal blocks held by
@@ -45,7 +41,9 @@ impl Model {
         let contact = self.friction.contact_stiffness();
         if !self.sheets.is_empty() {
             let held = largest_eigenvalue(&self.sheets, self.drive.k_drive, contact);
-            return stable_step(SPRINGS_OF_A_BLOCK, held, 0.0).min(dt_star_limit());
+            // In the middle of equal blocks, 2 sum_j k_ij e_ij e_ij^T/m is this times the identity.
+            let springs = 4.0 * self.springs.along();
+            return stable_step(springs, held, 0.0).min(dt_star_limit());
         }
         let is_plain = self.slider == Slider::default() && contact == 0.0;
         if is_plain && self.drive.k_drive <= K_DRIVE {

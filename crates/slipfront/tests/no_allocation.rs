@@ -5,6 +5,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
+use slipfront::lattice::SpringStiffness;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Schedule, Scheduled};
 use slipfront::surface::{Coefficients, Distribution, Load};
@@ -95,7 +96,7 @@ fn a_step_allocates_nothing() {
             coupling: 10.0,
         };
         for sheets in [Vec::new(), vec![above; 2]] {
-            let model = model(law).with_sheets(sheets);
+            let model = model(law).with_sheets(sheets, SpringStiffness::default());
             for kernel in [Kernel::General, Kernel::Fused] {
                 let execution = Execution {
                     kernel,

@@ -12,7 +12,7 @@ use slipfront::lattice::POISSON_RATIO;
 use super::runnable::Case;
 use super::stack::{BulkBody, shear_modulus};
 use super::textures::{pitch, regular_pitch};
-use slipfront_base::number_format::{four_digits, with_si_prefix};
+use slipfront_base::number_format::with_si_prefix;
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
 const THICK: f64 = 1.0 / 3.0;
@@ -25,8 +25,6 @@ const STRIP: f64 = 2.316;
 /// what it changes in the sheet, for a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a
 /// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/model.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
-/// Difference of Poisson's ratio from that of the sheets above which there is a note.
-const LIKE_POISSON: f64 = 0.05;
 /// Excess of the stiffness of the stack over that of the body above which there is a note.
 const LARGE_EXCESS: f64 = 0.1;
 
@@ -104,27 +102,12 @@ impl Case {
         ))
     }
 
-    /// Sentences on what the stack leaves out of a bulk body: another Poisson's ratio than that of its
-    /// sheets, and waves that are shorter than those of the fit.
+    /// Sentences on what the stack leaves out of a bulk body: waves that are shorter or longer than those of
+    /// the fit.
     pub(super) fn bulk_notes(&self) -> Vec<String> {
         let Some(body) = self.bulk_body() else {
             return Vec::new();
         };
-        let ratio = 1.0 / (1.0 - body.poisson);
-        let unlike = (body.poisson - POISSON_RATIO).abs() > LIKE_POISSON;
-        let unlike = unlike.then(|| {
-            format!(
-                "the sheets have Poisson's ratio 1/3, so that this stack is about 1.73 times as stiff along a wave as across it, and the body, of \
-                 `slider.poisson` = {}, {} times: of arrays of dimples it found {}",
-                four_digits(body.poisson),
-                four_digits(ratio),
-                if body.poisson > POISSON_RATIO {
-                    "23 to 5 % less than such a body at 0.49 where w p (1 - nu)/G is 1 to 20"
-                } else {
-                    "up to 14 % more than such a body at 0.25 where w p (1 - nu)/G is 1 to 20"
-                }
-            )
-        });
         let short = self.texture_lengths().feature.and_then(|feature| {
             let excess = body.excess(self.scales.young_modulus, 2.0 * feature);
             (2.0 * feature < body.longest_wave && excess > LARGE_EXCESS).then(|| {
@@ -150,7 +133,7 @@ impl Case {
                 )
             })
         });
-        unlike.into_iter().chain(short).chain(long).collect()
+        short.into_iter().chain(long).collect()
     }
 
     /// The smallest feature and pitch of all textures.

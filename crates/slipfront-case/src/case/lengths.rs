@@ -17,7 +17,7 @@ use slipfront_base::number_format::{four_digits, with_si_prefix};
 /// Number of blocks in the critical size of slip that is enough.
 const OF_CRITICAL_SIZE: f64 = 5.0;
 /// Number of blocks in the critical size of a bulk body that is enough: of dimples four times as wide, the
-/// reduction on 1.9 blocks is 4.8 % off from the one on 5.6, on 2.8 blocks 0.4 %.
+/// reduction on 1.9 blocks is 6 % off from the one on 5.6, on 2.8 blocks 1.5 %.
 const OF_CRITICAL_SIZE_OF_BULK: f64 = 3.0;
 /// Number of blocks in the screening length along the drive that is enough, where it is the shorter one.
 const OF_SCREENING: f64 = 3.0;

@@ -88,11 +88,12 @@ pub(super) fn make(
     let drive = drive(file, derived, (&lattice, &rows), &slider, ranks.communicator)?;
     let (damping, friction) = (damping(groups.omega_star), derived.friction);
     let model = Model::of_rows(lattice, rows, surface, drive, damping, groups.epsilon, friction);
-    let sheets = derived
-        .stack
-        .as_ref()
-        .map_or(Vec::new(), |stack| stack.sheets(scales));
-    Ok((model.with_slider(slider).with_sheets(sheets), texture))
+    let model = model.with_slider(slider);
+    let model = match &derived.stack {
+        None => model,
+        Some(stack) => model.with_sheets(stack.sheets(scales), stack.springs()),
+    };
+    Ok((model, texture))
 }
 
 /// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.

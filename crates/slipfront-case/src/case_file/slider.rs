@@ -49,7 +49,7 @@ key_rows! {
         /// Height of a bulk body, from the contact to the face by which it is driven.
         pub height: Option<Length> = key("", quantity("m", within(1e-12, 1e6))).without("deep: many pitches")
             .title("height", "H", "m"),
-        /// Poisson's ratio of a bulk body. The sheets keep 1/3.
+        /// Poisson's ratio of a bulk body.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
         /// Longest wave length, down to an eighth of which the sheets answer as the bulk body does. Studies,
@@ -62,6 +62,9 @@ key_rows! {
         /// lowest on.
         pub sheets: Option<Vec<SheetOfStack>> = key("", KeyKind::Table(
             "[{ thickness = \"5 um\", coupling = \"2e15 N/m^3\" }, { thickness = \"40 um\", coupling = \"4e14 N/m^3\" }]", SheetOfStack::KEYS)),
+        /// Stiffness of each of the `sheets` along a wave over that across it.
+        pub along_to_across: Option<f64> = key("", number(within(1.1, 10.0), "the springs of the paper have 3")).without("3")
+            .title("stiffness along over across", "", ""),
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),
@@ -213,11 +216,13 @@ impl Slider {
         check.value("height", &self.height)?;
         check.value("poisson", &self.poisson)?;
         check.value("longest_wave", &self.longest_wave)?;
+        check.value("along_to_across", &self.along_to_across)?;
         let of_bulk = [
             ("height", self.height.is_some()),
             ("poisson", self.poisson.is_some()),
             ("longest_wave", self.longest_wave.is_some()),
             ("sheets", self.sheets.is_some()),
+            ("along_to_across", self.along_to_across.is_some()),
         ];
         if self.body == Body::Sheet {
             let given = of_bulk.iter().find(|(_, is_given)| *is_given);
@@ -272,7 +277,11 @@ impl Slider {
             });
         }
         let Some(sheets) = &self.sheets else {
-            return Ok(());
+            return self.along_to_across.map_or(Ok(()), |_| {
+                check.refuse("along_to_across", |key| {
+                    format!("`{key}` belongs to `slider.sheets`, and follows from `slider.poisson` without: give `sheets`, or leave it out")
+                })
+            });
         };
         if let Some((key, _)) = of_bulk[..3].iter().find(|(_, is_given)| *is_given) {
             return check.refuse(key, |key| {

@@ -92,6 +92,7 @@ fn slider() -> impl Strategy<Value = Slider> {
                 height: None,
                 poisson: None,
                 longest_wave: None,
+                along_to_across: None,
                 sheets: None,
                 young_modulus,
                 density,

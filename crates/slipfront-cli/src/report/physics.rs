@@ -69,9 +69,10 @@ fn body(case: &Case) -> Option<String> {
     };
     let waves = bulk.waves().map(|wave| with_si_prefix(wave, "m"));
     Some(format!(
-        "{height} of nu = {}: sheets of {lower} and {upper}, {:.3e} N/m^3 between them, {:.3e} N/m^3 to the drive, within {:.1} % for waves \
+        "{height} of nu = {}: sheets of {lower} and {upper}, {} times as stiff along a wave as across it, {:.3e} N/m^3 between them, {:.3e} N/m^3 to the drive, within {:.1} % for waves \
          of {} to {}",
         four_digits(bulk.poisson),
+        four_digits(bulk.along_to_across),
         bulk.coupling,
         bulk.mount,
         100.0 * bulk.error,

@@ -10,8 +10,8 @@ use crate::half_space::{Blocks, Body};
 /// Ratio of kinetic to static friction.
 pub(crate) const RATIO: f64 = 0.5;
 /// Edge of a block, and Young's modulus, of the product.
-const BLOCK: f64 = 10e-6;
-const YOUNG_MODULUS: f64 = 2.6e6;
+pub(crate) const BLOCK: f64 = 10e-6;
+pub(crate) const YOUNG_MODULUS: f64 = 2.6e6;
 /// Coefficient of static friction of the product, whose pressure is 1 Pa.
 const MU_STATIC: f64 = 0.6;
 
@@ -187,6 +187,26 @@ impl Dimples {
         ];
         self.in_product(1.0 / 3.0, weakening, Sharing::Equal, &keys)
     }
+}
+
+/// Keys of the product for three sheets that are within 0.3 % of a deep body of nu = 1/4, from a longest wave
+/// of so many blocks to a sixteenth of it.
+pub(crate) fn three_sheets(longest: usize, block: f64, young_modulus: f64) -> [String; 3] {
+    /// In `G/(0.6495 E q_a)` and `G q_a`, by a plain search over all six numbers (`docs/model.md`).
+    const SHEETS: [[f64; 2]; 3] = [[0.0297, 13.25], [0.2146, 3.069], [0.9147, 0.5870]];
+    const POISSON: f64 = 0.25;
+    let q_a = std::f64::consts::TAU / (longest as f64 * block);
+    let shear_modulus = young_modulus / (2.0 * (1.0 + POISSON));
+    let sheet = |[thickness, coupling]: [f64; 2]| {
+        let thickness = thickness * shear_modulus / (0.6495 * young_modulus * q_a);
+        let coupling = coupling * shear_modulus * q_a;
+        format!("{{ thickness = '{thickness:e} m', coupling = '{coupling:e} N/m^3' }}")
+    };
+    [
+        "slider.body='bulk'".to_owned(),
+        format!("slider.sheets=[{}]", SHEETS.map(sheet).join(", ")),
+        "slider.along_to_across=2.278".to_owned(),
+    ]
 }
 
 /// A band of two columns of dimples across the drive, a patch of 2 x 2, and 16 dimples at random places, on a

@@ -1,7 +1,11 @@
 //! Reductions of static friction by dimples: the reference against figures of other solvers, the stack
 //! against the reference.
 
-use crate::dimples::{Dimples, Sharing, WITH_LITTLE_DRAG, patterns};
+use crate::dimples::{
+    BLOCK, Dimples, SLOWLY, Sharing, WITH_LITTLE_DRAG, YOUNG_MODULUS, patterns, three_sheets,
+};
+use crate::half_space::Body;
+use crate::layer;
 
 /// `w p (1 - nu)/G`.
 const WEAKENING: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
@@ -30,14 +34,15 @@ fn the_reference_finds_what_is_known() {
 
 /// Poisson's ratio, and by how much of itself, in %, a reduction by two sheets is too large.
 const EXCESS: [(f64, [f64; 5]); 4] = [
-    (0.25, [8.3, 14.2, 8.3, 3.0, -1.7]),
-    (0.3, [3.9, 7.4, 4.1, 1.3, -3.9]),
-    (1.0 / 3.0, [-0.2, 2.8, 0.8, 0.1, -4.9]),
-    (0.49, [-23.1, -19.3, -12.3, -6.8, -4.7]),
+    (0.25, [-5.5, -1.4, -2.5, -0.6, -1.7]),
+    (0.3, [-4.3, -2.4, -2.1, 0.0, -7.2]),
+    (1.0 / 3.0, [-5.0, -2.0, -2.3, -0.5, -6.5]),
+    (0.49, [-6.4, -3.5, -1.1, 0.4, -0.5]),
 ];
 
-/// Two sheets, whose Poisson's ratio is 1/3, find the reductions of a half-space within -6 and +8 % of each
-/// where it is that of a metal, 0.3, or 1/3. Elsewhere the difference is what was measured.
+/// Two sheets find the reductions of a half-space within 8 % of each, from Poisson's ratio of glass to that
+/// of rubber. At the smallest reductions, 1 to 2 % are the drag of the drive. At the largest most is the
+/// mesh, which has 1.9 blocks in the critical size.
 #[test]
 fn dimples_on_a_stack_reduce_friction_as_in_a_half_space() {
     let dimples = Dimples::array(16);
@@ -51,15 +56,65 @@ fn dimples_on_a_stack_reduce_friction_as_in_a_half_space() {
             );
             // Rounding of what was measured.
             assert!((excess - measured).abs() < 0.06, "{weakening}: {excess}");
-            if (0.3..0.34).contains(&poisson) {
-                assert!((-6.0..8.0).contains(&excess), "{weakening}: {excess}");
-            }
+            assert!((-8.0..8.0).contains(&excess), "{weakening}: {excess}");
         }
     }
 }
 
+/// Blocks in the height of a glued layer, Poisson's ratio, and by how much of itself, in %, a reduction by
+/// two sheets is too large where w p (1 - nu)/G is 5 and 10.
+const ON_LAYERS: [(f64, f64, [f64; 2]); 4] = [
+    (8.0, 0.3, [-2.9, -0.9]),
+    (8.0, 0.49, [-3.1, -1.0]),
+    (4.0, 0.3, [-12.0, -4.4]),
+    (4.0, 0.49, [-12.8, -6.5]),
+];
+
+/// Dimples on a layer that is glued to a rigid face, half and a quarter of a pitch high: in so thin a layer
+/// both directions differ less where waves are long, and more where they are short, than in the stack.
+#[test]
+fn dimples_on_a_glued_layer() {
+    let dimples = Dimples::array(16);
+    for (height, poisson, excess) in ON_LAYERS {
+        let layer = Body::new(16, |q| {
+            layer::response(q * height, poisson).map(|r| (1.0 - poisson) * r / height)
+        });
+        let key = format!("slider.height='{:e} m'", height * BLOCK);
+        for (weakening, measured) in [5.0, 10.0].into_iter().zip(excess) {
+            let expected = 100.0 * (1.0 - layer.largest_friction(&dimples.blocks(weakening, Sharing::Equal)));
+            let found = dimples.on_stack(poisson, weakening, Sharing::Equal, &[SLOWLY[0], &key]);
+            let excess = 100.0 * (found / expected - 1.0);
+            println!(
+                "{height} blocks high, nu = {poisson}, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %, {excess:+.1}"
+            );
+            // Rounding of what was measured.
+            assert!((excess - measured).abs() < 0.06, "{excess}");
+        }
+    }
+}
+
+/// Three sheets find them within 4 % where drag does not count.
+#[test]
+fn three_sheets_are_closer() {
+    let (poisson, dimples) = (0.25, Dimples::array(16));
+    let slowly = SLOWLY.iter().map(|&key| key.to_owned());
+    let keys: Vec<String> = three_sheets(16, BLOCK, YOUNG_MODULUS)
+        .into_iter()
+        .chain(slowly)
+        .collect();
+    for weakening in [2.0, 5.0, 10.0] {
+        let expected = dimples.on_half_space(poisson, weakening, Sharing::Equal);
+        let found = dimples.in_product(poisson, weakening, Sharing::Equal, &keys);
+        println!("three sheets, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %");
+        assert!(
+            (found / expected - 1.0).abs() < 0.04,
+            "{weakening}: {found} {expected}"
+        );
+    }
+}
+
 /// Blocks in a pitch, and the reduction in % of an array whose critical size is 0.116 pitches.
-const ON_BLOCKS: [(usize, f64); 4] = [(16, 33.6), (24, 35.1), (32, 35.4), (48, 35.3)];
+const ON_BLOCKS: [(usize, f64); 4] = [(16, 32.5), (24, 34.1), (32, 34.8), (48, 34.6)];
 
 /// Three blocks in the critical size of a bulk body are enough for 2 % of a reduction, and two are not.
 #[test]

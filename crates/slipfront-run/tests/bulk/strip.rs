@@ -1,44 +1,51 @@
 //! The size from which on slip runs away, in a body on a rigid plane.
 
 use slipfront::Sheet;
-use slipfront::lattice::{K_DIAGONAL, K_STRAIGHT};
+use slipfront_case::case::Case;
 
-use crate::response::{bare, unit_of_stiffness};
+use crate::response::{bare, of_three_sheets, unit_of_stiffness};
 
 /// Blocks of the longest wave length of the stack.
 const LONGEST: usize = 512;
 
-/// Two sheets in a row of blocks that are alike across it, in units of the lower one: a strip of the lower
-/// sheet slides, in a periodic row whose upper sheet is free.
+/// Sheets in a row of blocks that are alike across it, in units of the lowest one: a strip of the lowest
+/// sheet slides, in a periodic row whose other sheets are free.
 struct Strip {
     sliding: usize,
     row: usize,
     /// Stiffness between neighbouring blocks.
     bond: f64,
-    upper: Sheet,
+    /// The other sheets, from the lowest on.
+    upper: Vec<Sheet>,
     mount: f64,
 }
 
 impl Strip {
-    /// Forces that hold these displacements: first of the strip, then of the upper sheet.
+    /// Forces that hold these displacements: first of the strip, then of the other sheets.
     fn forces(&self, u: &[f64]) -> Vec<f64> {
-        let (lower, upper) = u.split_at(self.sliding);
+        let (strip, upper) = u.split_at(self.sliding);
+        let lowest = |i: usize| strip.get(i).copied().unwrap_or(0.0);
+        let sheet = |k: usize, i: usize| upper[k * self.row + i];
         let mut forces = Vec::with_capacity(u.len());
         for i in 0..self.sliding {
-            let left = if i > 0 { lower[i - 1] } else { 0.0 };
-            let right = lower.get(i + 1).copied().unwrap_or(0.0);
-            forces.push(
-                self.bond * (2.0 * lower[i] - left - right) + self.upper.coupling * (lower[i] - upper[i]),
-            );
+            let left = if i > 0 { strip[i - 1] } else { 0.0 };
+            let bonds = self.bond * (2.0 * strip[i] - left - lowest(i + 1));
+            forces.push(bonds + self.upper[0].coupling * (strip[i] - sheet(0, i)));
         }
-        for i in 0..self.row {
-            let beside = upper[(i + 1) % self.row] + upper[(i + self.row - 1) % self.row];
-            let below = lower.get(i).copied().unwrap_or(0.0);
-            forces.push(
-                self.upper.thickness * self.bond * (2.0 * upper[i] - beside)
-                    + self.upper.coupling * (upper[i] - below)
-                    + self.mount * upper[i],
-            );
+        for (k, one) in self.upper.iter().enumerate() {
+            for i in 0..self.row {
+                let beside = sheet(k, (i + 1) % self.row) + sheet(k, (i + self.row - 1) % self.row);
+                let below = if k == 0 { lowest(i) } else { sheet(k - 1, i) };
+                let (coupling, above) = match self.upper.get(k + 1) {
+                    Some(next) => (next.coupling, sheet(k + 1, i)),
+                    None => (self.mount, 0.0),
+                };
+                forces.push(
+                    one.thickness * self.bond * (2.0 * sheet(k, i) - beside)
+                        + one.coupling * (sheet(k, i) - below)
+                        + coupling * (sheet(k, i) - above),
+                );
+            }
         }
         forces
     }
@@ -69,7 +76,7 @@ impl Strip {
     /// Smallest stiffness with which the strip resists slip while the upper sheet follows: the weakening at
     /// which slip runs away.
     fn smallest_stiffness(&self) -> f64 {
-        let mut shape = vec![0.0; self.sliding + self.row];
+        let mut shape = vec![0.0; self.sliding + self.upper.len() * self.row];
         shape[..self.sliding].fill(1.0);
         let mut stiffness = 0.0;
         // The error falls by the square of the ratio of two eigenvalues, some 5, in every turn.
@@ -91,42 +98,62 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Slip runs away in a strip of the width L where weakening is 2.316 G/((1 - nu) L) for slip along the width,
 /// and 2.316 G/L for slip across it: twice what K. Uenishi and J. R. Rice (2003) found for two elastic
-/// bodies.
-///
-/// A stack holds more, by 15 to 17 % along and up to 3 % across, since its sheets are 3 times as stiff along
-/// as across; and in the geometric mean of both by 9 %, since a strip also has waves that are longer than
-/// those of the fit, which meet the mount.
+/// bodies. Returns the weakening of a stack over that, along and across, for a strip that is the longest wave
+/// length over `part`.
+fn weakening(case: &Case, poisson: f64, part: usize) -> [f64; 2] {
+    let sliding = LONGEST / part;
+    // The strip ends at the middle of the blocks that are held beside it.
+    let length = (sliding + 1) as f64;
+    let springs = case.model.springs();
+    [(springs.along(), 1.0 / (1.0 - poisson)), (springs.diagonal, 1.0)].map(|(bond, body)| {
+        let strip = Strip {
+            sliding,
+            row: 2 * LONGEST,
+            bond,
+            upper: case.model.sheets().to_vec(),
+            mount: case.model.drive.k_drive,
+        };
+        unit_of_stiffness(case, poisson) * strip.smallest_stiffness() * length / (2.316 * body)
+    })
+}
+
+fn mean([along, across]: [f64; 2]) -> f64 {
+    (along * across).sqrt()
+}
+
+/// A stack of two sheets holds more than a body, by 13 to 15 % along and 2 to 5 % across, since its sheets
+/// are made a little stiffer along; and in the geometric mean of both by 8 to 9 %, since a strip also has
+/// waves that are longer than those of the fit, which meet the mount.
 ///
 /// A strip of half the longest wave length is held by the mount above all.
 #[test]
 fn strips_run_away_late() {
     let poisson = 1.0 / 3.0;
     let case = bare(LONGEST, poisson, None);
-    let ratios = |part: usize| {
-        let sliding = LONGEST / part;
-        // The strip ends at the middle of the blocks that are held beside it.
-        let length = (sliding + 1) as f64;
-        let bonds = [K_STRAIGHT + K_DIAGONAL, K_DIAGONAL];
-        let mut body = [1.0 / (1.0 - poisson), 1.0].into_iter();
-        bonds.map(|bond| {
-            let strip = Strip {
-                sliding,
-                row: 2 * LONGEST,
-                bond,
-                upper: case.model.sheets()[0],
-                mount: case.model.drive.k_drive,
-            };
-            let stiffness = unit_of_stiffness(&case, poisson) * strip.smallest_stiffness();
-            stiffness * length / (2.316 * body.next().unwrap())
-        })
-    };
     // As measured, to a hundredth, in which strips of other numbers of blocks differ.
-    for (part, measured) in [(2, [1.21, 1.24]), (4, [1.15, 1.03]), (8, [1.17, 1.00])] {
-        let found = ratios(part);
-        let mean = (found[0] * found[1]).sqrt();
-        println!("1/{part} of the longest wave: {found:.3?}, mean {mean:.3}");
+    for (part, measured) in [(2, [1.20, 1.26]), (4, [1.13, 1.05]), (8, [1.15, 1.02])] {
+        let found = weakening(&case, poisson, part);
+        println!(
+            "1/{part} of the longest wave: {found:.3?}, mean {:.3}",
+            mean(found)
+        );
         for (found, measured) in found.into_iter().zip(measured) {
             assert!((found - measured).abs() < 0.01, "{part}: {found} {measured}");
         }
+    }
+}
+
+/// Three sheets hold a strip as a body does within 5 %, in the mean of both directions.
+#[test]
+fn strips_on_three_sheets() {
+    let poisson = 0.25;
+    let case = of_three_sheets(LONGEST);
+    for part in [4, 8] {
+        let found = weakening(&case, poisson, part);
+        println!(
+            "1/{part} of the longest wave: {found:.3?}, mean {:.3}",
+            mean(found)
+        );
+        assert!((mean(found) - 1.0).abs() < 0.055, "{part}: {found:?}");
     }
 }

@@ -11,7 +11,7 @@ use test_case::test_matrix;
 use crate::common::{Slider, cavity, thrown, varied};
 use crate::executions::assert_same_bits;
 use crate::ranks::{assert_goes_on, assert_same_with};
-use crate::stacks::SHEETS;
+use crate::stacks::{SHEETS, springs};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Variety {
@@ -87,7 +87,7 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
                 model.drive.rotation = Some(turned);
             }
             Stack => {
-                *model = model.clone().with_sheets(SHEETS.to_vec());
+                *model = model.clone().with_sheets(SHEETS.to_vec(), springs());
             }
         }
     }

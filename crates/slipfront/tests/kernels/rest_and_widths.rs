@@ -6,7 +6,7 @@ use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::testing::FusedKernel;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
 
-use crate::stacks::SHEETS;
+use crate::stacks::{SHEETS, springs};
 
 /// Steps between two measurements of displacements and their differences; in between they are bounded.
 const MEASUREMENT_INTERVAL: u64 = 16;
@@ -71,7 +71,7 @@ fn every_vector_width_gives_the_same_bits() {
     for epsilon in [1e-6, 2e-4, 1e-2] {
         for edges in [[Edges::Free; 2], [Edges::Periodic; 2]] {
             let sheet = model(Lattice::with_edges(21, 30, edges), 0.1, 20.0, epsilon);
-            for model in [sheet.clone(), sheet.with_sheets(SHEETS.to_vec())] {
+            for model in [sheet.clone(), sheet.with_sheets(SHEETS.to_vec(), springs())] {
                 let narrowest = history(&model, 0, 250);
                 for width in 1..FusedKernel::n_widths() {
                     assert!(

@@ -1,6 +1,7 @@
 //! Stacks of sheets on the fused kernel agree with the general kernel to rounding, and have the same bits on
 //! any number of threads and ranks, whether or not blocks at rest may be skipped, and across checkpoints.
 
+use slipfront::lattice::SpringStiffness;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{
     Communicator, Edges, Kernel, Model, RunError, Sheet, Simulation, SlipWeakening, Stop, Weakening,
@@ -25,9 +26,14 @@ pub(crate) const SHEETS: [Sheet; 2] = [
     },
 ];
 
+/// Springs of the sheets that are not isotropic.
+pub(crate) fn springs() -> SpringStiffness {
+    SpringStiffness::with_ratio(2.3)
+}
+
 /// A number of sheets from [`SHEETS`].
 fn stack(slider: &Slider, n_sheets: usize) -> Model {
-    let model = slider.model().with_sheets(SHEETS[..n_sheets].to_vec());
+    let model = slider.model().with_sheets(SHEETS[..n_sheets].to_vec(), springs());
     assert_eq!(Kernel::Fused.for_model(&model), Kernel::Fused);
     model
 }
@@ -113,7 +119,7 @@ fn thresholds_that_change(law: usize) {
     against_general::assert_same(&model, slider.dt_star, None, steps(&slider));
     assert_same_bits(&model, slider.dt_star, None, steps(&slider));
     assert_goes_on(&slider, &|model, _| {
-        *model = model.clone().with_sheets(SHEETS.to_vec());
+        *model = model.clone().with_sheets(SHEETS.to_vec(), springs());
     });
 }
 
@@ -154,7 +160,7 @@ fn the_same_bits_over_ranks(n_sheets: usize, edges: [Edges; 2]) {
         if has_room(blocks, edges) {
             let slider = sliders::shaped(blocks, edges);
             let change = move |model: &mut Model, _: &dyn Communicator| {
-                *model = model.clone().with_sheets(SHEETS[..n_sheets].to_vec());
+                *model = model.clone().with_sheets(SHEETS[..n_sheets].to_vec(), springs());
             };
             assert_same_with(&slider, &change, None, steps(&slider));
             // Each of its seven ranks has a row.
@@ -196,7 +202,7 @@ fn a_stack_that_diverges_ends_the_run() {
         thickness: 0.1,
         coupling: 2.0,
     };
-    let model = slider.model().with_sheets(vec![light]);
+    let model = slider.model().with_sheets(vec![light], springs());
     let mut simulation = Simulation::new(model, 0.5, None, fused());
     let error = simulation.run(Stop::at_step(100_000), &mut []).unwrap_err();
     assert!(matches!(error, RunError::NotFinite { .. }), "{error}");

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use proptest::test_runner::{TestCaseError, TestCaseResult, TestRunner};
 use slipfront::communicator::Alone;
+use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
@@ -30,6 +31,8 @@ struct Options {
     graded: [bool; 3],
     /// Sheets above the lattice, for equal blocks.
     sheets: Vec<Sheet>,
+    /// Stiffness of sheets along a wave over that across it.
+    along_to_across: f64,
     outline: bool,
     attached: Option<Edge>,
     viscosity_time: f64,
@@ -109,6 +112,7 @@ prop_compose! {
         graded in any::<[bool; 3]>(),
         outline in any::<bool>(),
         sheets in prop_oneof![2 => Just(Vec::new()), 1 => prop::collection::vec(sheet(), 1..4)],
+        along_to_across in 1.2..6.0,
         attached in prop::option::of(prop::sample::select(vec![Edge::Left, Edge::Right, Edge::Bottom, Edge::Top])),
         viscosity_time in prop_oneof![3 => Just(0.0), 1 => 0.01..1.0],
         program in prop::option::of(prop::collection::vec((-1.0..1.0, 1..20_u32), 1..4)),
@@ -121,7 +125,7 @@ prop_compose! {
         follows in any::<bool>(),
     ) -> Options {
         Options {
-            friction, graded, outline, sheets, attached, viscosity_time, program, rotates, held, k_drive, constant_force, mu_static_mean,
+            friction, graded, outline, sheets, along_to_across, attached, viscosity_time, program, rotates, held, k_drive, constant_force, mu_static_mean,
             start, follows,
         }
     }
@@ -184,7 +188,14 @@ impl Setting {
         };
         let damping = scales::damping(slider.omega_star);
         let mut model = Model::new(lattice, surface, drive, damping, slider.epsilon, options.friction);
-        model = model.with_slider(body).with_sheets(options.sheets.clone());
+        let springs = if is_stack {
+            SpringStiffness::with_ratio(options.along_to_across)
+        } else {
+            SpringStiffness::default()
+        };
+        model = model
+            .with_slider(body)
+            .with_sheets(options.sheets.clone(), springs);
         let dt = slider.dt_star * model.stable_step_limit(&Alone);
         if let Some(parts) = &options.program {
             let mut steps = 0;

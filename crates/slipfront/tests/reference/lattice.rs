@@ -75,7 +75,13 @@ pub(crate) fn springs(model: &Model, b: usize) -> Vec<Spring> {
             continue;
         }
         let straight = di == 0 || dj == 0;
-        let k = if straight { 0.75 } else { 0.375 };
+        let of_stack = model.springs();
+        let k = match (model.sheets().is_empty(), straight) {
+            (true, true) => 0.75,
+            (true, false) => 0.375,
+            (false, true) => of_stack.straight,
+            (false, false) => of_stack.diagonal,
+        };
         let (here, there) = (modulus(model, b), modulus(model, to));
         springs.push(Spring {
             to,

@@ -777,8 +777,9 @@ impl Band {
         // Every block has the energy of the four springs that begin at it, so that each is counted once.
         let springs = [east, upward(0), upward(1), upward(2)];
         let blocks = (self.blocks[v], thickness);
-        vector_energy::<S, G>(
+        vector_energy(
             simd,
+            geometry,
             springs,
             blocks,
             self.factors_of::<G>(v),

@@ -18,7 +18,7 @@ use super::vector::{
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::SMALLEST_VELOCITY;
-use crate::lattice::Bond;
+use crate::lattice::{Bond, SpringStiffness};
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(super) type Upward<T> = [[T; 2]; 3];
@@ -204,18 +204,18 @@ fn squares_over_factors<S: Simd, G: Geometry>(
 }
 
 /// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from
-/// the squares of their forces over the relative thickness of the sheet: see [`integers`].
+/// the squares of their forces over the relative thickness of the sheet, and `k_1/k_2`: see [`integers`].
 #[inline(always)]
 fn spring_energies<S: Simd>(
     simd: S,
     [east, north, north_east, north_west]: [f64x8<S>; 4],
-    (blocks, thickness): (u8, f64),
+    (blocks, thickness, straight_over_diagonal): (u8, f64, f64),
     quantum: FixedPoint,
 ) -> i64x8<S> {
-    // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
+    // (k/2) extension^2 = F^2/(2k).
     let straight = east + north;
     let diagonal = north_east + north_west;
-    let energies = splat(simd, thickness) * (straight + splat(simd, 2.0) * diagonal);
+    let energies = splat(simd, thickness) * (straight + splat(simd, straight_over_diagonal) * diagonal);
     let energies = zero_missing(simd, blocks, [energies, energies])[0];
     integers(energies, splat(simd, quantum.shift()))
 }
@@ -225,12 +225,15 @@ fn spring_energies<S: Simd>(
 #[inline(always)]
 pub(super) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
+    geometry: G,
     springs: [Vec2x8<S>; 4],
-    blocks: (u8, f64),
+    (blocks, thickness): (u8, f64),
     factors: [Chunks; 4],
     quantum: FixedPoint,
 ) -> i64 {
+    let SpringStiffness { straight, diagonal } = geometry.stiffness();
     let squares = squares_over_factors::<S, G>(simd, springs, factors, 0);
+    let blocks = (blocks, thickness, straight / diagonal);
     integer_sum(spring_energies(simd, squares, blocks, quantum), quantum, 1)
 }
 

@@ -60,7 +60,7 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
         let behind = neighbour([-di, -dj]).map_or([0.0; 2], |(v, factor)| force(v, u).map(|f| factor * f));
         [ahead[0] - behind[0], ahead[1] - behind[1]]
     };
-    let [e, n, ne, nw] = Bond::ALL.each_ref().map(pair);
+    let [e, n, ne, nw] = model.springs.bonds().each_ref().map(pair);
     [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
 }
 

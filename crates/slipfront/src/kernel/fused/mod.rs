@@ -63,7 +63,7 @@ use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::vectors;
-use crate::lattice::K_STRAIGHT;
+use crate::lattice::SpringStiffness;
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::parallel::*;
@@ -306,7 +306,8 @@ impl Fused {
             sweep(
                 level,
                 band,
-                (springs, model.epsilon, differ),
+                (springs, differ),
+                (model.epsilon, model.springs),
                 step,
                 &quanta,
                 energies,
@@ -523,7 +524,7 @@ impl Fused {
         Some(StoredEnergy {
             between_sheets: self.energy_between_sheets(quanta),
             kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
-            lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * K_STRAIGHT),
+            lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * self.largest.springs.straight),
             drive_springs: 0.5 * step.k_drive * stretch_square.max(0.0),
         })
     }
@@ -582,6 +583,7 @@ impl Engine for Fused {
         let elements = (&self.layout, self.bands.as_slice());
         let root = SquareRoot {
             epsilon: model.epsilon,
+            stiffness: model.springs,
         };
         if self.blocks_differ {
             let root = Differing(root);
@@ -753,15 +755,16 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
 fn sweep(
     level: Level,
     band: &mut Band,
-    (springs, epsilon, blocks_differ): (Springs, f64, bool),
+    (springs, blocks_differ): (Springs, bool),
+    (epsilon, stiffness): (f64, SpringStiffness),
     step: Step,
     quanta: &Quanta,
     energies: bool,
 ) {
     let (short, long, root) = (
-        Series::<3> { epsilon },
-        Series::<7> { epsilon },
-        SquareRoot { epsilon },
+        Series::<3> { epsilon, stiffness },
+        Series::<7> { epsilon, stiffness },
+        SquareRoot { epsilon, stiffness },
     );
     match (springs, blocks_differ) {
         (Springs::ShortSeries, false) => {

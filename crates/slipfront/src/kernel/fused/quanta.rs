@@ -5,7 +5,6 @@ use super::step::Step;
 use super::variations::LargestFactors;
 use crate::checkpoint::MotionBounds;
 use crate::fixed_point::{FixedPoint, Window};
-use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
 
 /// Quanta of the sums in a sweep.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +33,7 @@ const MARGIN: f64 = 1.0 + 1e-6;
 impl Quanta {
     pub(super) fn new(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> Self {
         let [x, y] = bounds.windows.map(|window| window.differences().limit());
-        let spring_force = K_STRAIGHT * bounds.spring_range.limit();
+        let spring_force = largest.springs.straight * bounds.spring_range.limit();
         let speed = highest_speed(step, bounds, largest);
         let &LargestFactors {
             modulus,
@@ -42,6 +41,7 @@ impl Quanta {
             mass,
             thickness,
             coupling,
+            springs,
             ..
         } = largest;
         Self {
@@ -57,9 +57,13 @@ impl Quanta {
             friction_work: FixedPoint::new(
                 MARGIN * mass * step.integrator.velocity_to_force * 2.0 * speed * speed,
             ),
-            // Two straight springs, and two diagonal ones of half their stiffness that count twice.
+            // Two straight springs, and two diagonal ones of k_2/k_1 their force that count k_1/k_2 times.
             lattice_energy: FixedPoint::new(
-                MARGIN * (modulus * thickness) * 3.0 * spring_force * spring_force,
+                MARGIN
+                    * (modulus * thickness)
+                    * (2.0 + 2.0 * (springs.diagonal / springs.straight))
+                    * spring_force
+                    * spring_force,
             ),
             // All blocks of a window, of whatever sheet, are at most its length apart.
             between_sheets: FixedPoint::new(MARGIN * coupling * 4.0 * (x * x + y * y)),
@@ -76,7 +80,7 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         let stretch = (position - low).abs().max((position - high).abs());
         // The force of a spring is at most its stiffness times the difference of the displacements of its
         // ends.
-        force += largest.modulus * 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
+        force += largest.modulus * 4.0 * largest.springs.along() * bounds.spring_difference(axis)
             + largest.inverse_thickness
                 * largest.drive_spring
                 * (step.k_drive * stretch + step.constant_force[axis].abs());

@@ -265,8 +265,9 @@ impl Band {
         let [fx, fy] = chunks_mut(&mut scratch.lattice, place, LANES);
         x.store_array(&mut fx[0]);
         y.store_array(&mut fy[0]);
-        vector_energy::<S, G>(
+        vector_energy(
             simd,
+            geometry,
             own,
             (self.blocks[v], 1.0),
             self.factors_of::<G>(v),

@@ -4,15 +4,18 @@
 use fearless_simd::{Simd, SimdFloat, f64x8};
 
 use super::vector::{Vec2x8, scale, splat, square};
-use crate::lattice::Bond;
+use crate::lattice::{Bond, SpringStiffness};
 
 /// Formula for the force of a spring.
 pub(super) trait Geometry: Copy {
     /// Whether springs, masses or anything else differs from block to block.
     const BLOCKS_DIFFER: bool = false;
 
-    /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e` is the displacement of the
-    /// neighbour less that of the block.
+    /// Stiffness of the springs.
+    fn stiffness(self) -> SpringStiffness;
+
+    /// Force of the spring along `bond` on a block, as [`Bond::force`] with the [stiffness](Self::stiffness)
+    /// of this formula; `e` is the displacement of the neighbour less that of the block.
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
@@ -24,6 +27,11 @@ impl<G: Geometry> Geometry for Differing<G> {
     const BLOCKS_DIFFER: bool = true;
 
     #[inline(always)]
+    fn stiffness(self) -> SpringStiffness {
+        self.0.stiffness()
+    }
+
+    #[inline(always)]
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         self.0.force(simd, bond, e)
     }
@@ -33,9 +41,15 @@ impl<G: Geometry> Geometry for Differing<G> {
 #[derive(Clone, Copy)]
 pub(super) struct SquareRoot {
     pub(super) epsilon: f64,
+    pub(super) stiffness: SpringStiffness,
 }
 
 impl Geometry for SquareRoot {
+    #[inline(always)]
+    fn stiffness(self) -> SpringStiffness {
+        self.stiffness
+    }
+
     #[inline(always)]
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         let epsilon = splat(simd, self.epsilon);
@@ -48,8 +62,8 @@ impl Geometry for SquareRoot {
         // multiplied out, it keeps its digits.
         let along = splat(simd, bond.rest[0]) * e[0] + splat(simd, bond.rest[1]) * e[1];
         let stretch = splat(simd, 2.0) * along + epsilon * square(e);
-        let tension =
-            splat(simd, bond.stiffness) * stretch / (length * (length + splat(simd, bond.rest_length)));
+        let tension = splat(simd, self.stiffness.of(bond)) * stretch
+            / (length * (length + splat(simd, bond.rest_length)));
         scale(tension, r)
     }
 }
@@ -68,6 +82,7 @@ impl Geometry for SquareRoot {
 #[derive(Clone, Copy)]
 pub(super) struct Series<const DEGREE: usize> {
     pub(super) epsilon: f64,
+    pub(super) stiffness: SpringStiffness,
 }
 
 /// Coefficients of g: `(-1)^m (2m + 2)!/((m + 1)!^2 4^(m + 1))`.
@@ -94,7 +109,7 @@ impl<const DEGREE: usize> Series<DEGREE> {
     fn coefficients(self, bond: &Bond) -> [f64; 8] {
         let per_square = 1.0 / (bond.rest[0] * bond.rest[0] + bond.rest[1] * bond.rest[1]);
         let mut coefficients = G;
-        let mut factor = bond.stiffness * per_square;
+        let mut factor = self.stiffness.of(bond) * per_square;
         for c in &mut coefficients {
             *c *= factor;
             factor *= self.epsilon * per_square;
@@ -104,6 +119,11 @@ impl<const DEGREE: usize> Series<DEGREE> {
 }
 
 impl<const DEGREE: usize> Geometry for Series<DEGREE> {
+    #[inline(always)]
+    fn stiffness(self) -> SpringStiffness {
+        self.stiffness
+    }
+
     #[inline(always)]
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         // d.e of a rest vector of ones and zeros.
@@ -160,8 +180,9 @@ mod tests {
     /// last place.
     fn assert_same<const DEGREE: usize>(bond: &Bond, e: [f64; 2], epsilon: f64) {
         let exact = bond.force(e, epsilon);
-        let by_root = force(SquareRoot { epsilon }, bond, e);
-        let by_series = force(Series::<DEGREE> { epsilon }, bond, e);
+        let stiffness = SpringStiffness::default();
+        let by_root = force(SquareRoot { epsilon, stiffness }, bond, e);
+        let by_series = force(Series::<DEGREE> { epsilon, stiffness }, bond, e);
         for axis in 0..2 {
             let unit = f64::EPSILON * exact[axis].abs();
             assert!((by_root[axis] - exact[axis]).abs() <= 4.0 * unit);

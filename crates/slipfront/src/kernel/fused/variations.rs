@@ -12,7 +12,7 @@ use super::aligned::Aligned;
 use super::layout::Layout;
 use super::vector::Chunks;
 use crate::communicator::Communicator;
-use crate::lattice::Bond;
+use crate::lattice::{Bond, SpringStiffness};
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::sheets::Sheet;
@@ -73,6 +73,8 @@ pub(super) struct LargestFactors {
     pub(super) drive_spring: f64,
     pub(super) mass: f64,
     pub(super) inverse_mass: f64,
+    /// Springs between the blocks of a sheet of relative thickness 1.
+    pub(super) springs: SpringStiffness,
     /// Largest relative thickness of a sheet of a stack; 1 of a single sheet.
     pub(super) thickness: f64,
     /// Largest inverse of a relative thickness.
@@ -110,6 +112,7 @@ impl LargestFactors {
         let coupling = of_sheets(&|sheet| sheet.coupling, 0.0);
         let inverse_thickness = of_sheets(&|sheet| 1.0 / sheet.thickness, 1.0);
         Self {
+            springs: model.springs,
             thickness: of_sheets(&|sheet| sheet.thickness, 1.0),
             inverse_thickness,
             coupling,

@@ -284,12 +284,12 @@ impl Band {
         }
         let relative = self.relative_springs.as_ref();
         let u = &self.rows.state(&self.state).displacement;
-        let lowest = row_energies(&self.rows, u, relative, model.epsilon, &mut self.scratch.terms);
+        let lowest = row_energies(model, &self.rows, u, relative, &mut self.scratch.terms);
         self.row_energies.clear();
         self.row_energies.push(lowest);
         for sheet in &self.sheets {
             self.row_energies
-                .push(sheet.row_energies(model.epsilon, &mut self.scratch));
+                .push(sheet.row_energies(model, &mut self.scratch));
         }
     }
 

@@ -83,9 +83,9 @@ impl UpperSheet {
     }
 
     /// Energies of the springs between the blocks of the sheet: along each bond one number for every row.
-    pub(super) fn row_energies(&self, epsilon: f64, scratch: &mut WeightedScratch) -> [Vec<f64>; 4] {
+    pub(super) fn row_energies(&self, model: &Model, scratch: &mut WeightedScratch) -> [Vec<f64>; 4] {
         let u = &self.rows.state(&self.state).displacement;
-        let mut energies = row_energies(&self.rows, u, None, epsilon, &mut scratch.terms);
+        let mut energies = row_energies(model, &self.rows, u, None, &mut scratch.terms);
         let all = energies.iter_mut().flatten();
         all.for_each(|energy| *energy *= self.sheet.thickness);
         energies

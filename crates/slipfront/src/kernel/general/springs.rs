@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::rows::Rows;
 use crate::fixed_point;
 use crate::forces::{part, part_mut};
-use crate::lattice::{Bond, Edges, Lattice};
+use crate::lattice::{Bond, Edges, Lattice, SpringStiffness};
 use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
@@ -27,7 +27,7 @@ pub(super) fn lattice_forces(
         u: &state.displacement,
         epsilon: model.epsilon,
     };
-    sum_all(rows, blocks, &spring, relative, force, springs);
+    sum_all(rows, blocks, (&spring, model.springs), relative, force, springs);
 }
 
 /// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`,
@@ -48,7 +48,7 @@ pub(super) fn damper_forces(
         epsilon: model.epsilon,
         time: model.slider.viscosity_time,
     };
-    sum_all(rows, blocks, &damper, relative, force, dampers);
+    sum_all(rows, blocks, (&damper, model.springs), relative, force, dampers);
 }
 
 /// A connection between a block and its neighbour along a bond.
@@ -131,7 +131,7 @@ fn difference(field: &VectorField, b: usize, other: usize) -> [f64; 2] {
 fn sum_all(
     rows: &Rows,
     blocks: &Range<usize>,
-    connection: &impl Connection,
+    (connection, stiffness): (&impl Connection, SpringStiffness),
     relative: Option<&[Vec<f64>; 4]>,
     force: &mut VectorField,
     bonds: &mut [VectorField; 4],
@@ -142,7 +142,13 @@ fn sum_all(
     let behind = is_first.then(|| rows.behind());
     for blocks in behind.iter().chain([blocks]) {
         for (number, along) in bonds.iter_mut().enumerate() {
-            along_bond(lattice, blocks, &Bond::ALL[number], connection, along);
+            along_bond(
+                lattice,
+                blocks,
+                &stiffness.bond(Bond::ALL[number]),
+                connection,
+                along,
+            );
             if let Some(relative) = relative {
                 let relative = &relative[number][blocks.clone()];
                 for component in part_mut(along, blocks) {
@@ -310,17 +316,17 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
 /// room for the energies of a row.
 #[inline(always)]
 pub(super) fn row_energies(
+    model: &Model,
     rows: &Rows,
     u: &VectorField,
     relative: Option<&[Vec<f64>; 4]>,
-    epsilon: f64,
     row: &mut [f64],
 ) -> [Vec<f64>; 4] {
     let mut found = <[Vec<f64>; 4]>::default();
     for (number, of_rows) in found.iter_mut().enumerate() {
         let relative = relative.map(|relative| &*relative[number]);
         for j in rows.own_rows() {
-            of_rows.push(row_energy(rows, u, relative, epsilon, (number, j), row));
+            of_rows.push(row_energy(model, rows, u, relative, (number, j), row));
         }
     }
     found
@@ -330,14 +336,15 @@ pub(super) fn row_energies(
 /// without the vector instructions of the step.
 #[inline(always)]
 fn row_energy(
+    model: &Model,
     rows: &Rows,
     u: &VectorField,
     relative: Option<&[f64]>,
-    epsilon: f64,
     (number, j): (usize, usize),
     row: &mut [f64],
 ) -> f64 {
-    let (lattice, bond) = (&rows.lattice, &Bond::ALL[number]);
+    let (lattice, bond) = (&rows.lattice, &model.springs.bond(Bond::ALL[number]));
+    let epsilon = model.epsilon;
     // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are
     // equally far away.
     let (end, first) = match bond.offset[0] {
