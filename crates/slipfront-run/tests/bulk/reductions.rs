@@ -158,20 +158,21 @@ fn an_array_whose_load_is_shared_within_a_pitch() {
 /// find their reductions within 8 %.
 #[test]
 fn other_patterns_on_a_stack_reduce_friction_as_in_a_half_space() {
-    let (poisson, weakening) = (1.0 / 3.0, 2.0);
+    let weakening = 2.0;
     let [band, patch, random] = patterns(8);
-    for (name, dimples, sharing) in [
-        ("band", &band, Sharing::Equal),
-        ("patch", &patch, Sharing::Equal),
-        ("random", &random, Sharing::Equal),
-        ("patch, load shared within a pitch", &patch, Sharing::Near),
-    ] {
-        let expected = dimples.on_half_space(poisson, weakening, sharing);
-        let found = dimples.on_stack(poisson, weakening, sharing, WITH_LITTLE_DRAG);
-        println!("{name}: {found:.2} % for {expected:.2} %");
-        assert!(
-            (found / expected - 1.0).abs() < 0.08,
-            "{name}: {found} {expected}"
-        );
+    for poisson in [0.25, 0.49] {
+        for (name, dimples, sharing) in [
+            ("band", &band, Sharing::Equal),
+            ("random", &random, Sharing::Equal),
+            ("patch, load shared within a pitch", &patch, Sharing::Near),
+        ] {
+            let expected = dimples.on_half_space(poisson, weakening, sharing);
+            let found = dimples.on_stack(poisson, weakening, sharing, SLOWLY);
+            println!("nu = {poisson:.2}, {name}: {found:.2} % for {expected:.2} %");
+            assert!(
+                (found / expected - 1.0).abs() < 0.08,
+                "{name}: {found} {expected}"
+            );
+        }
     }
 }
