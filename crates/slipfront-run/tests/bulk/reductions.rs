@@ -159,20 +159,25 @@ fn an_array_whose_load_is_shared_within_a_pitch() {
 #[test]
 fn other_patterns_on_a_stack_reduce_friction_as_in_a_half_space() {
     let weakening = 2.0;
+    // Patches need a slower drive than arrays.
+    let keys = [WITH_LITTLE_DRAG[0], "drive.v_star=0.001"];
     let [band, patch, random] = patterns(8);
-    for poisson in [0.25, 0.49] {
-        for (name, dimples, sharing) in [
-            ("band", &band, Sharing::Equal),
-            ("random", &random, Sharing::Equal),
-            ("patch, load shared within a pitch", &patch, Sharing::Near),
-        ] {
-            let expected = dimples.on_half_space(poisson, weakening, sharing);
-            let found = dimples.on_stack(poisson, weakening, sharing, SLOWLY);
-            println!("nu = {poisson:.2}, {name}: {found:.2} % for {expected:.2} %");
-            assert!(
-                (found / expected - 1.0).abs() < 0.08,
-                "{name}: {found} {expected}"
-            );
-        }
+    for (name, dimples, poisson, sharing) in [
+        ("band", &band, 0.25, Sharing::Equal),
+        ("random", &random, 0.49, Sharing::Equal),
+        (
+            "patch, load shared within a pitch",
+            &patch,
+            1.0 / 3.0,
+            Sharing::Near,
+        ),
+    ] {
+        let expected = dimples.on_half_space(poisson, weakening, sharing);
+        let found = dimples.on_stack(poisson, weakening, sharing, &keys);
+        println!("nu = {poisson:.2}, {name}: {found:.2} % for {expected:.2} %");
+        assert!(
+            (found / expected - 1.0).abs() < 0.08,
+            "{name}: {found} {expected}"
+        );
     }
 }
