@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use slipfront_case::case::{Case, PROGRAM, Ranks};
-use slipfront_case::case_file::{CaseError, CaseFile, KeyKind, Override, key, names_of, whole};
+use slipfront_case::case_file::{CaseError, CaseFile, KeyKind, Override, Redistribute, key, names_of, whole};
 use slipfront_case::key_rows;
 use slipfront_case::quantity::{Force, Length};
 use slipfront_case::table::TableOptions;
@@ -215,13 +215,20 @@ impl DesignFile {
     fn case_with(&self, set: &[Override]) -> Result<Case, CaseError> {
         let set: Vec<&Override> = set.iter().collect();
         let file: CaseFile = self.project.base.parse()?.with(&set)?;
-        Case::to_run(
+        let case = Case::to_run(
             file,
             &self.project.name,
             &self.project.base.folder,
             &mut |_| true,
             Ranks::ALONE,
-        )
+        )?;
+        let is_stack = !case.model.sheets().is_empty();
+        if is_stack && matches!(case.file.load.redistribute, Redistribute::All(true)) {
+            let sentence = "what is designed has no pitch, within which a bulk body would bear the load of a textured part: give \
+                            `load.redistribute` = { within = \"...\" } in the base, about twice the width of a feature";
+            return Err(self.project.error("base", sentence.to_owned()));
+        }
+        Ok(case)
     }
 
     /// The textured blocks of the base case with other textures, in place of its own.

@@ -732,3 +732,21 @@ fn what_cannot_be_is_told_with_its_place() {
     );
     assert!(matches!(error, Err(StudyError::NoDesign)));
 }
+
+/// What a search draws has no pitch, within which a bulk body would bear the load: the base says how near.
+#[test]
+fn a_bulk_body_says_how_near_load_is_borne() {
+    let base = "[base]\nslider = { blocks = [16, 16], body = 'bulk' }\ndrive.v_star = 0.1\n\
+        texture = [{ shape = 'cavity', lambda = '2 um', pitch = '8 um' }]\n";
+    let refused = file_of(&format!("{base}[design]\n"), LEAST)
+        .design()
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(
+        refused.contains("give `load.redistribute` = { within = \"...\" } in the base"),
+        "{refused}"
+    );
+    let near = "load.redistribute = { within = '4 um' }\n[design]\n";
+    file_of(&format!("{base}{near}"), LEAST).design().unwrap();
+}

@@ -9,10 +9,11 @@ use std::f64::consts::TAU;
 
 use slipfront::lattice::POISSON_RATIO;
 
+use super::coefficients::sharing_distance;
 use super::runnable::Case;
-use super::stack::{BulkBody, shear_modulus};
+use super::stack::{BulkBody, Stack, shear_modulus};
 use super::textures::{pitch, regular_pitch};
-use slipfront_base::number_format::with_si_prefix;
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
 const THICK: f64 = 1.0 / 3.0;
@@ -45,20 +46,59 @@ impl Case {
         BulkBody::of(&self.file, &self.scales)
     }
 
+    /// The stack of sheets that the slider is; none of one sheet.
+    fn stack(&self) -> Option<Stack> {
+        Stack::of(&self.file, &self.scales)
+    }
+
     /// The critical size of slip in a bulk body on a rigid base in blocks, for a long strip across the drive,
-    /// where strength falls with slip; none for a chain:
+    /// where strength falls with slip; none for a chain. It is infinite where all blocks together are held
+    /// more stiffly than strength falls.
     ///
     /// ```text
-    /// L_c = 2.316 G/((1 - nu) w),   w = (mu_s - mu_k) P/D_c,   P on blocks in contact
+    /// L_c = 2.316/q,   Z(q) = w = (mu_s - mu_k) P/D_c,   P on blocks in contact
     /// ```
+    ///
+    /// with the stiffness Z along a wave, `G q/(1 - nu)` of a deep body, for which 2.316 is exact; a strip on
+    /// a thin layer or on a stack that is given has up to pi in its place. Of a sheet it is the size in a
+    /// deep body of the sheet's material.
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
-        // On a block it is w l^2 in units of E h.
         let weakening = model.weakening().filter(|weakening| *weakening > 0.0)?;
-        let poisson = self.bulk_body().map_or(POISSON_RATIO, |body| body.poisson);
-        let modulus = shear_modulus(1.0, poisson) / (1.0 - poisson);
-        let blocks = STRIP * modulus / weakening * (scales.block_size / scales.thickness);
-        (model.lattice.nx > 1 && model.lattice.ny > 1).then_some(blocks)
+        let weakening = weakening / scales.stiffness_of_area(1.0);
+        let modulus = scales.young_modulus;
+        let metres = if let Some(body) = self.bulk_body() {
+            size_at(weakening, &|q| body.along(modulus, q))
+        } else if let Some(stack) = self.stack() {
+            size_at(weakening, &|q| stack.along(modulus, q))
+        } else {
+            STRIP * shear_modulus(modulus, POISSON_RATIO) / ((1.0 - POISSON_RATIO) * weakening)
+        };
+        (model.lattice.nx > 1 && model.lattice.ny > 1).then_some(metres / scales.block_size)
+    }
+
+    /// Distance in m within which blocks in contact carry the load of a textured one; none where all of them
+    /// carry it in equal parts, or none does.
+    pub fn load_distance(&self) -> Option<f64> {
+        let blocks = sharing_distance(&self.file, &self.scales, &self.model.lattice).ok()?;
+        blocks.map(|blocks| blocks * self.scales.block_size)
+    }
+
+    /// Largest strain of the slider by a wave of traction as strong as its friction: of a sheet `P mu_s l/(E
+    /// h)` on a block, of a stack `P mu_s q/Z` with the stiffness Z along a wave that is at least two blocks
+    /// long.
+    pub fn strain_of_load(&self) -> f64 {
+        /// Waves at equal ratios, of which the longest has a thousand blocks.
+        const WAVES: i32 = 40;
+        let scales = &self.scales;
+        let Some(stack) = self.stack() else {
+            return self.groups.epsilon;
+        };
+        let strain = |k: i32| {
+            let q = 0.5 * TAU / scales.block_size * libm::pow(500.0, -f64::from(k) / f64::from(WAVES));
+            scales.stress() * q / stack.along(scales.young_modulus, q)
+        };
+        (0..=WAVES).map(strain).fold(0.0, f64::max)
     }
 
     /// A sentence on a slider whose thickness is given and that is no sheet under its texture: by how much
@@ -103,7 +143,7 @@ impl Case {
     }
 
     /// Sentences on what the stack leaves out of a bulk body: waves that are shorter or longer than those of
-    /// the fit.
+    /// the fit, and what all blocks do together.
     pub(super) fn bulk_notes(&self) -> Vec<String> {
         let Some(body) = self.bulk_body() else {
             return Vec::new();
@@ -133,7 +173,20 @@ impl Case {
                 )
             })
         });
-        short.into_iter().chain(long).collect()
+        let modulus = self.scales.young_modulus;
+        let of_all = self.model.weakening().and_then(|weakening| {
+            let weakening = weakening / self.scales.stiffness_of_area(1.0);
+            let (held, by_body) = (self.stack()?.along(modulus, 0.0), body.along(modulus, 0.0));
+            (by_body < weakening && weakening < held).then(|| {
+                format!(
+                    "the stack holds all blocks together {} times as stiffly as the body, and more stiffly than strength falls: once all of \
+                     them slide, nothing runs away in the stack, and mu* falls in proportion to the path of the drive where that of the body \
+                     drops; a longer `slider.longest_wave` is nearer to the body",
+                    if by_body > 0.0 { four_digits(held / by_body) } else { "infinitely many".to_owned() }
+                )
+            })
+        });
+        short.into_iter().chain(long).chain(of_all).collect()
     }
 
     /// The smallest feature and pitch of all textures.
@@ -170,6 +223,30 @@ impl TextureLengths {
             .or(self.feature.map(|feature| 2.0 * feature))
             .unwrap_or(0.0)
     }
+}
+
+/// The critical size in m for this fall of strength per slip in Pa/m, where the stiffness along a wave grows
+/// with its wave number.
+fn size_at(weakening: f64, along: &dyn Fn(f64) -> f64) -> f64 {
+    /// Halvings after which the ends are neighbouring numbers.
+    const HALVINGS: usize = 60;
+    if along(0.0) >= weakening {
+        return f64::INFINITY;
+    }
+    let mut high = 1.0;
+    while along(high) < weakening {
+        high *= 2.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if along(middle) < weakening {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    STRIP / high
 }
 
 /// Thickness of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk

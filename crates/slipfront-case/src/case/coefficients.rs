@@ -109,8 +109,9 @@ pub(super) fn sharing_distance(
     for (number, texture) in file.texture.iter().enumerate() {
         let Some((pitch, _)) = pitch(texture, scales, lattice) else {
             let sentence = format!(
-                "a bulk body bears the load of a textured part near it, and texture {number} is no array of several features, whose pitch \
-                 would say how near: give `load.redistribute` = {{ within = \"...\" }}, about twice the width of a feature"
+                "a bulk body bears the load of a textured part near it, and texture {} is no array of several features, whose pitch \
+                 would say how near: give `load.redistribute` = {{ within = \"...\" }}, about twice the width of a feature",
+                number + 1
             );
             return Err(file.source.error(&format!("texture.{number}"), sentence));
         };

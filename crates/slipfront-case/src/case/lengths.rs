@@ -93,7 +93,8 @@ impl Case {
             lengths.push(self.length("critical size", blocks, enough));
         }
         if let Some(blocks) = self.critical_size_of_bulk() {
-            let enough = self.bulk_body().map(|_| OF_CRITICAL_SIZE_OF_BULK);
+            let is_of_slider = blocks.is_finite() && !self.model.sheets().is_empty();
+            let enough = is_of_slider.then_some(OF_CRITICAL_SIZE_OF_BULK);
             lengths.push(self.length("critical size, bulk body", blocks, enough));
         }
         if let Some(field) = self.correlated_field() {

@@ -64,7 +64,9 @@ impl TimePlan {
         };
         if dt_star >= limit {
             let sentence = format!(
-                "the step dt* = {dt_star:.4} is not stable: it must be less than {limit:.4}; \"auto\" takes {}",
+                "the step dt* = {} is not stable: it must be less than {}; \"auto\" takes {}",
+                four_digits(dt_star),
+                four_digits(limit),
                 four_digits(auto)
             );
             return Err(file.source.error("time.step", sentence));

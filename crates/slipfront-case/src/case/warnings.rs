@@ -58,7 +58,7 @@ impl Case {
                 warnings.push(sentence());
             }
         };
-        let (epsilon, v_star, dt_star) = (self.groups.epsilon, self.groups.v_star, self.time_plan.dt_star);
+        let (epsilon, v_star, dt_star) = (self.strain_of_load(), self.groups.v_star, self.time_plan.dt_star);
         warn(epsilon > LARGE_EPSILON, &|| {
             format!(
                 "the load strains the slider by {epsilon:.3}, more than {LARGE_EPSILON}: results depend on it"

@@ -276,6 +276,17 @@ impl Slider {
                 )
             });
         }
+        if let Some(wave) = &self.longest_wave
+            && wave.si() < 2.0 * self.block_size.si()
+        {
+            return check.refuse("longest_wave", |key| {
+                format!(
+                    "`{key}` is \"{wave}\", less than two blocks of \"{}\", on which no wave is shorter: give the longest wave length of the \
+                     texture, such as its pitch",
+                    self.block_size
+                )
+            });
+        }
         let Some(sheets) = &self.sheets else {
             return self.along_to_across.map_or(Ok(()), |_| {
                 check.refuse("along_to_across", |key| {

@@ -37,7 +37,8 @@ key_rows! {
             }
         ]
         /// Time step: `"auto"` is 0.1, or half the largest stable step where that is less; `"paper"` is (2/3)
-        /// V* (Eq. 13), which must be less than 0.9058 too.
+        /// V* (Eq. 13), which must be less than 0.9058 too. Stiff blocks, mounts and stacks have a smaller
+        /// bound, which `slipfront check` prints.
         pub step: TimeStep = key("\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
             &["auto", "paper"])).paper("dt*").title("time step", "\u{394}t*", ""),
         /// Condition that ends the run: its duration, or the fall that ends the first peak as soon as it is

@@ -260,6 +260,7 @@ fn what_a_bulk_body_does_not_have_is_refused() {
         );
     }
     assert!(refusal(&[bulk, "slider.height='19 um'"]).contains("less than a block of \"20 um\""));
+    assert!(refusal(&[bulk, "slider.longest_wave='39 um'"]).contains("less than two blocks of \"20 um\""));
     assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
 }
 
@@ -305,7 +306,7 @@ fn a_texture_without_a_pitch_says_how_near() {
             .to_string()
     };
     assert!(
-        refused(&[]).contains("texture 0 is no array of several features"),
+        refused(&[]).contains("texture 1 is no array of several features"),
         "{}",
         refused(&[])
     );
@@ -414,4 +415,68 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
             found.metres
         );
     }
+}
+
+/// A layer in which slip of any size is stable has no critical size, a layer just above has one of the order
+/// of `pi sqrt(a G H/(w - G/H))` with `a = (4 - 2 kappa/3)/(1 + kappa)`, which a long wave takes beyond G/H;
+/// of a stack that is given the springs in series tell.
+#[test]
+fn slip_in_stiff_layers_is_stable() {
+    let text = "slider = { blocks = [50, 50], block_size = '20 um', body = 'bulk' }\n[friction]\nmu_static = 0.6\nr_star = 0.5\n\
+                sigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = { length = '10 nm' }";
+    let size = |set: &[String]| {
+        let lengths = case(text, set).lengths();
+        lengths
+            .into_iter()
+            .find(|length| length.name == "critical size, bulk body")
+            .unwrap()
+    };
+    let weakening = 0.3 * 100e3 / 10e-9;
+    let shear_modulus = 100e9 / (2.0 * (4.0 / 3.0));
+    let height = |share: f64| {
+        [format!(
+            "slider.height='{:e} m'",
+            share * shear_modulus / weakening
+        )]
+    };
+    let stable = size(&height(0.99));
+    assert!(stable.blocks.is_infinite() && stable.enough.is_none());
+    let found = size(&height(1.01));
+    assert_eq!(found.enough, Some(3.0));
+    let (kappa, high): (f64, f64) = (3.0 - 4.0 / 3.0, 1.01 * shear_modulus / weakening);
+    let of_layer = (4.0 - 2.0 * kappa / 3.0) / (1.0 + kappa) * shear_modulus * high;
+    let expected = (of_layer / (weakening - shear_modulus / high)).sqrt();
+    // 2.316 in place of pi; terms of the fourth order in q H, which is a tenth.
+    assert!(
+        (found.metres / (2.316 * expected) - 1.0).abs() < 0.02,
+        "{} {expected}",
+        found.metres
+    );
+
+    let stack = |series: f64| {
+        let coupling = 2.0 * series * weakening;
+        [format!(
+            "slider.sheets=[{{ thickness = '2 um', coupling = '{coupling:e} N/m^3' }}, {{ thickness = '9 um', coupling = '{coupling:e} N/m^3' }}]"
+        )]
+    };
+    assert!(size(&stack(1.01)).blocks.is_infinite());
+    assert!(size(&stack(0.99)).blocks.is_finite());
+}
+
+/// The strain of a body follows from its modulus, and not from the thickness of a sheet that stands for it:
+/// `P mu_s (1 - nu)/G` of a deep one.
+#[test]
+fn the_strain_of_a_body_is_its_own() {
+    let body = case(DIMPLES, &sets(&["slider.body=\"bulk\"", "slider.poisson=0.4"]));
+    let expected = body.scales.stress() * 0.6 / (100e9 / 2.8);
+    // The stack is within some 5 % of the body along the waves of the fit.
+    assert!(
+        (body.strain_of_load() / expected - 1.0).abs() < 0.06,
+        "{} {expected}",
+        body.strain_of_load()
+    );
+    let sheet = case(DIMPLES, &[]);
+    assert_eq!(sheet.strain_of_load(), sheet.groups.epsilon);
+    assert_eq!(body.load_distance(), Some(200e-6));
+    assert_eq!(sheet.load_distance(), None);
 }

@@ -117,13 +117,14 @@ fn slider() -> impl Strategy<Value = Slider> {
 fn bulk() -> impl Strategy<Value = Slider> {
     let sheet = (length(), quantity(0, 20, &["N/m^3"]));
     let sheet = sheet.prop_map(|(thickness, coupling)| SheetOfStack { thickness, coupling });
-    let sheets = prop::collection::vec(sheet, 2..=4).prop_map(|sheets| (None, None, None, Some(sheets)));
+    let sheets = (prop::collection::vec(sheet, 2..=4), prop::option::of(1.1..10.0))
+        .prop_map(|(sheets, ratio)| (None, None, None, Some((sheets, ratio))));
     // As high as the largest block at the least.
     let height = quantity(2, 6, &["km"]);
     let by_height = (
         prop::option::of(height),
         prop::option::of(0.0..0.5),
-        prop::option::of(length()),
+        prop::option::of(quantity(4, 6, &["km"])),
     );
     let by_height = by_height.prop_map(|(height, poisson, longest)| (height, poisson, longest, None));
     (slider(), prop_oneof![by_height, sheets]).prop_map(
@@ -133,7 +134,8 @@ fn bulk() -> impl Strategy<Value = Slider> {
             height,
             poisson,
             longest_wave,
-            sheets,
+            along_to_across: sheets.as_ref().and_then(|(_, ratio)| *ratio),
+            sheets: sheets.map(|(sheets, _)| sheets),
             outline: Outline::Rectangle,
             outline_file: None,
             viscosity_time_star: 0.0,

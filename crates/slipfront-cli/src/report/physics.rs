@@ -5,7 +5,7 @@ use slipfront::surface::Clearance;
 use slipfront_base::number_format::{count, four_digits, with_si_prefix};
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{
-    Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Grade, Motion, Outline,
+    Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Grade, Motion, Outline, SheetOfStack,
 };
 
 use super::summary::notes;
@@ -60,7 +60,18 @@ fn slider(case: &Case) -> String {
 
 /// The stack that stands for a bulk body.
 fn body(case: &Case) -> Option<String> {
-    let bulk = case.bulk_body()?;
+    let Some(bulk) = case.bulk_body() else {
+        return case.file.slider.sheets.as_deref().map(|sheets| {
+            let sheet = |sheet: &SheetOfStack| format!("{} on {}", sheet.thickness, sheet.coupling);
+            let sheets: Vec<String> = sheets.iter().map(sheet).collect();
+            format!(
+                "a stack of {} sheets, from the lowest on: {}, {} times as stiff along a wave as across it",
+                sheets.len(),
+                sheets.join(", "),
+                four_digits(case.file.slider.along_to_across.unwrap_or(3.0))
+            )
+        });
+    };
     let [lower, upper] = bulk.thickness.map(|thickness| with_si_prefix(thickness, "m"));
     let height = if bulk.height.is_finite() {
         format!("a body {} high", with_si_prefix(bulk.height, "m"))
@@ -112,7 +123,13 @@ fn material(case: &Case) -> String {
 
 fn load(case: &Case) -> String {
     let pressure = with_si_prefix(case.scales.pressure, "Pa");
-    format!("P = {pressure}, strain {:.2e}", case.groups.epsilon)
+    let within = case.load_distance().map_or(String::new(), |distance| {
+        format!(
+            ", that of textured blocks on those within {}",
+            with_si_prefix(distance, "m")
+        )
+    });
+    format!("P = {pressure}, strain {:.2e}{within}", case.strain_of_load())
 }
 
 fn drive(case: &Case) -> String {

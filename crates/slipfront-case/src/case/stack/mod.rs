@@ -103,6 +103,16 @@ impl Stack {
         above.map(sheet).collect()
     }
 
+    /// Traction over displacement along a wave of wave number q, Pa/m.
+    pub(super) fn along(&self, young_modulus: f64, q: f64) -> f64 {
+        let per_thickness = directions(self.along_to_across)[0] * OF_SHEET * young_modulus * q * q;
+        let sheets = self.thickness.iter().zip(&self.couplings).rev();
+        // What is above the highest sheet does not move.
+        sheets.fold(f64::INFINITY, |above, (thickness, coupling)| {
+            per_thickness * thickness + 1.0 / (1.0 / coupling + 1.0 / above)
+        })
+    }
+
     /// Springs between neighbouring blocks of every sheet.
     pub(super) fn springs(&self) -> SpringStiffness {
         SpringStiffness::with_ratio(self.along_to_across)
@@ -146,6 +156,15 @@ impl BulkBody {
             mount: mount * per_area,
             error: fit.error,
         }
+    }
+
+    /// Traction over displacement along a wave of wave number q in the body, Pa/m.
+    pub(super) fn along(&self, young_modulus: f64, q: f64) -> f64 {
+        let shear_modulus = shear_modulus(young_modulus, self.poisson);
+        if q == 0.0 {
+            return shear_modulus / self.height;
+        }
+        shear_modulus * q * response(q * self.height, self.poisson)[0]
     }
 
     /// Stiffness of the stack over that of the body at a wave length in m, less 1, in the geometric mean of
