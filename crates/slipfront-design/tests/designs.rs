@@ -733,7 +733,8 @@ fn what_cannot_be_is_told_with_its_place() {
     assert!(matches!(error, Err(StudyError::NoDesign)));
 }
 
-/// What a search draws has no pitch, within which a bulk body would bear the load: the base says how near.
+/// A search draws textures without a pitch, within which a bulk body would bear the load: the base says how
+/// near.
 #[test]
 fn a_bulk_body_says_how_near_load_is_borne() {
     let base = "[base]\nslider = { blocks = [16, 16], body = 'bulk' }\ndrive.v_star = 0.1\n\
