@@ -60,8 +60,8 @@ impl Case {
     /// ```
     ///
     /// with the stiffness Z along a wave, `G q/(1 - nu)` of a deep body, for which 2.316 is exact; a strip on
-    /// a thin layer or on a stack that is given has up to pi in its place. A sheet has the size in a deep body
-    /// of its material.
+    /// a thin layer or on a stack that is given has up to pi in its place. A sheet has the size in a deep
+    /// body of its material.
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
         let weakening = model.weakening().filter(|weakening| *weakening > 0.0)?;
