@@ -1,6 +1,7 @@
 //! Help, version, completions, and the output of `check` and `run`.
 
 use crate::fixtures::{SMALL, unwrapped};
+use crate::support::process::stderr;
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -509,15 +510,37 @@ fn plot_says_what_it_takes() {
 fn a_folder_that_is_free_is_named() {
     let workspace = Workspace::small();
     workspace.succeed("run small.toml");
-    let again = "run small.toml --set drive.v_star=0.2";
+    let again = "run small.toml --set drive.v_star=0.2 --out results/small";
     let said = workspace.fail(again, 2);
     assert!(said.contains("`--out results/small-2` is free"), "{said}");
-    workspace.succeed(&format!("{again} --out results/small-2"));
+    workspace.succeed(&format!("{again}-2"));
     assert!(
         workspace
             .fail(again, 2)
             .contains("`--out results/small-3` is free")
     );
+}
+
+/// Without a folder that is given a run takes the next one that is free, and says so; a run that was stopped
+/// is not passed over.
+#[test]
+fn the_next_free_folder_is_taken() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml");
+    for next in ["results/small-2", "results/small-3"] {
+        let said = stderr(&workspace.output("run small.toml --seed 2"));
+        let note = format!("the folder results/small is not empty: results go to {next}");
+        assert!(said.contains(&note), "{said}");
+        assert!(workspace.path(next).join("manifest.json").is_file());
+    }
+    assert_eq!(
+        workspace.succeed("run small.toml --quiet --json").lines().next(),
+        Some("{")
+    );
+    assert!(workspace.path("results/small-4").is_dir());
+    std::fs::remove_file(workspace.path("results/small/manifest.json")).unwrap();
+    let said = workspace.fail("run small.toml", 2);
+    assert!(said.contains("results/small"), "{said}");
 }
 
 /// Lines of notes end between words, within the width of a terminal.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use slipfront::Execution;
-use slipfront_base::text::shell_path;
+use slipfront_base::text::{display_path, shell_path};
 use slipfront_case::case::Case;
 use slipfront_case::same::NamedInputs;
 use slipfront_run::agree::RankFailure;
@@ -26,6 +26,7 @@ use crate::case_args::CaseArgs;
 use crate::checkpoint_timer::Interval;
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::print_stderr::print_notes;
 use crate::ranks::CommandRanks;
 use crate::report;
 use crate::signals::Signals;
@@ -41,7 +42,8 @@ and resumed, however often, writes the same bytes as one that was not.";
 pub(crate) struct RunCommand {
     #[command(flatten)]
     case: CaseArgs,
-    /// Folder for the results [default: results/ and the name of the case]
+    /// Folder for the results [default: results/ and the name of the case, with the next free number where
+    /// that is taken]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace the files of an earlier run in that folder, and nothing else
@@ -84,9 +86,33 @@ impl RunCommand {
         }
         let case_path = self.case.path().map(Path::to_owned);
         let case = Arc::new(ranks.agree(self.case.load(ranks, &options.signals, options.quiet))?);
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
-        let saves = options.interval.saves();
-        let claimed = ranks.first(|| claim_folder(&out, case_path.as_deref(), &case, self.force, saves))?;
+        let (force, saves) = (self.force, options.interval.saves());
+        let named = Path::new("results").join(&case.name);
+        let (out, takes_next) = self.out.map_or((named, !force), |out| (out, false));
+        let claimed = ranks.first(|| {
+            let claim = |number: usize| {
+                claim_folder(&numbered(&out, number), case_path.as_deref(), &case, force, saves)
+            };
+            let mut number = 1;
+            loop {
+                match claim(number) {
+                    Err(FolderRefusal::Taken(_)) if takes_next && number < MOST_FOLDERS => number += 1,
+                    Err(refusal) => return Err(refusal.failure(&out)),
+                    Ok(claimed) => return Ok((claimed, number)),
+                }
+            }
+        })?;
+        let (claimed, number) = claimed.unzip();
+        let mut number = [number.unwrap_or(0) as f64];
+        ranks.largest(&mut number);
+        let (given, out) = (out.clone(), numbered(&out, number[0] as usize));
+        if given != out && !options.quiet && ranks.is_first() {
+            print_notes([format!(
+                "the folder {} is not empty: results go to {}",
+                display_path(&given),
+                display_path(&out)
+            )]);
+        }
         if let Err(failure) = expect_shared(&out, &*ranks.communicator()) {
             if let Some(claimed) = claimed {
                 claimed.release();
@@ -147,20 +173,23 @@ fn claim_folder(
     case: &Case,
     force: bool,
     saves: bool,
-) -> Result<ClaimedFolder, Failure> {
-    refuse_to_replace(case_path, case, out)?;
-    let folder = OpenedFolder::open(out).map_err(Failure::input)?;
+) -> Result<ClaimedFolder, FolderRefusal> {
+    let input = |error: FolderError| FolderRefusal::Other(Failure::input(error));
+    refuse_to_replace(case_path, case, out).map_err(FolderRefusal::Other)?;
+    let folder = OpenedFolder::open(out).map_err(input)?;
     let replaced = if force {
-        folder.inspection.managed_bytes().map_err(Failure::input)?
+        folder.inspection.managed_bytes().map_err(input)?
     } else {
         0
     };
     case.budget
         .check_disk(&case.file, out, replaced, saves)
-        .map_err(Failure::input)?;
-    folder
-        .claim(force, &case.inputs)
-        .map_err(|error| with_free_folder(error, out))
+        .map_err(|error| FolderRefusal::Other(Failure::input(error)))?;
+    folder.claim(force, &case.inputs).map_err(|error| match error {
+        FolderError::NotEmpty { .. } => FolderRefusal::Taken(error),
+        FolderError::Interrupted { .. } => FolderRefusal::Interrupted(error),
+        other => input(other),
+    })
 }
 
 /// Writes the case and its inputs to the folder of a new run, in the place of an earlier one, so that the run
@@ -179,24 +208,44 @@ fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Resul
     }
 }
 
-/// The refusal of a folder; where it is taken, with the name of one that is free.
-fn with_free_folder(error: FolderError, out: &Path) -> Failure {
-    let is_taken = matches!(
-        error,
-        FolderError::NotEmpty { .. } | FolderError::Interrupted { .. }
-    );
-    let mut numbered = (2..1000).map(|number| {
-        let mut name = out.as_os_str().to_owned();
-        name.push(format!("-{number}"));
-        PathBuf::from(name)
-    });
-    match numbered.find(|free| is_taken && free.symlink_metadata().is_err()) {
-        Some(free) => {
-            let free = shell_path(&free);
-            Failure::input(anyhow::anyhow!("{error}; `--out {free}` is free"))
+/// Why a folder was not claimed.
+enum FolderRefusal {
+    /// There are other files in it, those of a complete run among them.
+    Taken(FolderError),
+    /// A run that was stopped is in it.
+    Interrupted(FolderError),
+    Other(Failure),
+}
+
+impl FolderRefusal {
+    /// The refusal; where a folder is taken, with the name of one that is free.
+    fn failure(self, out: &Path) -> Failure {
+        let error = match self {
+            Self::Other(failure) => return failure,
+            Self::Taken(error) | Self::Interrupted(error) => error,
+        };
+        let mut others = (2..MOST_FOLDERS).map(|number| numbered(out, number));
+        match others.find(|free| free.symlink_metadata().is_err()) {
+            Some(free) => {
+                let free = shell_path(&free);
+                Failure::input(anyhow::anyhow!("{error}; `--out {free}` is free"))
+            }
+            None => Failure::input(error),
         }
-        None => Failure::input(error),
     }
+}
+
+/// Number of folders of one name that are tried.
+const MOST_FOLDERS: usize = 1000;
+
+/// The folder itself for the number 1, its name and the number for others.
+fn numbered(folder: &Path, number: usize) -> PathBuf {
+    if number == 1 {
+        return folder.to_owned();
+    }
+    let mut name = folder.as_os_str().to_owned();
+    name.push(format!("-{number}"));
+    PathBuf::from(name)
 }
 
 /// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with
