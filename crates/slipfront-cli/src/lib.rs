@@ -13,6 +13,7 @@ mod checkpoint_timer;
 mod commands;
 mod divided_override;
 mod failure;
+mod help;
 mod make_case;
 mod print;
 mod print_stderr;
@@ -33,6 +34,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use slipfront::Communicator;
 use slipfront_base::text::shell_path;
+use slipfront_case::case_file::nearest;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;
@@ -49,6 +51,7 @@ pub use crate::report::physics;
 /// kinetic friction.
 #[derive(Parser)]
 #[command(name = "slipfront", version, long_version = version_lines(), max_term_width = 100)]
+#[command(help_template = help::template(&Command::augment_subcommands(clap::Command::new("slipfront"))))]
 #[command(after_help = "Examples:
   slipfront run                                   the embedded baseline (Fig. 3 of the paper)
   slipfront run cases/circle.toml -o results/a    a case file, results in a folder of your choice
@@ -284,15 +287,21 @@ fn print_usage(error: &clap::Error) -> u8 {
     }
 }
 
-/// The command that was probably meant by a file or folder in the place of the subcommand.
+/// The command that was probably meant by a word, a file or a folder in the place of the subcommand.
 fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
         return None;
     };
     let path = std::path::Path::new(word);
     let is_toml = path.extension().is_some_and(|ending| ending == "toml");
-    if error.kind() != ErrorKind::InvalidSubcommand || !(is_toml || path.is_dir()) {
+    if error.kind() != ErrorKind::InvalidSubcommand {
         return None;
+    }
+    if !(is_toml || path.is_dir()) {
+        let command = Cli::command();
+        let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        return nearest(word, &names)
+            .map(|name| format!("{word:?} is no subcommand: did you mean `slipfront {name}`? `slipfront --help` lists all"));
     }
     let quoted = shell_path(path);
     let meant = if path.is_dir() {

@@ -157,7 +157,7 @@ pub(super) fn unknown_shape(shape: Option<&str>) -> String {
 }
 
 /// The word among `known` that `word` was probably meant to be.
-pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     // The distance takes time and memory in proportion to the word, which may be as long as the file.
     if word.len() > MAX_NAME {
         return None;

@@ -54,9 +54,18 @@ impl<'i> Tables<'_, 'i> {
             return Ok(Vec::new());
         };
         let span = value.span();
-        let DeValue::Array(values) = value.into_inner() else {
-            let sentence = "`texture` must be a list of tables: write [[texture]] above the keys of each";
-            return Err(self.source.error_at(span, sentence));
+        let values = match value.into_inner() {
+            DeValue::Array(values) => values,
+            other => {
+                let key = other.as_table().and_then(|table| table.keys().next());
+                let first = key.map_or(String::new(), |key| {
+                    format!("; `texture.0.{}` is that of the first one", key.get_ref())
+                });
+                let sentence = format!(
+                    "`texture` must be a list of tables: write [[texture]] above the keys of each{first}"
+                );
+                return Err(self.source.error_at(span, sentence));
+            }
         };
         values.into_iter().map(|value| self.read_texture(value)).collect()
     }

@@ -13,7 +13,9 @@ use crate::progress::calibrate::CalibrateProgress;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
-/// Find the values of keys that measured records of friction tell, with intervals that hold them
+/// Estimate parameters from measured friction curves
+///
+/// Every parameter has an interval; a record that the model cannot make is refused
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv

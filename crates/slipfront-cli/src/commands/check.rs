@@ -11,7 +11,9 @@ use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Validate a case and print what it means and what it will cost
+/// Check a case: what it means and what it will cost
+///
+/// Runs nothing but a short measurement of the speed of this machine
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront check cases/circle.toml

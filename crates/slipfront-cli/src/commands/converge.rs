@@ -16,7 +16,7 @@ use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 use crate::wrap::stdout_columns;
 
-/// Run a case on several meshes: what it finds, with an error that says how much of it belongs to the mesh
+/// Run a case on several meshes and estimate the mesh error
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront converge cases/sheet.toml -o results/sheet

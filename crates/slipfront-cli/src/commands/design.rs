@@ -15,8 +15,9 @@ use crate::progress::design::DesignProgress;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
-/// Search for the texture that gives the friction that is wished for, and judge it on surfaces that the
-/// search has not seen
+/// Search for a texture with the desired friction
+///
+/// The best texture is judged on surfaces that the search has not seen
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront design cases/designs/least_friction.toml

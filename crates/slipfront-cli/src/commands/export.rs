@@ -10,7 +10,9 @@ use crate::print::{print, print_message};
 use crate::signals::Signals;
 use crate::wrap;
 
-/// Describe complete runs for a data repository (RO-Crate), or print their citations
+/// Export runs to a data repository, or print their citations
+///
+/// The description of the runs is an RO-Crate
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront export results/circle --ro-crate --author \"NAME\" --licence CC-BY-4.0

@@ -10,7 +10,7 @@ use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 
-/// Hold every option of the engine against its exact answers
+/// Test every law and option against its exact answer
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront family                         one line per option

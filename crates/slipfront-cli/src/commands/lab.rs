@@ -16,7 +16,9 @@ use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 use crate::wrap::for_stderr;
 
-/// Open a page in the browser on which a surface slides while you look at it, paint on it and change it
+/// Open the interactive laboratory in a browser
+///
+/// A surface slides while you look at it, paint on it and change it
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront lab                                          a circular cavity, sliding

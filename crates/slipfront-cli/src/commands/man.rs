@@ -6,7 +6,9 @@ use slipfront_run::program::VERSION;
 use crate::failure::Failure;
 use crate::print::print;
 
-/// Print the manual page of slipfront, or of one of its subcommands
+/// Print a manual page
+///
+/// Of slipfront, or of one of its subcommands
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront man run | man -l -

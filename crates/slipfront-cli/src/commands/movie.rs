@@ -26,8 +26,9 @@ use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as
-/// an animated GIF
+/// Make an animation of the snapshots of a run
+///
+/// An animated GIF, beside the friction curve with a mark at the instant
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront run cases/circle.toml -o results/circle --set output.snapshots={every=1.5}

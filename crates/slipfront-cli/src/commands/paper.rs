@@ -15,7 +15,9 @@ use crate::progress::paper::PaperProgress;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 
-/// Run the figures and tables of the paper again, and judge its claims one by one
+/// Reproduce the figures and tables of the paper
+///
+/// Judges the claims of the paper one by one
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront paper                     everything, into results/paper: figures, claims.csv, report.html

@@ -29,8 +29,9 @@ use crate::signals::Signals;
 use crate::table_args::TableArgs;
 use crate::threads::set_threads;
 
-/// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes
-/// of your choice
+/// Draw the pictures of a run, or compare the curves of several
+///
+/// The axes are of your choice, and measured records may be drawn over the curves
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront plot results/baseline

@@ -14,8 +14,10 @@ use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Write the texture of a case: as outlines in true size, SVG or DXF, as a picture with one pixel per block,
-/// textured ones black, or as a height field
+/// Write the texture of a case to a drawing
+///
+/// As outlines in true size, SVG or DXF, as a picture with one pixel per block, textured ones black, or as
+/// a height field
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront texture cases/circle.toml -o mask.png            a mask that a case can read

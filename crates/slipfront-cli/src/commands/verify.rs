@@ -36,8 +36,9 @@ use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
 
-/// Check that results are what was written: every file against its checksum, and results of many runs against
-/// the recorded runs
+/// Check that results are complete and unchanged
+///
+/// Every file is compared with its checksum, and results of many runs with the recorded runs
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront verify results/baseline

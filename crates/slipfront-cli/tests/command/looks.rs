@@ -488,7 +488,7 @@ fn a_forgotten_subcommand_and_a_misspelt_file_are_understood() {
         assert!(said.contains(&expected), "{said}");
     }
     // Words that are neither stay what they are.
-    assert!(workspace.fail("rum", 2).contains("unrecognized subcommand"));
+    assert!(workspace.fail("slide", 2).contains("unrecognized subcommand"));
 }
 
 #[test]
@@ -560,4 +560,28 @@ fn one_block_is_no_blocks() {
     let said = workspace.succeed("check small.toml --set slider.blocks=[1,1]");
     assert!(said.contains("1 x 1 block of 1 um"), "{said}");
     assert!(said.contains("note: 1 block is few"), "{said}");
+}
+
+/// The help of the command has its subcommands in groups, each on one line, and a misspelt one is named.
+#[test]
+fn subcommands_are_found() {
+    let workspace = Workspace::new();
+    let help = workspace.succeed("--help");
+    for line in [
+        "Many runs:",
+        "  study        Vary a case over keys and seeds, and tabulate the answers",
+        "  help         Print this help, or that of a subcommand",
+    ] {
+        assert!(help.lines().any(|shown| shown == line), "{line}\n{help}");
+    }
+    let said = workspace.fail("rnu", 2);
+    assert!(
+        said.contains("\"rnu\" is no subcommand: did you mean `slipfront run`?"),
+        "{said}"
+    );
+    let said = workspace.fail("check --set texture.coverage=5", 2);
+    assert!(
+        said.contains("`texture.0.coverage` is that of the first one"),
+        "{said}"
+    );
 }

@@ -37,7 +37,9 @@ pub(crate) const CHECKPOINTS_HELP: &str = "The whole state of the run is saved i
 after which it goes on, and on Ctrl-C, SIGTERM and SIGHUP, which stop it with status 130, 143 and 129. A run that was stopped \
 and resumed, however often, writes the same bytes as one that was not.";
 
-/// Run a case: print its physics, show progress, write results and pictures
+/// Run a case and write its results and pictures
+///
+/// Prints the physics of the case, shows progress, and prints a summary
 #[derive(Args)]
 pub(crate) struct RunCommand {
     #[command(flatten)]

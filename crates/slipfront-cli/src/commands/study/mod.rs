@@ -10,7 +10,7 @@ use crate::failure::Failure;
 
 pub(super) use run::run_all;
 
-/// Run a study: vary a case over axes and seeds, and answer with tables and pictures
+/// Vary a case over keys and seeds, and tabulate the answers
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "Examples:
