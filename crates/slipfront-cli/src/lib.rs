@@ -300,8 +300,11 @@ fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
     if !(is_toml || path.is_dir()) {
         let command = Cli::command();
         let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-        return nearest(word, &names)
-            .map(|name| format!("{word:?} is no subcommand: did you mean `slipfront {name}`? `slipfront --help` lists all"));
+        return nearest(word, &names).map(|name| {
+            format!(
+                "{word:?} is no subcommand: did you mean `slipfront {name}`? `slipfront --help` lists all"
+            )
+        });
     }
     let quoted = shell_path(path);
     let meant = if path.is_dir() {
