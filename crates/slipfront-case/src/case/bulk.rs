@@ -5,7 +5,7 @@
 //! p reaches about p deep in it, and much farther along in a thick sheet. `docs/model.md`, "Thickness and
 //! mount", has both.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use slipfront::lattice::POISSON_RATIO;
 
@@ -51,6 +51,12 @@ impl Case {
         Stack::of(&self.file, &self.scales)
     }
 
+    /// Fall of strength per slip of blocks in contact, `w = (mu_s - mu_k) P/D_c`, Pa/m; none under laws whose
+    /// strength does not fall with slip.
+    fn weakening_of_area(&self) -> Option<f64> {
+        Some(self.model.weakening()? / self.scales.stiffness_of_area(1.0))
+    }
+
     /// The critical size of slip in a bulk body on a rigid base in blocks, for a long strip across the drive,
     /// where strength falls with slip; none for a chain. It is infinite where all blocks together are held
     /// more stiffly than strength falls.
@@ -64,8 +70,7 @@ impl Case {
     /// body of its material.
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
-        let weakening = model.weakening().filter(|weakening| *weakening > 0.0)?;
-        let weakening = weakening / scales.stiffness_of_area(1.0);
+        let weakening = self.weakening_of_area().filter(|weakening| *weakening > 0.0)?;
         let modulus = scales.young_modulus;
         let metres = if let Some(body) = self.bulk_body() {
             size_at(weakening, &|q| body.along(modulus, q))
@@ -95,7 +100,7 @@ impl Case {
             return self.groups.epsilon;
         };
         let strain = |k: i32| {
-            let q = 0.5 * TAU / scales.block_size * libm::pow(500.0, -f64::from(k) / f64::from(WAVES));
+            let q = PI / scales.block_size * libm::pow(500.0, -f64::from(k) / f64::from(WAVES));
             scales.stress() * q / stack.along(scales.young_modulus, q)
         };
         (0..=WAVES).map(strain).fold(0.0, f64::max)
@@ -174,9 +179,8 @@ impl Case {
             })
         });
         let modulus = self.scales.young_modulus;
-        let of_all = self.model.weakening().and_then(|weakening| {
-            let weakening = weakening / self.scales.stiffness_of_area(1.0);
-            let (held, by_body) = (self.stack()?.along(modulus, 0.0), body.along(modulus, 0.0));
+        let of_all = self.weakening_of_area().and_then(|weakening| {
+            let (held, by_body) = (body.stack().along(modulus, 0.0), body.along(modulus, 0.0));
             (by_body < weakening && weakening < held).then(|| {
                 format!(
                     "the stack holds all blocks together {} times as stiffly as the body, and more stiffly than strength falls: once all of \

@@ -64,11 +64,12 @@ fn body(case: &Case) -> Option<String> {
         return case.file.slider.sheets.as_deref().map(|sheets| {
             let sheet = |sheet: &SheetOfStack| format!("{} on {}", sheet.thickness, sheet.coupling);
             let sheets: Vec<String> = sheets.iter().map(sheet).collect();
+            let springs = case.model.springs();
             format!(
                 "a stack of {} sheets, from the lowest on: {}, {} times as stiff along a wave as across it",
                 sheets.len(),
                 sheets.join(", "),
-                four_digits(case.file.slider.along_to_across.unwrap_or(3.0))
+                four_digits(springs.along() / springs.diagonal)
             )
         });
     };

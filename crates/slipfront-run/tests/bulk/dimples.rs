@@ -191,14 +191,14 @@ impl Dimples {
 
 /// Keys of the product for three sheets that are within 0.3 % of a deep body of nu = 1/4, from a longest wave
 /// of so many blocks to a sixteenth of it.
-pub(crate) fn three_sheets(longest: usize, block: f64, young_modulus: f64) -> [String; 3] {
+pub(crate) fn three_sheets(longest: usize) -> [String; 3] {
     /// In `G/(0.6495 E q_a)` and `G q_a`, by a plain search over all six numbers (`docs/model.md`).
     const SHEETS: [[f64; 2]; 3] = [[0.0297, 13.25], [0.2146, 3.069], [0.9147, 0.5870]];
     const POISSON: f64 = 0.25;
-    let q_a = std::f64::consts::TAU / (longest as f64 * block);
-    let shear_modulus = young_modulus / (2.0 * (1.0 + POISSON));
+    let q_a = std::f64::consts::TAU / (longest as f64 * BLOCK);
+    let shear_modulus = YOUNG_MODULUS / (2.0 * (1.0 + POISSON));
     let sheet = |[thickness, coupling]: [f64; 2]| {
-        let thickness = thickness * shear_modulus / (0.6495 * young_modulus * q_a);
+        let thickness = thickness * shear_modulus / (0.6495 * YOUNG_MODULUS * q_a);
         let coupling = coupling * shear_modulus * q_a;
         format!("{{ thickness = '{thickness:e} m', coupling = '{coupling:e} N/m^3' }}")
     };

@@ -1,9 +1,7 @@
 //! Reductions of static friction by dimples: the reference against figures of other solvers, the stack
 //! against the reference.
 
-use crate::dimples::{
-    BLOCK, Dimples, SLOWLY, Sharing, WITH_LITTLE_DRAG, YOUNG_MODULUS, patterns, three_sheets,
-};
+use crate::dimples::{BLOCK, Dimples, SLOWLY, Sharing, WITH_LITTLE_DRAG, patterns, three_sheets};
 use crate::half_space::Body;
 use crate::layer;
 
@@ -98,10 +96,7 @@ fn dimples_on_a_glued_layer() {
 fn three_sheets_are_closer() {
     let (poisson, dimples) = (0.25, Dimples::array(16));
     let slowly = SLOWLY.iter().map(|&key| key.to_owned());
-    let keys: Vec<String> = three_sheets(16, BLOCK, YOUNG_MODULUS)
-        .into_iter()
-        .chain(slowly)
-        .collect();
+    let keys: Vec<String> = three_sheets(16).into_iter().chain(slowly).collect();
     for weakening in [2.0, 5.0, 10.0] {
         let expected = dimples.on_half_space(poisson, weakening, Sharing::Equal);
         let found = dimples.in_product(poisson, weakening, Sharing::Equal, &keys);

@@ -6,11 +6,9 @@ use std::sync::Arc;
 use slipfront::{Execution, Simulation, State, VectorField};
 use slipfront_case::case::Case;
 
-use crate::dimples::three_sheets;
+use crate::dimples::{BLOCK, YOUNG_MODULUS, three_sheets};
 use crate::layer;
 
-const YOUNG_MODULUS: f64 = 2.6e6;
-const BLOCK: f64 = 10e-6;
 /// Blocks of the longest wave length of the stack: q l is 0.05 to 0.4 where it is fitted.
 const LONGEST: usize = 126;
 
@@ -25,7 +23,7 @@ pub(crate) fn bare(longest: usize, poisson: f64, height: Option<f64>) -> Case {
 
 /// Three sheets for a deep body of nu = 1/4 without texture, whose longest wave length has so many blocks.
 pub(crate) fn of_three_sheets(longest: usize) -> Case {
-    bare_with(longest, &three_sheets(longest, BLOCK, YOUNG_MODULUS))
+    bare_with(longest, &three_sheets(longest))
 }
 
 fn bare_with(longest: usize, keys: &[String]) -> Case {

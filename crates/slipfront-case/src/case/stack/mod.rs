@@ -86,11 +86,7 @@ impl Stack {
                 along_to_across: file.slider.along_to_across.unwrap_or(OF_PAPER),
             });
         }
-        BulkBody::of(file, scales).map(|body| Self {
-            thickness: body.thickness.into(),
-            couplings: vec![body.coupling, body.mount],
-            along_to_across: body.along_to_across,
-        })
+        BulkBody::of(file, scales).map(|body| body.stack())
     }
 
     /// The sheets above the lowest one, in units of this case.
@@ -103,14 +99,21 @@ impl Stack {
         above.map(sheet).collect()
     }
 
+    /// Traction over displacement along and across a wave of wave number q, Pa/m.
+    fn response(&self, young_modulus: f64, q: f64) -> [f64; 2] {
+        directions(self.along_to_across).map(|direction| {
+            let per_thickness = direction * OF_SHEET * young_modulus * q * q;
+            let sheets = self.thickness.iter().zip(&self.couplings).rev();
+            // What is above the highest sheet does not move.
+            sheets.fold(f64::INFINITY, |above, (thickness, coupling)| {
+                per_thickness * thickness + 1.0 / (1.0 / coupling + 1.0 / above)
+            })
+        })
+    }
+
     /// Traction over displacement along a wave of wave number q, Pa/m.
     pub(super) fn along(&self, young_modulus: f64, q: f64) -> f64 {
-        let per_thickness = directions(self.along_to_across)[0] * OF_SHEET * young_modulus * q * q;
-        let sheets = self.thickness.iter().zip(&self.couplings).rev();
-        // What is above the highest sheet does not move.
-        sheets.fold(f64::INFINITY, |above, (thickness, coupling)| {
-            per_thickness * thickness + 1.0 / (1.0 / coupling + 1.0 / above)
-        })
+        self.response(young_modulus, q)[0]
     }
 
     /// Springs between neighbouring blocks of every sheet.
@@ -158,6 +161,15 @@ impl BulkBody {
         }
     }
 
+    /// The stack that stands for the body.
+    pub(super) fn stack(&self) -> Stack {
+        Stack {
+            thickness: self.thickness.into(),
+            couplings: vec![self.coupling, self.mount],
+            along_to_across: self.along_to_across,
+        }
+    }
+
     /// Traction over displacement along a wave of wave number q in the body, Pa/m.
     pub(super) fn along(&self, young_modulus: f64, q: f64) -> f64 {
         let shear_modulus = shear_modulus(young_modulus, self.poisson);
@@ -173,19 +185,8 @@ impl BulkBody {
         let q = TAU / wave_length;
         let [along, across] = response(q * self.height, self.poisson);
         let of_body = shear_modulus(young_modulus, self.poisson) * q * (along * across).sqrt();
-        self.stiffness(young_modulus, q) / of_body - 1.0
-    }
-
-    /// Traction over displacement of the stack at wave number q, in the geometric mean of both directions,
-    /// Pa/m.
-    fn stiffness(&self, young_modulus: f64, q: f64) -> f64 {
-        let [along, across] = directions(self.along_to_across).map(|direction| {
-            let of_sheet = direction * OF_SHEET * young_modulus * q * q;
-            let [lower, upper] = self.thickness.map(|h| of_sheet * h);
-            let above = self.mount + upper;
-            lower + self.coupling * above / (self.coupling + above)
-        });
-        (along * across).sqrt()
+        let [along, across] = self.stack().response(young_modulus, q);
+        (along * across).sqrt() / of_body - 1.0
     }
 
     /// The longest and the shortest wave length of the fit, m.

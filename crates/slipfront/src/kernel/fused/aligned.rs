@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use super::vector::LANES;
+use super::vector::{Chunks, ChunksMut, LANES};
 
 /// A fixed number of f64 on a 64-byte boundary.
 #[derive(Debug, Default)]
@@ -89,4 +89,22 @@ impl Vectors {
     pub(super) fn set(&mut self, k: usize, [x, y]: [f64; 2]) {
         (self.x[k], self.y[k]) = (x, y);
     }
+}
+
+/// The `n` elements from `from` on, in vectors of eight.
+#[inline(always)]
+pub(super) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [Chunks<'_>; 2] {
+    [
+        vectors.x[from..from + n].as_chunks().0,
+        vectors.y[from..from + n].as_chunks().0,
+    ]
+}
+
+/// The `n` elements from `from` on, in vectors of eight to write to.
+#[inline(always)]
+pub(super) fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
+    [
+        vectors.x[from..from + n].as_chunks_mut().0,
+        vectors.y[from..from + n].as_chunks_mut().0,
+    ]
 }

@@ -5,20 +5,22 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Simd, SimdBase};
 
-use super::aligned::{Aligned, Vectors};
+use super::aligned::{Aligned, Vectors, chunks, chunks_mut};
 use super::blocks::{
     FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, times_factor, upward_springs,
     vector_energy, zero_missing,
 };
 use super::layout::{Layout, TILE};
+use super::pull::Above;
 use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
-use super::sheets::{Above, UpperSheet};
+use super::scratch::{MIRROR, Scratch, whole_vectors};
 use super::springs::Geometry;
 use super::step::Step;
 use super::thresholds::Thresholds;
+use super::upper_sheet::UpperSheet;
 use super::variations::{Variation, Variations, present};
-use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
+use super::vector::{Chunks, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -135,47 +137,8 @@ pub(super) struct Band {
     pub(super) stride: usize,
 }
 
-// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row
-// later. It is computed once, and waits in between in a ring buffer, the only intermediate result that is
-// longer than a tile. Element k and what its springs join, and where these springs are:
-//
-//   k-stride-1  k-stride  k-stride+1 ............ k ............ k+stride-1  k+stride  k+stride+1
-//   springs from these to k, computed             its own,       the row above, which has moved
-//   when the row below was the present one        computed now   before
-//
-//   | 0 .. 15 .......... behind ................. own ......................... | 0 .. 15 |
-//                        read from here on        written, then read              mirror of the beginning
-//
-// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector
-// for what is rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole
-// vectors, so that none of them wraps around. Those behind begin anywhere, and may extend over the end: the
-// mirror repeats the beginning there.
-/// Intermediate results on the way through the tiles, which are not needed later.
-#[derive(Debug, Default)]
-pub(super) struct Scratch {
-    /// Forces of the latest springs to the next row: a ring buffer over the elements.
-    upward: [Vectors; 3],
-    /// Lattice forces `F_c` of the present tile.
-    pub(super) lattice: Vectors,
-    /// Drive forces `F_s` of the present tile.
-    drive: Vectors,
-    /// Velocities without friction of the present tile.
-    free: Vectors,
-    /// Magnitudes of the velocities without friction of the present tile.
-    free_speed: Aligned,
-}
-
 /// Marks a block that has not slipped, in place of the step of its first slip.
 pub(super) const NEVER: u32 = u32::MAX;
-
-/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its
-/// end.
-const MIRROR: usize = 2 * LANES;
-
-/// Number of elements in as many whole vectors as hold `elements`.
-fn whole_vectors(elements: usize) -> usize {
-    elements.next_multiple_of(LANES)
-}
 
 /// Number of elements before and after a band of which it keeps the displacements.
 pub(super) fn halo(layout: &Layout) -> usize {
@@ -1022,49 +985,6 @@ impl Band {
     }
 }
 
-impl Scratch {
-    /// Room for the springs of a tile in rows of so many elements.
-    pub(super) fn of_springs(stride: usize) -> Self {
-        let ring = whole_vectors(stride + 1 + TILE + LANES) + MIRROR;
-        Self {
-            upward: [(); 3].map(|()| Vectors::zeros(ring)),
-            lattice: Vectors::zeros(TILE),
-            ..Self::default()
-        }
-    }
-
-    /// Number of elements in the ring buffer.
-    #[inline(always)]
-    fn ring(&self) -> usize {
-        self.upward[0].x.len() - MIRROR
-    }
-
-    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the
-    /// row below, `stride` elements before, wrap around: first element, end, and the two positions in the
-    /// buffer.
-    #[inline(always)]
-    fn ring_segments(
-        &self,
-        stride: usize,
-        from: usize,
-        to: usize,
-    ) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
-        let ring = self.ring();
-        let mut first = from;
-        std::iter::from_fn(move || {
-            if first >= to {
-                return None;
-            }
-            let own = first % ring;
-            let behind = (first + ring - stride - 1) % ring;
-            // The row below is read from `behind` on, and from one and two elements after it.
-            let room = (ring - own).min((ring + MIRROR - 2 - behind) / LANES * LANES);
-            let end = to.min(first + room);
-            Some((std::mem::replace(&mut first, end), end, own, behind))
-        })
-    }
-}
-
 /// Moves some elements of a band, whose displacements have a halo (Eq. 8), `u += dt v`.
 #[inline(always)]
 pub(super) fn move_blocks<S: Simd>(
@@ -1082,20 +1002,4 @@ pub(super) fn move_blocks<S: Simd>(
         (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
         (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
     }
-}
-
-#[inline(always)]
-pub(super) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [&[[f64; LANES]]; 2] {
-    [
-        vectors.x[from..from + n].as_chunks().0,
-        vectors.y[from..from + n].as_chunks().0,
-    ]
-}
-
-#[inline(always)]
-pub(super) fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
-    [
-        vectors.x[from..from + n].as_chunks_mut().0,
-        vectors.y[from..from + n].as_chunks_mut().0,
-    ]
 }

@@ -6,8 +6,8 @@
 use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 
 use super::aligned::CacheLines;
+use super::pull::{Above, pull_from_above};
 use super::quanta::Quanta;
-use super::sheets::{Above, pull_from_above};
 use super::springs::Geometry;
 use super::step::Step;
 use super::variations::Variation;
@@ -567,17 +567,6 @@ pub(super) fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> 
 pub(super) fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
     let added = ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64);
     lane_sum(lanes).wrapping_sub(added)
-}
-
-/// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with any constant force.
-#[inline(always)]
-pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    let ([x, y], [fx, fy]) = (step.drive_position, step.constant_force);
-    let stretch = subtract([splat(simd, x), splat(simd, y)], u);
-    add(
-        scale(splat(simd, step.k_drive), stretch),
-        [splat(simd, fx), splat(simd, fy)],
-    )
 }
 
 /// Whether all of eight blocks stand still and stick.

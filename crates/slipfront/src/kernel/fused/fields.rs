@@ -4,10 +4,11 @@
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
-use super::band::{Band, Scratch, chunks};
-use super::blocks::pull;
+use super::aligned::chunks;
+use super::band::Band;
 use super::layout::{Layout, TILE};
-use super::sheets::pull_from_above;
+use super::pull::{pull, pull_from_above};
+use super::scratch::Scratch;
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};

@@ -26,14 +26,17 @@ mod fields;
 pub(crate) mod for_tests;
 mod layout;
 mod neighbours;
+mod pull;
 mod quanta;
 mod rest;
 mod schedule;
+mod scratch;
 mod sheets;
 mod sparse;
 mod springs;
 mod step;
 mod thresholds;
+mod upper_sheet;
 mod variations;
 mod vector;
 

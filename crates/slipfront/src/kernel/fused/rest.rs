@@ -11,7 +11,7 @@
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f64x8};
 
-use super::blocks::pull;
+use super::pull::pull;
 use super::step::Step;
 use super::vector::{Vec2x8, add, dot, lane_max, scale, splat, square};
 

@@ -1,4 +1,4 @@
-//! The sheets above the lowest one: their motion, and the springs between them.
+//! The motion of the sheets above the lowest one.
 //!
 //! A sheet is stored as the lowest one is, with its blocks at the same elements, and goes through the same
 //! loops for its springs; in place of friction it has the [pull](pull_from_above) of the sheets above and
@@ -13,113 +13,18 @@ use std::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, i64x8};
 
-use super::aligned::{CacheLines, Vectors};
-use super::band::{Band, Scratch, chunks, chunks_mut, move_blocks};
-use super::blocks::{Shifts, Sums, integer_sum, integers, or_else, pull, zero_missing};
+use super::aligned::{CacheLines, Vectors, chunks, chunks_mut};
+use super::band::{Band, move_blocks};
+use super::blocks::{Shifts, Sums, integer_sum, integers, or_else, zero_missing};
 use super::layout::TILE;
+use super::pull::{Above, coupling_force, pull_from_above};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
-use super::vector::{
-    Chunks, ChunksMut, Vec2x8, add, load, load_vec2, or_zero_below, scale, splat, square, subtract,
-};
+use super::upper_sheet::UpperSheet;
+use super::vector::{Chunks, ChunksMut, add, load, load_vec2, or_zero_below, scale, splat, square, subtract};
 use crate::friction::SMALLEST_VELOCITY;
 use crate::sheets::Sheet;
-
-/// The elements of a band in a sheet above the lowest one.
-#[derive(Debug)]
-pub(super) struct UpperSheet {
-    sheet: Sheet,
-    /// Displacements at t_n, with halos.
-    pub(super) displacement: Vectors,
-    /// Velocities at t_n + dt/2.
-    pub(super) velocity: Vectors,
-    /// Springs of the sheet, and their sums in the present tile.
-    scratch: Scratch,
-    /// Sums over the tiles in the latest sweep.
-    sums: Sums<i128, f64, u64>,
-    /// Energy of the springs to the sheet below times 2, in quanta, at steps at which energies are needed.
-    pub(super) energy_below: i128,
-}
-
-/// Blocks of the sheet above some blocks; none where the drive springs pull these.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Above<'a> {
-    /// Stiffness `g` of the springs to them.
-    coupling: f64,
-    displacement: [Chunks<'a>; 2],
-}
-
-impl Above<'_> {
-    /// The first `n` vectors, if there are any.
-    #[inline(always)]
-    pub(super) fn first<const HAS_ABOVE: bool>(self, n: usize) -> Self {
-        let n = if HAS_ABOVE { n } else { 0 };
-        let [x, y] = self.displacement;
-        Self {
-            displacement: [&x[..n], &y[..n]],
-            ..self
-        }
-    }
-}
-
-/// Force from above on eight blocks at displacement `u`: of the springs to the sheet there,
-/// `g (u_k+1 - u_k)`, or of the drive springs (Eq. 2), with any constant force.
-#[inline(always)]
-pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
-    simd: S,
-    step: Step,
-    above: Above,
-    chunk: usize,
-    u: Vec2x8<S>,
-) -> Vec2x8<S> {
-    if HAS_ABOVE {
-        coupling_force(
-            simd,
-            above.coupling,
-            load_vec2(simd, above.displacement, chunk),
-            u,
-        )
-    } else {
-        pull(simd, step, u)
-    }
-}
-
-/// Force of springs of the given stiffness from blocks to those above them.
-#[inline(always)]
-fn coupling_force<S: Simd>(simd: S, coupling: f64, above: Vec2x8<S>, below: Vec2x8<S>) -> Vec2x8<S> {
-    scale(splat(simd, coupling), subtract(above, below))
-}
-
-impl UpperSheet {
-    /// A sheet at rest with so many elements in a row, in a band, and in a halo.
-    pub(super) fn new(sheet: Sheet, stride: usize, len: usize, halo: usize) -> Self {
-        Self {
-            sheet,
-            displacement: Vectors::zeros(halo + len + halo),
-            velocity: Vectors::zeros(len),
-            scratch: Scratch::of_springs(stride),
-            sums: Sums::default(),
-            energy_below: 0,
-        }
-    }
-
-    /// Blocks of the sheet over those of the one below at some elements, counted from the front halo.
-    #[inline(always)]
-    pub(super) fn above(&self, first: usize, n: usize) -> Above<'_> {
-        Above {
-            coupling: self.sheet.coupling,
-            displacement: chunks(&self.displacement, first, n),
-        }
-    }
-
-    /// Force on a block at displacement `below` from that of the sheet over it, at index `k` of the
-    /// displacements.
-    pub(super) fn pull_on(&self, k: usize, below: [f64; 2]) -> [f64; 2] {
-        let above = self.displacement.at(k);
-        [0, 1].map(|axis| self.sheet.coupling * (above[axis] - below[axis]))
-    }
-}
 
 impl Band {
     /// Moves the first tiles of the sheets above, and finds the springs of the row before them; after that

@@ -7,11 +7,13 @@
 
 use fearless_simd::{Simd, SimdBase};
 
-use super::band::{Band, Scratch, chunks, chunks_mut};
+use super::aligned::{chunks, chunks_mut};
+use super::band::Band;
 use super::blocks::{Sums, displacement_sums, friction, spring, times_factor, vector_energy};
 use super::layout::{TILE, VECTORS};
+use super::pull::Above;
 use super::quanta::Quanta;
-use super::sheets::Above;
+use super::scratch::Scratch;
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{Chunks, LANES, Vec2x8, add, load, load_vec2, splat, subtract};

@@ -1,0 +1,87 @@
+//! Intermediate results of a sweep, and the ring buffer of the springs between two rows.
+
+use super::aligned::{Aligned, Vectors};
+use super::layout::TILE;
+use super::vector::LANES;
+
+// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row
+// later. It is computed once, and waits in between in a ring buffer, the only intermediate result that is
+// longer than a tile. Element k and what its springs join, and where these springs are:
+//
+//   k-stride-1  k-stride  k-stride+1 ............ k ............ k+stride-1  k+stride  k+stride+1
+//   springs from these to k, computed             its own,       the row above, which has moved
+//   when the row below was the present one        computed now   before
+//
+//   | 0 .. 15 .......... behind ................. own ......................... | 0 .. 15 |
+//                        read from here on        written, then read              mirror of the beginning
+//
+// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector
+// for what is rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole
+// vectors, so that none of them wraps around. Those behind begin anywhere, and may extend over the end: the
+// mirror repeats the beginning there.
+/// Intermediate results on the way through the tiles, which are not needed later.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    /// Forces of the latest springs to the next row: a ring buffer over the elements.
+    pub(super) upward: [Vectors; 3],
+    /// Lattice forces `F_c` of the present tile.
+    pub(super) lattice: Vectors,
+    /// Drive forces `F_s` of the present tile.
+    pub(super) drive: Vectors,
+    /// Velocities without friction of the present tile.
+    pub(super) free: Vectors,
+    /// Magnitudes of the velocities without friction of the present tile.
+    pub(super) free_speed: Aligned,
+}
+
+/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its
+/// end.
+pub(super) const MIRROR: usize = 2 * LANES;
+
+/// Number of elements in as many whole vectors as hold `elements`.
+pub(super) fn whole_vectors(elements: usize) -> usize {
+    elements.next_multiple_of(LANES)
+}
+
+impl Scratch {
+    /// Room for the springs of a tile in rows of so many elements.
+    pub(super) fn of_springs(stride: usize) -> Self {
+        let ring = whole_vectors(stride + 1 + TILE + LANES) + MIRROR;
+        Self {
+            upward: [(); 3].map(|()| Vectors::zeros(ring)),
+            lattice: Vectors::zeros(TILE),
+            ..Self::default()
+        }
+    }
+
+    /// Number of elements in the ring buffer.
+    #[inline(always)]
+    pub(super) fn ring(&self) -> usize {
+        self.upward[0].x.len() - MIRROR
+    }
+
+    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the
+    /// row below, `stride` elements before, wrap around: first element, end, and the two positions in the
+    /// buffer.
+    #[inline(always)]
+    pub(super) fn ring_segments(
+        &self,
+        stride: usize,
+        from: usize,
+        to: usize,
+    ) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
+        let ring = self.ring();
+        let mut first = from;
+        std::iter::from_fn(move || {
+            if first >= to {
+                return None;
+            }
+            let own = first % ring;
+            let behind = (first + ring - stride - 1) % ring;
+            // The row below is read from `behind` on, and from one and two elements after it.
+            let room = (ring - own).min((ring + MIRROR - 2 - behind) / LANES * LANES);
+            let end = to.min(first + room);
+            Some((std::mem::replace(&mut first, end), end, own, behind))
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! The blocks of a band in a sheet above the lowest one.
+
+use super::aligned::{Vectors, chunks};
+use super::blocks::Sums;
+use super::pull::Above;
+use super::scratch::Scratch;
+use crate::sheets::Sheet;
+
+/// The elements of a band in a sheet above the lowest one.
+#[derive(Debug)]
+pub(super) struct UpperSheet {
+    pub(super) sheet: Sheet,
+    /// Displacements at t_n, with halos.
+    pub(super) displacement: Vectors,
+    /// Velocities at t_n + dt/2.
+    pub(super) velocity: Vectors,
+    /// Springs of the sheet, and their sums in the present tile.
+    pub(super) scratch: Scratch,
+    /// Sums over the tiles in the latest sweep.
+    pub(super) sums: Sums<i128, f64, u64>,
+    /// Energy of the springs to the sheet below times 2, in quanta, at steps at which energies are needed.
+    pub(super) energy_below: i128,
+}
+
+impl UpperSheet {
+    /// A sheet at rest with so many elements in a row, in a band, and in a halo.
+    pub(super) fn new(sheet: Sheet, stride: usize, len: usize, halo: usize) -> Self {
+        Self {
+            sheet,
+            displacement: Vectors::zeros(halo + len + halo),
+            velocity: Vectors::zeros(len),
+            scratch: Scratch::of_springs(stride),
+            sums: Sums::default(),
+            energy_below: 0,
+        }
+    }
+
+    /// Blocks of the sheet over those of the one below at some elements, counted from the front halo.
+    #[inline(always)]
+    pub(super) fn above(&self, first: usize, n: usize) -> Above<'_> {
+        Above {
+            coupling: self.sheet.coupling,
+            displacement: chunks(&self.displacement, first, n),
+        }
+    }
+
+    /// Force on a block at displacement `below` from that of the sheet over it, at index `k` of the
+    /// displacements.
+    pub(super) fn pull_on(&self, k: usize, below: [f64; 2]) -> [f64; 2] {
+        let above = self.displacement.at(k);
+        [0, 1].map(|axis| self.sheet.coupling * (above[axis] - below[axis]))
+    }
+}
