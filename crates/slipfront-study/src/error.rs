@@ -161,7 +161,7 @@ pub enum StudyError {
         most: f64,
     },
     #[error(
-        "the runs are estimated to take about {estimated:#}: longer than --max-time {most:#} allows; take fewer --levels or \
+        "the runs are estimated to take {estimated:#} at least, longer than --max-time {most:#} allows: take fewer --levels or \
         --replicates"
     )]
     TimeLimit {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use jiff::SignedDuration;
 use slipfront_base::number_format::byte_size;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::estimate_cost::seconds_per_step;
+use slipfront_run::estimate_cost::{TimeRange, time_per_step};
 
 use crate::error::StudyError;
 use crate::plan::Plan;
@@ -19,29 +19,28 @@ pub struct CostLimits {
     pub time: Option<SignedDuration>,
 }
 
-/// Seconds that the runs will take on `threads` threads of this machine, with the fewest replicates.
+/// Time that the runs will take on `threads` threads of this machine, with the fewest replicates.
 ///
 /// # Errors
 /// When a file that a case reads has changed since the plan was made.
-pub fn estimated_seconds(plan: &Plan, threads: usize) -> Result<f64, CaseError> {
-    let mut seconds = 0.0;
+pub fn estimated_time(plan: &Plan, threads: usize) -> Result<TimeRange, CaseError> {
+    let mut time = TimeRange::default();
     // The time per block depends on the size of the lattice: a small one fits into the cache.
-    let mut rates: HashMap<usize, f64> = HashMap::new();
+    let mut per_step: HashMap<usize, TimeRange> = HashMap::new();
     for run in plan.runs(1) {
-        let (cost, n_blocks) = plan.cost(run);
-        let rate = match rates.get(&n_blocks) {
-            Some(&rate) => rate,
+        let (steps, n_blocks) = plan.cost(run);
+        let of_step = match per_step.get(&n_blocks) {
+            Some(&of_step) => of_step,
             None => {
-                let case = plan.case(run, &mut |_| true)?;
-                let rate = n_blocks as f64 / seconds_per_step(&case);
-                rates.insert(n_blocks, rate);
-                rate
+                let of_step = time_per_step(&plan.case(run, &mut |_| true)?);
+                per_step.insert(n_blocks, of_step);
+                of_step
             }
         };
-        seconds += cost / rate;
+        time = time + of_step * steps;
     }
     let replicates = plan.settings.min_replicates() as f64;
-    Ok(replicates * seconds / threads as f64)
+    Ok(time * (replicates / threads as f64))
 }
 
 impl CostLimits {
@@ -64,9 +63,10 @@ impl CostLimits {
             });
         }
         let Some(most) = self.time else { return Ok(()) };
-        let seconds = estimated_seconds(plan, threads)?;
-        if seconds > most.as_secs_f64() {
-            let estimated = SignedDuration::from_secs(seconds.ceil() as i64);
+        // Other work on the machine must not refuse what would be in time without it.
+        let TimeRange { least, .. } = estimated_time(plan, threads)?;
+        if least > most.as_secs_f64() {
+            let estimated = SignedDuration::from_secs(least.ceil() as i64);
             return Err(StudyError::TimeLimit { estimated, most });
         }
         Ok(())

@@ -50,7 +50,7 @@ pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use answer::answer;
 pub use axis::{Axis, AxisKeys, Level, Spacing};
 pub use error::{StudyError, TrainingError};
-pub use estimate_cost::{CostLimits, estimated_seconds};
+pub use estimate_cost::{CostLimits, estimated_time};
 pub use execute::{LookAtRun, collect, execute, execute_and_look};
 pub use finished_run::{FinishedRun, Outcome, RunResult};
 pub use folder::{StudyFolder, is_of_figures, is_study, refuse_foreign, study_of};

@@ -51,10 +51,10 @@ struct RunSpec {
     seed: u64,
     /// Hash of all that decides the numbers of a run, but for the seed.
     physics: blake3::Hash,
-    /// Largest number of steps times blocks of a run.
-    block_steps: f64,
+    /// Fewest and most steps that are expected.
+    steps: [f64; 2],
     n_blocks: usize,
-    /// Whether the drive stands while blocks slide, for steps that `block_steps` leaves out.
+    /// Whether the drive stands while blocks slide, for steps that `steps` leave out.
     is_held: bool,
     /// Memory of a run beside others, in bytes.
     memory: f64,
@@ -333,7 +333,7 @@ impl Plan {
         let spec = RunSpec {
             seed: case.file.friction.seed,
             physics: physics(&case, base.known())?,
-            block_steps: case.block_steps(),
+            steps: case.expected_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             is_held: case.model.drive.is_held(),
             memory: case.budget.beside_others(writes),
@@ -440,10 +440,19 @@ impl Plan {
         self.identity(run)[..12].to_owned()
     }
 
-    /// Largest number of steps times blocks of a run, and its blocks: the measure of its cost.
-    pub fn cost(&self, run: RunKey) -> (f64, usize) {
+    /// Fewest and most steps that are expected of a run, and its blocks: the measure of its cost.
+    pub fn cost(&self, run: RunKey) -> ([f64; 2], usize) {
         let spec = self.spec_of(run);
-        (spec.block_steps, spec.n_blocks)
+        (spec.steps, spec.n_blocks)
+    }
+
+    /// Steps times blocks of all runs with the fewest replicates, at most.
+    pub fn block_steps(&self) -> f64 {
+        let of_run = |run| {
+            let ([_, most], n_blocks) = self.cost(run);
+            most * n_blocks as f64
+        };
+        self.settings.min_replicates() as f64 * self.runs(1).map(of_run).sum::<f64>()
     }
 
     /// Whether the drive of any run stands while blocks slide, so that the cost is a lower bound.

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::surface::{CorrelatedField, Texture};
-use slipfront::{Communicator, Lattice, Model, Scales};
+use slipfront::{Communicator, Lattice, Model, Scales, StopReason};
 
 use super::budget::Budget;
 use super::coefficients::correlated_field;
@@ -254,9 +254,21 @@ impl Case {
         correlated_field(&self.file, &self.model.lattice)
     }
 
-    /// Steps times blocks, without the steps in which a held drive stands: the measure of the cost of a run.
+    /// Largest number of steps times blocks, without the steps in which a held drive stands.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
+    }
+
+    /// Fewest and most steps that are expected, without those in which a held drive stands: all, or those to
+    /// the expected onset, within a tenth, where the onset ends the run.
+    pub fn expected_steps(&self) -> [f64; 2] {
+        let plan = &self.time_plan;
+        let last = plan.last_step as f64;
+        if self.file.time.stop != StopReason::Onset || self.model.drive.is_held() {
+            return [last; 2];
+        }
+        let [early, late] = self.expected.onset_star;
+        [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last))
     }
 
     /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.

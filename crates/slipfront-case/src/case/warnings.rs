@@ -90,7 +90,7 @@ impl Case {
                 four_digits(dt_star)
             )
         });
-        let increment = self.model.mount_stiffness() * self.model.driven_share() * v_star * dt_star;
+        let increment = self.rise_per_step();
         warn(is_held && increment > LARGE_INCREMENT, &|| {
             format!(
                 "mu* rises by up to {} in a step in which the held drive moves, and mu_s* is known no better: lower `drive.v_star` or `time.step`",

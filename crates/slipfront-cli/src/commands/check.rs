@@ -1,7 +1,7 @@
 //! `slipfront check`: the physics and the cost of a case, without running it.
 
 use clap::Args;
-use slipfront_run::estimate_cost::seconds_per_step;
+use slipfront_run::estimate_cost::time_per_step;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
@@ -32,11 +32,10 @@ impl CheckCommand {
         set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
-        let seconds = || seconds_per_step(&case) * case.time_plan.last_step as f64;
         if self.json {
-            return print(&report::text_of(&report::check(&case, seconds())));
+            return print(&report::text_of(&report::check(&case, time_per_step(&case))));
         }
         print(&(report::physics(&case) + &report::lengths(&case)))?;
-        print(&report::cost(&case, seconds()))
+        print(&report::cost(&case, time_per_step(&case)))
     }
 }

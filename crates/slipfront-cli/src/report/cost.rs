@@ -3,16 +3,20 @@
 use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
+use slipfront_run::estimate_cost::TimeRange;
 use slipfront_run::times::instant;
 
+use super::speeds::Speeds;
 use super::summary::notes;
 use super::times::duration;
 
-/// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the
-/// run takes.
-pub(crate) fn cost(case: &Case, seconds: f64) -> String {
+/// The expected onset, the stability of the step, the cost, the speeds and the warnings; a step takes
+/// `per_step`.
+pub(crate) fn cost(case: &Case, per_step: TimeRange) -> String {
     let (loading, _) = loading(case);
-    onset(case) + &loading + &scales(case) + &resources(case, seconds) + &notes(&warnings(case))
+    let speeds = Speeds::of(case).map_or(String::new(), |speeds| speeds.text(case, per_step));
+    let time = per_step * case.expected_steps();
+    onset(case) + &loading + &scales(case) + &resources(case, time) + &speeds + &notes(&warnings(case))
 }
 
 /// Warnings about a case, with the note on a drive that loads it faster than a front crosses it.
@@ -25,18 +29,11 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
 /// loads it, about 1/V*: the line of the report, and a note where the drive is the faster. A drive that is
 /// held waits for the front.
 fn loading(case: &Case) -> (String, Option<String>) {
-    let (lattice, drive) = (&case.model.lattice, &case.model.drive);
-    if drive.is_held() {
+    if case.model.drive.is_held() {
         let line = "loading           slow: the drive stands while a front crosses the slider\n";
         return (line.to_owned(), None);
     }
-    let [nx, ny] = [lattice.nx, lattice.ny].map(|blocks| blocks as f64);
-    let (name, blocks) = match drive.direction {
-        _ if drive.rotation.is_some() => ("N", nx.max(ny)),
-        [_, 0.0] => ("N_x", nx),
-        [0.0, _] => ("N_y", ny),
-        [along_x, along_y] => ("N", nx * along_x.abs() + ny * along_y.abs()),
-    };
+    let (name, blocks) = case.blocks_along_drive();
     let ratio = case.model.speed_against_front() * blocks;
     let line = format!(
         "loading           V* {name} = {}: the time in which a front crosses the {} blocks over that of loading\n",
@@ -127,7 +124,7 @@ pub(super) fn standing(is_held: bool) -> &'static str {
     }
 }
 
-fn resources(case: &Case, seconds: f64) -> String {
+fn resources(case: &Case, time: TimeRange) -> String {
     let budget = &case.budget;
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
@@ -138,7 +135,7 @@ fn resources(case: &Case, seconds: f64) -> String {
          disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
         case.block_steps(),
         standing(case.model.drive.is_held()),
-        duration(seconds),
+        duration(time),
         byte_size(budget.memory()),
         byte_size(budget.disk()),
         byte_size(budget.disk_of_snapshots()),

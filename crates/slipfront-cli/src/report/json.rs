@@ -3,18 +3,25 @@
 use serde_json::{Value, json};
 use slipfront_base::machine::available_memory;
 use slipfront_case::case::Case;
+use slipfront_run::estimate_cost::TimeRange;
 
 use super::cost::warnings;
+use super::speeds::Speeds;
 
 /// The text of a report as it is printed.
 pub(crate) fn text_of(report: &Value) -> String {
     format!("{report:#}\n")
 }
 
+/// A time for programs: the least and the most seconds.
+pub(super) fn seconds(time: TimeRange) -> [f64; 2] {
+    [time.least, time.most]
+}
+
 /// The physics and the cost of a case, with the names of `summary.json` where that has the same number;
-/// `seconds` is the time that the run takes. A number that is not finite, such as the critical size of slip
+/// a step takes `per_step`. A number that is not finite, such as the critical size of slip
 /// that is stable at any size, is null.
-pub(crate) fn check(case: &Case, seconds: f64) -> Value {
+pub(crate) fn check(case: &Case, per_step: TimeRange) -> Value {
     let (groups, lattice, plan) = (&case.groups, &case.model.lattice, &case.time_plan);
     let budget = &case.budget;
     let bytes = |estimate: f64| estimate.ceil() as u64;
@@ -55,7 +62,8 @@ pub(crate) fn check(case: &Case, seconds: f64) -> Value {
         "displacement_unit_m": case.scales.displacement(),
         "stress_unit_pa": case.scales.stress(),
         "block_steps": case.block_steps(),
-        "seconds": seconds,
+        "seconds": seconds(per_step * case.expected_steps()),
+        "speeds": Speeds::of(case).map(|speeds| speeds.json(case, per_step)),
         "memory_bytes": bytes(budget.memory()),
         "memory_available_bytes": available_memory().map(bytes),
         "disk_bytes": bytes(budget.disk()),

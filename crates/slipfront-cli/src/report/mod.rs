@@ -6,6 +6,7 @@ mod cost;
 mod json;
 mod lengths;
 mod physics;
+mod speeds;
 mod study;
 mod summary;
 mod times;

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront_base::number_format::{are, byte_size, count, four_digits, with_half_width};
+use slipfront_run::estimate_cost::TimeRange;
 use slipfront_study::text_table::table;
 use slipfront_study::{
     MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, warning_texts,
@@ -22,7 +23,7 @@ const MAX_LEVELS: usize = 10;
 const MAX_POINTS: usize = 40;
 
 /// The plan of a study and its cost.
-pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) -> String {
+pub(crate) fn plan(plan: &Plan, time: TimeRange, threads: usize) -> String {
     let settings = &plan.settings;
     let (min, max) = (settings.min_replicates(), settings.max_replicates());
     let replicates = match &settings.until {
@@ -45,13 +46,14 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     };
     format!(
         "{}\n{}  {}, {replicates}{reference}: at most {runs}\n  \
-         {block_steps:.2e} block-steps{}, {} on {} of this machine\n  \
+         at most {:.2e} block-steps{}, {} on {} of this machine\n  \
          {} of memory for {} at once, {} on the disk\n{}{}",
         plan.name,
         axes(plan),
         count(plan.points.len(), "point"),
+        plan.block_steps(),
         standing(plan.has_held_drive()),
-        duration(seconds),
+        duration(time),
         count(threads, "thread"),
         byte_size(plan.memory(threads)),
         count(threads, "run"),

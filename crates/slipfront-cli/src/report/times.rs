@@ -3,12 +3,29 @@
 use std::time::Duration;
 
 use indicatif::HumanDuration;
+use slipfront_run::estimate_cost::TimeRange;
 
 /// Duration of a computation.
-pub(super) fn duration(seconds: f64) -> String {
-    if seconds < 1.0 {
+pub(super) fn duration(time: TimeRange) -> String {
+    if time.most < 1.0 {
         return "less than a second".to_owned();
     }
-    let rounded = Duration::from_secs_f64(seconds.min(1e15));
-    format!("about {}", HumanDuration(rounded))
+    let [least, most] = [time.least, time.most].map(rounded);
+    if least == most {
+        return format!("about {most}");
+    }
+    let unit = |text: &str| {
+        text.split_once(' ')
+            .map(|(_, unit)| unit.trim_end_matches('s').to_owned())
+    };
+    let least = match least.split_once(' ') {
+        Some((number, _)) if unit(&least) == unit(&most) => number,
+        _ => &least,
+    };
+    format!("{least} to {most}")
+}
+
+/// Seconds in the largest unit that is not too coarse.
+fn rounded(seconds: f64) -> String {
+    HumanDuration(Duration::from_secs_f64(seconds.clamp(1.0, 1e15))).to_string()
 }

@@ -388,12 +388,31 @@ impl Friction {
         }
     }
 
+    /// Whether the friction of a block depends on time or speed, and not on its slip alone.
+    pub fn depends_on_time(&self) -> bool {
+        let [velocity, ageing, _, healing] = self.options();
+        self.law == Law::RateAndState || velocity.1 || ageing.1 || healing.1
+    }
+
+    /// Whether these keys have a meaning under a drive that stands while a block slides.
+    pub fn can_be_held(&self) -> bool {
+        let (in_time, others) = self.not_held();
+        in_time.iter().chain(&others).all(|(_, is_set)| !is_set)
+    }
+
     /// Refuses keys that have no meaning under a drive that stands while a block slides.
     pub(super) fn check_held(&self, check: &Check) -> Result<(), CaseError> {
+        let (in_time, others) = self.not_held();
+        refuse_set(check, &in_time, HELD_IN_TIME)?;
+        refuse_set(check, &others, HELD)
+    }
+
+    /// Keys that have no meaning under such a drive, and whether they are set: first those under which
+    /// contacts grow stronger in time.
+    fn not_held(&self) -> ([(&'static str, bool); 2], [(&'static str, bool); 2]) {
         let [_, ageing, _, healing] = self.options();
-        refuse_set(check, &[ageing, healing], HELD_IN_TIME)?;
         let springs = ("contact", self.contact == ContactModel::Springs);
-        refuse_set(check, &[("law", self.law != Law::Projection), springs], HELD)
+        ([ageing, healing], [("law", self.law != Law::Projection), springs])
     }
 
     /// Refuses a correlation length where no coefficient is drawn from a field.

@@ -187,8 +187,6 @@ pub(super) fn finish(
 fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
     // Only one run must fit into this machine: the study may be meant for another one.
     plan.check_memory(1).map_err(Failure::input)?;
-    let block_steps: f64 = plan.runs(1).map(|run| plan.cost(run).0).sum();
-    let replicates = plan.settings.min_replicates() as f64;
-    let seconds = study::estimated_seconds(plan, threads).map_err(Failure::input)?;
-    Ok(report::plan(plan, replicates * block_steps, seconds, threads))
+    let time = study::estimated_time(plan, threads).map_err(Failure::input)?;
+    Ok(report::plan(plan, time, threads))
 }

@@ -1,0 +1,91 @@
+//! Speeds at which a drive can load a slider: the run that each takes, and what it adds to friction.
+
+use slipfront::lattice::K_DRIVE;
+
+use super::runnable::Case;
+use crate::case_file::{DriveSpeed, TimeStep};
+
+/// Difference of mu_s* from its limit of slow loading that no speed removes: where slip begins in a surface is
+/// a matter of chance from one slow speed to the next.
+const CHANCE: f64 = 0.005;
+/// What the drive may add to mu_s* at a speed that is slow enough, and the share of drag in kinetic friction:
+/// as much as chance does.
+const ENOUGH: f64 = CHANCE;
+
+/// A speed of the drive, with the run of equal path that it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadingSpeed {
+    /// Speed over that of the case.
+    pub over_given: f64,
+    /// Fewest and most time steps that are expected, see [`Case::expected_steps`].
+    pub steps: [f64; 2],
+    /// V* N, the time in which a slip front crosses the slider over that of loading.
+    pub front_ratio: f64,
+    /// Drag of the damping over kinetic friction without it.
+    pub drag_share: f64,
+}
+
+impl Case {
+    /// The blocks of the slider along the drive, or along its longer side under torsion, and the symbol of
+    /// their number.
+    pub fn blocks_along_drive(&self) -> (&'static str, f64) {
+        let (lattice, drive) = (&self.model.lattice, &self.model.drive);
+        let [nx, ny] = [lattice.nx, lattice.ny].map(|blocks| blocks as f64);
+        match drive.direction {
+            _ if drive.rotation.is_some() => ("N", nx.max(ny)),
+            [_, 0.0] => ("N_x", nx),
+            [0.0, _] => ("N_y", ny),
+            [along_x, along_y] => ("N", nx * along_x.abs() + ny * along_y.abs()),
+        }
+    }
+
+    /// Rise of mu* in a step in which a drive moves and nothing slides, k_s V* dt* for a spring of stiffness
+    /// k_s on each block.
+    pub fn rise_per_step(&self) -> f64 {
+        K_DRIVE * self.model.loading_speed() * self.time_plan.dt_star
+    }
+
+    /// The speed of the case and what it costs; none where the friction of the blocks depends on speed or
+    /// time, the speed is a program, or the step follows the speed, so that no other speed takes its place.
+    /// A drive that is held loads slowly at any speed.
+    pub fn loading_speed(&self) -> Option<LoadingSpeed> {
+        let file = &self.file;
+        let is_free = !file.friction.depends_on_time()
+            && !matches!(file.drive.speed, DriveSpeed::Program(_))
+            && file.time.step != TimeStep::Paper
+            && !self.model.drive.is_held();
+        let front_ratio = self.model.speed_against_front() * self.blocks_along_drive().1;
+        let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
+        is_free.then(|| LoadingSpeed {
+            over_given: 1.0,
+            steps: self.expected_steps(),
+            front_ratio,
+            drag_share: drag / (level - drag),
+        })
+    }
+}
+
+impl LoadingSpeed {
+    /// Bound of the difference of mu_s* from its limit of slow loading: the load k_2 V* N that the drive adds
+    /// while a front crosses the slider, and what is a matter of chance. In 28 sliders with and without texture
+    /// and V* N from 0.005 to 3 no difference was larger.
+    pub fn static_bound(&self) -> f64 {
+        K_DRIVE * self.front_ratio + CHANCE
+    }
+
+    /// Factor of the speed up to which the drive adds less to mu_s* than chance does, and drag as small a share
+    /// to kinetic friction.
+    pub fn factor_to_slow(&self) -> f64 {
+        ENOUGH / (K_DRIVE * self.front_ratio).max(self.drag_share)
+    }
+
+    /// The speed times a factor.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            over_given: factor * self.over_given,
+            steps: self.steps.map(|steps| (steps / factor).ceil()),
+            front_ratio: factor * self.front_ratio,
+            drag_share: factor * self.drag_share,
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Speeds at which a drive can load a case, with the time that each takes and what it adds to friction.
+
+use serde_json::{Value, json};
+use slipfront::lattice::K_DRIVE;
+use slipfront_base::number_format::{exact, four_digits, with_si_prefix};
+use slipfront_case::case::{Case, LoadingSpeed};
+use slipfront_case::case_file::{Attached, AttachedEdge, AutoOr, DriveSpeed, RunTime};
+use slipfront_run::estimate_cost::TimeRange;
+use slipfront_study::text_table::table;
+
+use super::json::seconds;
+use super::times::duration;
+
+/// Speeds of the table, over that which is slow enough.
+const LISTED: [f64; 4] = [100.0, 10.0, 1.0, 0.1];
+/// Time in which a front crosses the slider over that of loading, above which no speed is listed: mu_s* is
+/// then a matter of speed alone.
+const FASTEST: f64 = 3.0;
+/// Rise of mu* in a step of a held drive that is proposed.
+const HELD_RISE: f64 = 1e-3;
+/// Steps of a drive of constant speed over those in which a held drive moves, from which the latter is
+/// proposed: it stands for some thirty times as many steps as it moves.
+const HELD_IS_CHEAPER: f64 = 50.0;
+
+/// The speeds of a case, the slow one among them, and the held drive that is cheaper still.
+pub(super) struct Speeds {
+    given: LoadingSpeed,
+    slow: LoadingSpeed,
+    /// Factor of the speed of a held drive, and the steps in which it moves.
+    held: Option<(f64, f64)>,
+}
+
+impl Speeds {
+    /// The speeds of a case; none where its speed is part of its physics.
+    pub(super) fn of(case: &Case) -> Option<Self> {
+        let given = case.loading_speed()?;
+        let slow = given.times(rounded_down(case, given.factor_to_slow()));
+        let held = rounded_down(case, HELD_RISE / case.rise_per_step());
+        let steps = given.times(held).steps[1];
+        let is_cheaper = can_be_held(case) && steps * HELD_IS_CHEAPER < slow.steps[1];
+        Some(Self {
+            given,
+            slow,
+            held: is_cheaper.then_some((held, steps)),
+        })
+    }
+
+    /// All speeds of the table, the fastest first.
+    fn all(&self) -> Vec<LoadingSpeed> {
+        let is_listed = |speed: &LoadingSpeed| {
+            let is_given = (speed.over_given - 1.0).abs() < 1e-6;
+            speed.front_ratio <= FASTEST && !is_given
+        };
+        let mut all = vec![self.given];
+        all.extend(
+            LISTED
+                .map(|factor| self.slow.times(factor))
+                .into_iter()
+                .filter(is_listed),
+        );
+        all.sort_by(|a, b| b.over_given.total_cmp(&a.over_given));
+        all
+    }
+
+    /// The table and the line that names the slow speed; a step takes `per_step`.
+    pub(super) fn text(&self, case: &Case, per_step: TimeRange) -> String {
+        let rows: Vec<Vec<String>> = self
+            .all()
+            .iter()
+            .map(|speed| self.row(case, speed, per_step))
+            .collect();
+        let (symbol, _) = case.blocks_along_drive();
+        let ratio = format!("V* {symbol}");
+        let header = [
+            key_and_unit(case).0,
+            &ratio,
+            "mu_s* off by",
+            "drag",
+            "steps",
+            "time",
+        ];
+        let slow = &self.slow;
+        let mut text = table(&header, &rows);
+        text += &format!(
+            "slow loading      `{}`: {}; mu_s* within {} of the slow limit, drag {} of kinetic friction\n",
+            self.setting(case, slow.over_given),
+            duration(per_step * slow.steps),
+            two_digits(slow.static_bound()),
+            percent(slow.drag_share)
+        );
+        if let Some((factor, steps)) = self.held {
+            text += &format!(
+                "held drive        `drive.loading = \"held\"`, `{}`: as slow, in {} steps and those in which the drive stands\n",
+                self.setting(case, factor),
+                steps_in_words(steps)
+            );
+        }
+        text
+    }
+
+    fn row(&self, case: &Case, speed: &LoadingSpeed, per_step: TimeRange) -> Vec<String> {
+        let mut row = vec![
+            value(case, speed.over_given),
+            two_digits(speed.front_ratio),
+            format!("<{}", two_digits(speed.static_bound())),
+            percent(speed.drag_share),
+            steps_in_words(speed.steps[1]),
+            duration(per_step * speed.steps),
+        ];
+        if speed == &self.given {
+            row.push("as given".to_owned());
+        } else if speed == &self.slow {
+            row.push("slow enough".to_owned());
+        }
+        row
+    }
+
+    /// Keys of a speed, with that of a duration that is given in time and not by the path.
+    fn setting(&self, case: &Case, factor: f64) -> String {
+        let (key, _) = key_and_unit(case);
+        let mut text = match case.file.drive.speed {
+            DriveSpeed::Speed(_) => format!("{key} = {:?}", value(case, factor)),
+            _ => format!("{key} = {}", value(case, factor)),
+        };
+        if case.file.time.duration != RunTime::Star(AutoOr::Auto) {
+            text += &format!(
+                "`, `time.duration_star = {}",
+                four_digits(case.time_plan.end_star() / factor)
+            );
+        }
+        text
+    }
+
+    /// The speeds for programs.
+    pub(super) fn json(&self, case: &Case, per_step: TimeRange) -> Value {
+        let speed = |speed: &LoadingSpeed| {
+            json!({
+                "v_star": speed.over_given * case.groups.v_star,
+                "front_ratio": speed.front_ratio,
+                "static_friction_star_bound": speed.static_bound(),
+                "drag_over_kinetic": speed.drag_share,
+                "steps": speed.steps,
+                "seconds": seconds(per_step * speed.steps),
+            })
+        };
+        let all: Vec<Value> = self.all().iter().map(speed).collect();
+        json!({
+            "all": all,
+            "slow": speed(&self.slow),
+            "held": self.held.map(|(factor, steps)| json!({ "v_star": factor * case.groups.v_star, "steps": steps })),
+        })
+    }
+}
+
+/// Whether a held drive is an answer: not on soft springs or where slip is stable, since slip then goes on
+/// while the drive stands.
+fn can_be_held(case: &Case) -> bool {
+    let friction = &case.file.friction;
+    let drives_all = case.file.drive.attached == Attached::At(AttachedEdge::All);
+    let is_stiff = case.model.mount_stiffness() >= 0.5 * K_DRIVE;
+    drives_all && is_stiff && friction.can_be_held() && friction.slip_weakening.is_none()
+}
+
+/// The key of the speed as the case has it, and its value in the unit of that.
+fn key_and_unit(case: &Case) -> (&'static str, f64) {
+    match &case.file.drive.speed {
+        DriveSpeed::Speed(speed) => ("drive.speed", speed.si()),
+        DriveSpeed::VStar(_) | DriveSpeed::Program(_) => ("drive.v_star", case.groups.v_star),
+    }
+}
+
+/// A multiple of the speed of the case, as its key takes it.
+fn value(case: &Case, factor: f64) -> String {
+    match key_and_unit(case) {
+        ("drive.speed", speed) => with_si_prefix(factor * speed, "m/s"),
+        (_, v_star) => exact(to_digits(factor * v_star, 5)),
+    }
+}
+
+/// A factor of the speed, rounded down so that the speed itself has one digit, as its key takes it.
+fn rounded_down(case: &Case, factor: f64) -> f64 {
+    let (_, given) = key_and_unit(case);
+    let speed = factor * given;
+    let nearest = to_digits(speed, 0);
+    let decade = 10_f64.powf(speed.log10().floor());
+    let below = if nearest > speed * (1.0 + 1e-9) {
+        to_digits(nearest - decade, 0)
+    } else {
+        nearest
+    };
+    below / given
+}
+
+/// A number to its first digit and some after that.
+fn to_digits(number: f64, after: usize) -> f64 {
+    format!("{number:.after$e}").parse().unwrap_or(number)
+}
+
+fn steps_in_words(steps: f64) -> String {
+    exact(to_digits(steps, 2))
+}
+
+fn percent(share: f64) -> String {
+    format!("{} %", two_digits(100.0 * share))
+}
+
+fn two_digits(number: f64) -> String {
+    exact(to_digits(number, 1))
+}
