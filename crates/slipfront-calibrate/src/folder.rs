@@ -198,6 +198,11 @@ impl CalibrationFolder {
         &self.path
     }
 
+    /// Path of the findings as numbers.
+    pub fn numbers(&self) -> PathBuf {
+        self.path.join(FOUND[0])
+    }
+
     /// Sentences about a folder that has been used before.
     pub fn notes(&self) -> Vec<String> {
         notes_of_use(self.kept.damaged, self.n_kept())

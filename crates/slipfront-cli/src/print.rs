@@ -1,6 +1,7 @@
 //! Printing to stdout, for all commands.
 
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 use crate::failure::Failure;
 use crate::print_stderr::is_silent;
@@ -8,6 +9,13 @@ use crate::print_stderr::is_silent;
 /// Prints the product of a command. A reader that has closed the pipe, as `head` does, is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     expect_printed(write(text))
+}
+
+/// Prints a file of the results as the product of a command.
+pub(crate) fn print_file(path: &Path) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Failure::running(anyhow::anyhow!("cannot read {}: {error}", path.display())))?;
+    print(&format!("{}\n", text.trim_end()))
 }
 
 /// Prints a message of a command whose product is files. A message that cannot be printed is lost: the

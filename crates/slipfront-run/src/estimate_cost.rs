@@ -59,10 +59,10 @@ pub fn time_of_run(case: &Case) -> TimeRange {
 /// Time of a step of this case: at least that of a slider at rest, most of whose blocks are skipped, and at
 /// most that of a step that computes every block.
 pub fn time_per_step(case: &Case) -> TimeRange {
-    let [at_rest, every_block] = [true, false].map(|skips| measurements(case, skips));
+    let measured = [true, false].map(|skips| measurements(case, skips)).concat();
     TimeRange {
-        least: at_rest.into_iter().fold(f64::INFINITY, f64::min),
-        most: every_block.into_iter().fold(0.0, f64::max),
+        least: measured.iter().copied().fold(f64::INFINITY, f64::min),
+        most: measured.iter().copied().fold(0.0, f64::max),
     }
 }
 

@@ -88,7 +88,7 @@ fn a_drive_that_is_too_soft_is_told() {
 
 /// A steel slider on a machine of 0.5 N/um: as slow as the paper's by V* N_x, and pulled faster than its
 /// blocks can slide. The drag is Omega V* with Omega = sqrt(0.75) Omega*, so that the sentences begin where
-/// it is a tenth of R* and where both together are 1.
+/// it is a hundredth of R* and where both together are 1.
 #[test]
 fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     let warnings = |changes: &[&str]| {
@@ -103,8 +103,8 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     let soft = "drive.stiffness_star=1e-3";
     let [drag, no_transition] = ["the drag of the damping", "no transition is possible"];
     for (size, has_drag, is_flat) in [
-        (0.0499, false, false),
-        (0.0501, true, false),
+        (0.00499, false, false),
+        (0.00501, true, false),
         (0.4999, true, false),
         (0.5001, true, true),
     ] {
@@ -119,16 +119,16 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     assert!(said.contains("takes mu* = 1.4, of which 0.9 is drag"), "{said}");
     assert!(said.contains("adds 0.9 to the kinetic friction of 0.5"), "{said}");
     // The speed below which the drag is small has no drag to speak of, and adhesion holds more.
-    assert!(said.contains("up to V* = 0.2887"), "{said}");
+    assert!(said.contains("up to V* = 0.02887"), "{said}");
     let held = warnings(&[&speed(0.6), soft, "friction.adhesion='20 kPa'"]);
     assert!(held.contains(drag) && !held.contains(no_transition), "{held}");
-    // Of blocks without kinetic friction, a hundredth of what they hold at rest.
-    for (size, has_drag) in [(0.0099, false), (0.0101, true)] {
+    // Of blocks without kinetic friction, a thousandth of what they hold at rest.
+    for (size, has_drag) in [(0.00099, false), (0.00101, true)] {
         let said = warnings(&[&speed(size), soft, "friction.r_star=0"]);
         assert_eq!(said.contains(drag), has_drag, "{size}: {said}");
     }
     // A turning slider is slow inside.
-    let turning = warnings(&[&speed(0.0501), soft, "drive.motion='rotation'"]);
+    let turning = warnings(&[&speed(0.00501), soft, "drive.motion='rotation'"]);
     assert!(!turning.contains(drag), "{turning}");
     // Blocks that lose nothing when they slip are told of by another sentence.
     let equal = warnings(&["friction.r_star=1"]);

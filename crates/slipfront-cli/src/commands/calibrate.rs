@@ -7,9 +7,10 @@ use slipfront_calibrate::{CalibrationFile, CalibrationFolder, SampledRecord};
 use slipfront_study::StudyError;
 
 use crate::failure::Failure;
-use crate::print::print_message;
+use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
 use crate::progress::calibrate::CalibrateProgress;
+use crate::report::text_of;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
@@ -58,6 +59,9 @@ pub(crate) struct CalibrateCommand {
     /// Show neither progress nor what was found
     #[arg(short, long)]
     quiet: bool,
+    /// Print what was found, or with --dry-run the plan, as JSON on stdout, and nothing else there
+    #[arg(long)]
+    json: bool,
 }
 
 impl CalibrateCommand {
@@ -77,7 +81,7 @@ impl CalibrateCommand {
         let signals = Signals::catch().map_err(Failure::running)?;
         let folder = CalibrationFolder::open(&out, training, &file, records, self.force);
         let mut folder = folder.map_err(Failure::of_folder)?;
-        if !self.quiet {
+        if !self.quiet && !self.json {
             print_notes(notes);
             print_notes(folder.notes());
         }
@@ -92,11 +96,14 @@ impl CalibrateCommand {
             StudyError::Training(error) => Failure::input(error),
             error => Failure::of_results(&signals, error),
         })?;
-        if !self.quiet {
+        if self.json {
+            print_file(&folder.numbers())?;
+        } else if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
         folder.expect_own_records().map_err(Failure::running)
     }
+
     /// Prints what records would tell.
     fn plan(&self, file: &CalibrationFile) -> Result<(), Failure> {
         let grids = match &self.until {
@@ -115,7 +122,10 @@ impl CalibrateCommand {
             StudyError::Interrupted => Failure::stopped(&signals, anyhow::anyhow!("stopped by a signal")),
             error => Failure::input(error),
         })?;
-        print_message(&plan.in_words());
-        Ok(())
+        if self.json {
+            let plan = serde_json::to_value(&plan).map_err(Failure::running)?;
+            return print(&text_of(&plan));
+        }
+        print(&plan.in_words())
     }
 }

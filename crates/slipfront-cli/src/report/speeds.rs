@@ -82,7 +82,7 @@ impl Speeds {
         let slow = &self.slow;
         let mut text = table(&header, &rows);
         text += &format!(
-            "slow loading      `{}`: {}; mu_s* within {} of the slow limit, drag {} of kinetic friction\n",
+            "slow loading      `{}`: {}; mu_s* within {} of slow loading in the mean of surfaces, drag {} of kinetic friction\n",
             self.setting(case, slow.over_given),
             duration(per_step * slow.steps),
             two_digits(slow.static_bound()),
@@ -180,15 +180,12 @@ fn value(case: &Case, factor: f64) -> String {
 /// A factor of the speed, rounded down so that the speed itself has one digit, as its key takes it.
 fn rounded_down(case: &Case, factor: f64) -> f64 {
     let (_, given) = key_and_unit(case);
-    let speed = factor * given;
-    let nearest = to_digits(speed, 0);
-    let decade = 10_f64.powf(speed.log10().floor());
-    let below = if nearest > speed * (1.0 + 1e-9) {
-        to_digits(nearest - decade, 0)
-    } else {
-        nearest
-    };
-    below / given
+    // What misses a digit by rounding has it.
+    let text = format!("{:e}", factor * given * (1.0 + 1e-9));
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let first = digits.chars().next().unwrap_or('1');
+    let speed = format!("{first}e{exponent}").parse().unwrap_or(factor * given);
+    speed / given
 }
 
 /// A number to its first digit and some after that.

@@ -68,10 +68,16 @@ pub(crate) fn plan(plan: &Plan, time: TimeRange, threads: usize) -> String {
     )
 }
 
-/// The axes with their levels, a line each.
+/// The axes with their levels: a line each, or a table where several keys change together.
 fn axes(plan: &Plan) -> String {
     let mut text = String::new();
     for axis in &plan.axes {
+        if axis.columns.len() > 1 && axis.levels.len() <= MAX_LEVELS {
+            let columns: Vec<&str> = axis.columns.iter().map(String::as_str).collect();
+            let rows: Vec<Vec<String>> = axis.levels.iter().map(|level| level.labels.clone()).collect();
+            text += &table(&columns, &rows);
+            continue;
+        }
         let mut levels: Vec<String> = axis.levels.iter().map(|level| level.labels.join(" & ")).collect();
         if levels.len() > MAX_LEVELS {
             let between = format!("... ({} levels) ...", levels.len());

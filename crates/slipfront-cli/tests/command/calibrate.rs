@@ -54,8 +54,9 @@ fn a_calibration_is_told_and_found_again() {
     assert!(differs.status.code() == Some(1) && stdout(&differs).contains("posterior.csv differs"));
     // Once more nothing is run, and nothing changes.
     let before = workspace.files("twice");
-    workspace.succeed("calibrate fit.toml record.csv -o twice --quiet");
+    let printed = workspace.succeed("calibrate fit.toml record.csv -o twice --json");
     assert!(workspace.files("twice") == before);
+    assert_eq!(printed.trim_end(), workspace.read_text("twice/calibration.json"));
 }
 
 /// Records that are planned need none that was measured, and leave nothing.

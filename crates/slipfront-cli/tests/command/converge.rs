@@ -45,10 +45,17 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
             .read_text("meshes/convergence.txt")
             .contains("static_friction_star")
     );
-    // Once more, all runs are there, and the files the same.
+    // Once more, all runs are there, and the files the same; the answer for programs is that of the folder.
     let before = workspace.files("meshes");
-    workspace.succeed("converge sheet.toml -o meshes");
+    let printed = workspace.succeed("converge sheet.toml -o meshes --json");
     assert!(workspace.files("meshes") == before);
+    assert_eq!(serde_json::from_str::<Value>(&printed).unwrap(), found);
+    // The plan names every mesh, and runs nothing.
+    let plan = workspace.succeed("converge sheet.toml -o plan --dry-run");
+    for words in ["100 um   [10, 10]", "25 um   [40, 40]", "at most 6 runs"] {
+        assert!(plan.contains(words), "{plan}");
+    }
+    assert!(!workspace.exists("plan"));
 }
 
 /// The comparison of the meshes follows from the records, as tables do.

@@ -42,11 +42,22 @@ fn commands(lines: &[String]) -> Vec<(String, Vec<String>)> {
 }
 
 /// The part of a line that is the same on every machine.
-fn without_machine(line: &str) -> String {
+pub(crate) fn without_machine(line: &str) -> String {
     if line.starts_with("cost ") {
         line.split(',').next().unwrap_or_default().to_owned()
     } else if line.starts_with("memory ") {
         line.replace(|c: char| c.is_ascii_digit() || ".KMGT".contains(c), "")
+    } else if ["second", "minute", "hour"]
+        .iter()
+        .any(|unit| line.contains(unit))
+    {
+        let is_of_time = |word: &&str| {
+            let word = word.trim_end_matches([';', 's']);
+            ["le", "than", "a", "about", "to", "second", "minute", "hour"].contains(&word)
+                || word.parse::<u32>().is_ok_and(|number| number < 100)
+        };
+        let others: Vec<&str> = line.split_whitespace().filter(|word| !is_of_time(word)).collect();
+        others.join(" ")
     } else {
         line.trim_end().to_owned()
     }

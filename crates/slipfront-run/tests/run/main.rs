@@ -5,3 +5,4 @@
 mod fields;
 mod lateral_friction;
 mod regression;
+mod slow_speeds;

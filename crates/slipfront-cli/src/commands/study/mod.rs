@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 
 use crate::failure::Failure;
 
-pub(super) use run::run_all;
+pub(super) use run::{dry_run, run_all};
 
 /// Vary a case over keys and seeds, and tabulate the answers
 #[derive(Args)]

@@ -184,7 +184,7 @@ pub(super) fn finish(
 }
 
 /// The plan of a study, and its cost as measured on this machine.
-fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
+pub(in crate::commands) fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
     // Only one run must fit into this machine: the study may be meant for another one.
     plan.check_memory(1).map_err(Failure::input)?;
     let time = study::estimated_time(plan, threads).map_err(Failure::input)?;

@@ -837,6 +837,21 @@ fn the_guides_have_the_reductions_of_their_studies() {
         let row = format!("| reduction in % | {} |", cells(&reductions(study, &[axis])));
         assert!(text.contains(&row), "{row}");
     }
+    let mount = repository.join("cases/studies/soft_mount.toml");
+    workspace.succeed(&format!("study {} -q -o soft_mount", mount.display()));
+    let points = workspace.results("soft_mount").table("points.csv");
+    let of_static = points
+        .iter()
+        .filter(|row| row["quantity"] == "static_friction_star");
+    let with_half = |row: &BTreeMap<String, String>| {
+        let [mean, low, high] = ["mean", "low", "high"].map(|name| row[name].parse::<f64>().unwrap());
+        format!("{mean:.3} \u{b1} {:.3}", (high - low) / 2.0)
+    };
+    let cells: Vec<String> = of_static.map(with_half).collect();
+    for of_surface in cells.chunks(4) {
+        let row = format!(" | {} |\n", of_surface.join(" | "));
+        assert!(text.contains(&row), "{row}");
+    }
     // The coarsest of three meshes; the others take minutes.
     let coarsest = |case: &str, blocks: u32, size: &str, replicates: u32| {
         workspace.write(
