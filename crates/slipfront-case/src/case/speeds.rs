@@ -5,8 +5,8 @@ use slipfront::lattice::K_DRIVE;
 use super::runnable::Case;
 use crate::case_file::{DriveSpeed, TimeStep};
 
-/// Difference of mu_s* from one slow speed to another, in the mean of surfaces, beside what the drive adds: the
-/// swing of blocks after each slip decides where the next one begins. As much is allowed to what the drive
+/// Difference of mu_s* from one slow speed to another, in the mean of surfaces, beside what the drive adds:
+/// the swing of blocks after each slip decides where the next one begins. As much is allowed to what the drive
 /// adds to mu_s* at a speed that is slow enough, and as a share of drag in kinetic friction.
 const HALF_A_POINT: f64 = 0.005;
 

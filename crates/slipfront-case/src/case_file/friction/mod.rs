@@ -396,23 +396,23 @@ impl Friction {
 
     /// Whether these keys have a meaning under a drive that stands while a block slides.
     pub fn can_be_held(&self) -> bool {
-        let (in_time, others) = self.not_held();
-        in_time.iter().chain(&others).all(|(_, is_set)| !is_set)
+        let keys = self.not_held();
+        keys.iter().flatten().all(|(_, is_set)| !is_set)
     }
 
     /// Refuses keys that have no meaning under a drive that stands while a block slides.
     pub(super) fn check_held(&self, check: &Check) -> Result<(), CaseError> {
-        let (in_time, others) = self.not_held();
+        let [in_time, others] = self.not_held();
         refuse_set(check, &in_time, HELD_IN_TIME)?;
         refuse_set(check, &others, HELD)
     }
 
     /// Keys that have no meaning under such a drive, and whether they are set: first those under which
     /// contacts grow stronger in time.
-    fn not_held(&self) -> ([(&'static str, bool); 2], [(&'static str, bool); 2]) {
+    fn not_held(&self) -> [[(&'static str, bool); 2]; 2] {
         let [_, ageing, _, healing] = self.options();
         let springs = ("contact", self.contact == ContactModel::Springs);
-        ([ageing, healing], [("law", self.law != Law::Projection), springs])
+        [[ageing, healing], [("law", self.law != Law::Projection), springs]]
     }
 
     /// Refuses a correlation length where no coefficient is drawn from a field.
