@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use slipfront::lattice::K_DRIVE;
 use slipfront::{Friction, Lattice, Scales};
 
 use super::budget::Budget;
@@ -9,7 +10,7 @@ use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::ranks::Ranks;
 use super::stack::{Stack, longest_wave};
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, DriveStiffness};
 use crate::quantity::Length;
 
 /// Quantities that follow from a case file without the files that it names.
@@ -79,10 +80,15 @@ pub fn key_of_body(file: &CaseFile) -> Option<(&'static str, String)> {
 /// Units of a case file whose slider is one sheet.
 fn scales_of_sheet(file: &CaseFile) -> Scales {
     let block_size = file.slider.block_size.si();
+    let thickness = file.slider.thickness.as_ref().map_or(block_size, Length::si);
+    let young_modulus = match &file.drive.stiffness {
+        DriveStiffness::Total(total) if file.slider.rigid => total.si() / (K_DRIVE * thickness),
+        _ => file.slider.young_modulus.si(),
+    };
     Scales {
         block_size,
-        thickness: file.slider.thickness.as_ref().map_or(block_size, Length::si),
-        young_modulus: file.slider.young_modulus.si(),
+        thickness,
+        young_modulus,
         density: file.slider.density.si(),
         pressure: file.load.pressure.si(),
         mu_static_mean: file.friction.mu_static,

@@ -43,12 +43,13 @@ impl Case {
         K_DRIVE * self.model.loading_speed() * self.time_plan.dt_star
     }
 
-    /// The speed of the case and what it costs; none where the friction of the blocks depends on speed or
+    /// The speed of the case and what it costs; none of a single block, or where the friction of the blocks depends on speed or
     /// time, the speed is a program, or the step follows the speed, so that no other speed takes its place.
     /// A drive that is held loads slowly at any speed.
     pub fn loading_speed(&self) -> Option<LoadingSpeed> {
         let file = &self.file;
-        let is_free = !file.friction.depends_on_time()
+        let is_free = self.model.n_blocks() > 1
+            && !file.friction.depends_on_time()
             && !matches!(file.drive.speed, DriveSpeed::Program(_))
             && file.time.step != TimeStep::Paper
             && !self.model.drive.is_held();

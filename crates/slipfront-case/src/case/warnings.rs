@@ -57,15 +57,16 @@ impl Case {
                 warnings.push(sentence());
             }
         };
+        let is_rigid = self.file.slider.rigid;
         let (epsilon, v_star, dt_star) = (self.strain_of_load(), self.groups.v_star, self.time_plan.dt_star);
-        warn(epsilon > LARGE_EPSILON, &|| {
+        warn(epsilon > LARGE_EPSILON && !is_rigid, &|| {
             format!(
                 "the load strains the slider by {epsilon:.3}, more than {LARGE_EPSILON}: results depend on it"
             )
         });
         let against_front = self.model.speed_against_front();
         let is_held = self.model.drive.is_held();
-        warn(against_front > LARGE_V_STAR && !is_held, &|| {
+        warn(against_front > LARGE_V_STAR && !is_held && !is_rigid, &|| {
             // But for rounding.
             if (against_front / v_star - 1.0).abs() < 1e-9 {
                 return format!(
@@ -97,7 +98,7 @@ impl Case {
             )
         });
         let n_blocks = self.model.n_blocks();
-        warn(n_blocks < FEW_BLOCKS, &|| {
+        warn(n_blocks < FEW_BLOCKS && !is_rigid, &|| {
             format!(
                 "{} few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)",
                 are(n_blocks, "block")

@@ -164,6 +164,11 @@ impl Drive {
         if slider.body == Body::Bulk {
             self.check_for_bulk(check)?;
         }
+        if slider.rigid && !matches!(self.stiffness, DriveStiffness::Total(_)) {
+            return check.refuse(self.stiffness.key(), |_| {
+                "a rigid slider (`slider.rigid`) is held by the spring `drive.total_stiffness`: give it in N/m".to_owned()
+            });
+        }
         self.stiffness.check(check)?;
         self.attached.check(check)
     }

@@ -68,6 +68,11 @@ key_rows! {
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),
+        /// Whether the slider is rigid: one block on a spring of `drive.total_stiffness`, without a Young's
+        /// modulus. That of its units makes the spring the paper's drive spring, 0.375 E h; it has no effect
+        /// on results in newtons, metres and seconds.
+        #[serde(skip_serializing_if = "std::ops::Not::not")]
+        pub rigid: bool = key("false", KeyKind::Switch),
         /// Density.
         pub density: Density = key("\"10 g/cm^3\"", quantity("kg/m^3", within(1e-6, 1e9))).paper("rho")
             .title("density", "\u{3c1}", "kg/m\u{b3}"),
@@ -151,6 +156,9 @@ const THICKNESS_OF_SHEET: KeyKind = quantity("m", within(1e-12, 1e3));
 /// deep body.
 const SHEETS: std::ops::RangeInclusive<usize> = 2..=4;
 
+/// Young's modulus of a case without the key, in Pa.
+const DEFAULT_MODULUS: f64 = 100e9;
+
 /// Largest number of all blocks.
 pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
 /// Smallest number of blocks along a periodic axis, where a block has two neighbours.
@@ -183,6 +191,7 @@ impl Slider {
         check.value("block_size", &self.block_size)?;
         check.value("thickness", &self.thickness)?;
         self.check_body(check)?;
+        self.check_rigid(check)?;
         check.value("young_modulus", &self.young_modulus)?;
         check.value("density", &self.density)?;
         self.damping.check(check)?;
@@ -209,6 +218,24 @@ impl Slider {
             }
         }
         self.check_outline(check)
+    }
+
+    /// Refuses a rigid slider of several blocks, or with a modulus.
+    fn check_rigid(&self, check: &Check) -> Result<(), CaseError> {
+        let keys = [
+            ("blocks", self.blocks != [1, 1], "is one block: set it to [1, 1]"),
+            (
+                "young_modulus",
+                self.young_modulus.si() != DEFAULT_MODULUS,
+                "has none: leave it out",
+            ),
+        ];
+        let wrong = keys.iter().find(|(_, is_wrong, _)| self.rigid && *is_wrong);
+        wrong.map_or(Ok(()), |(key, _, why)| {
+            check.refuse(key, |key| {
+                format!("`{key}` does not go with `slider.rigid`: a rigid slider {why}")
+            })
+        })
     }
 
     /// Refuses keys of a bulk body for a sheet, and the other way round.

@@ -27,8 +27,11 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
 
 /// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive
 /// loads it, about 1/V*: the line of the report, and a note where the drive is the faster. A drive that is
-/// held waits for the front.
+/// held waits for the front, and a single block has none.
 fn loading(case: &Case) -> (String, Option<String>) {
+    if case.model.n_blocks() == 1 {
+        return (String::new(), None);
+    }
     if case.model.drive.is_held() {
         let line = "loading           slow: the drive stands while a front crosses the slider\n";
         return (line.to_owned(), None);

@@ -112,6 +112,15 @@ fn material(case: &Case) -> String {
     } else {
         String::new()
     };
+    if slider.rigid {
+        let scales = &case.scales;
+        let mass = scales.density * scales.block_size.powi(2) * scales.thickness;
+        return format!(
+            "rigid, mass {}, Omega* = {}{viscosity}",
+            with_si_prefix(1e3 * mass, "g"),
+            four_digits(case.groups.omega_star)
+        );
+    }
     format!(
         "E = {}{}, rho = {} kg/m^3{}, Omega* = {}{viscosity}",
         with_si_prefix(case.scales.young_modulus, "Pa"),
@@ -158,6 +167,7 @@ fn drive(case: &Case) -> String {
     let springs = slider.sum_of_drive_springs(&case.model.lattice);
     let stiffness = match (&keys.stiffness, &slider.stiffness) {
         (DriveStiffness::Each(AutoOrStiffness::Auto), _) => String::new(),
+        (_, None) if springs == 1.0 => format!(", a spring of k_s* = {k_drive}"),
         (_, None) => format!(", {} springs of k_s* = {k_drive}", four_digits(springs)),
         (_, Some(_)) => format!(
             ", springs of k_s* = {k_drive} times the modulus of their blocks, {} together",

@@ -5,4 +5,5 @@
 mod fields;
 mod lateral_friction;
 mod regression;
+mod rigid;
 mod slow_speeds;
