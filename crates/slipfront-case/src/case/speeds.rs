@@ -6,8 +6,8 @@ use super::runnable::Case;
 use crate::case_file::{DriveSpeed, TimeStep};
 
 /// Difference of mu_s* from one slow speed to another, in the mean of surfaces, beside what the drive adds:
-/// the swing of blocks after each slip decides where the next one begins. As much is allowed to what the drive
-/// adds to mu_s* at a speed that is slow enough, and as a share of drag in kinetic friction.
+/// the swing of blocks after each slip decides where the next one begins. As much is allowed to what the
+/// drive adds to mu_s* at a speed that is slow enough, and as a share of drag in kinetic friction.
 const HALF_A_POINT: f64 = 0.005;
 
 /// A speed of the drive, with the run of equal path that it takes.
@@ -43,9 +43,9 @@ impl Case {
         K_DRIVE * self.model.loading_speed() * self.time_plan.dt_star
     }
 
-    /// The speed of the case and what it costs; none of a single block, or where the friction of the blocks depends on speed or
-    /// time, the speed is a program, or the step follows the speed, so that no other speed takes its place.
-    /// A drive that is held loads slowly at any speed.
+    /// The speed of the case and what it costs; none of a single block, or where the friction of the blocks
+    /// depends on speed or time, the speed is a program, or the step follows the speed, so that no other
+    /// speed takes its place. A drive that is held loads slowly at any speed.
     pub fn loading_speed(&self) -> Option<LoadingSpeed> {
         let file = &self.file;
         let is_free = self.model.n_blocks() > 1

@@ -69,8 +69,8 @@ key_rows! {
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),
         /// Whether the slider is rigid: one block on a spring of `drive.total_stiffness`, without a Young's
-        /// modulus. That of its units makes the spring the paper's drive spring, 0.375 E h; it has no effect
-        /// on results in newtons, metres and seconds.
+        /// modulus. The units t* and u* take the modulus for which the spring is the paper's, 0.375 E h;
+        /// results in newtons, metres and seconds depend on none.
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         pub rigid: bool = key("false", KeyKind::Switch),
         /// Density.
