@@ -3,8 +3,8 @@
 use std::ops::{Add, Mul};
 use std::time::{Duration, Instant};
 
-use slipfront::{Execution, Simulation};
-use slipfront_case::case::Case;
+use slipfront::{Execution, Simulation, State};
+use slipfront_case::case::{Case, ExpectedSteps};
 
 /// Measurements of each kind in an estimate.
 const MEASUREMENTS: usize = 5;
@@ -33,46 +33,61 @@ impl Add for TimeRange {
     }
 }
 
-impl Mul<[f64; 2]> for TimeRange {
+impl Mul<f64> for TimeRange {
     type Output = Self;
-    /// The time of a number of steps between two bounds.
-    fn mul(self, [fewest, most]: [f64; 2]) -> Self {
+    fn mul(self, factor: f64) -> Self {
         Self {
-            least: fewest * self.least,
-            most: most * self.most,
+            least: factor * self.least,
+            most: factor * self.most,
         }
     }
 }
 
-impl Mul<f64> for TimeRange {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        self * [factor; 2]
+/// Time of a step of a case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepTime {
+    /// While the slider rests: most of its blocks are skipped.
+    pub at_rest: TimeRange,
+    /// While blocks slide: every block is computed.
+    pub sliding: TimeRange,
+}
+
+impl StepTime {
+    /// Measures some steps of a case.
+    pub fn of(case: &Case) -> Self {
+        Self {
+            at_rest: measured(case, None),
+            sliding: measured(case, Some(sliding(case))),
+        }
+    }
+
+    /// Time of these steps.
+    pub fn of_steps(&self, expected: &ExpectedSteps) -> TimeRange {
+        let [fewest, most] = expected.steps;
+        let [least_share, largest_share] = expected.sliding_share();
+        let mean = |at_rest: f64, sliding: f64, share: f64| at_rest + share * (sliding - at_rest).max(0.0);
+        TimeRange {
+            least: fewest * mean(self.at_rest.least, self.sliding.least, least_share),
+            most: most * mean(self.at_rest.most, self.sliding.most, largest_share),
+        }
     }
 }
 
-/// Time of the steps of this case, see [`Case::expected_steps`].
-pub fn time_of_run(case: &Case) -> TimeRange {
-    time_per_step(case) * case.expected_steps()
+/// A state in which all blocks slide, and go on for longer than a measurement takes.
+fn sliding(case: &Case) -> State {
+    const SPEED_STAR: f64 = 1e3;
+    let mut state = State::at_rest(case.model.lattice.n_blocks());
+    state.velocity.x.fill(SPEED_STAR);
+    state
 }
 
-/// Time of a step of this case: at least that of a slider at rest, most of whose blocks are skipped, and at
-/// most that of a step that computes every block.
-pub fn time_per_step(case: &Case) -> TimeRange {
-    let measured = [true, false].map(|skips| measurements(case, skips)).concat();
-    TimeRange {
-        least: measured.iter().copied().fold(f64::INFINITY, f64::min),
-        most: measured.iter().copied().fold(0.0, f64::max),
-    }
-}
-
-/// Seconds per step of some measurements from the start of the case on.
-fn measurements(case: &Case, skips: bool) -> Vec<f64> {
+/// Time of a step by some measurements from a state on, from the start of the case if there is none.
+fn measured(case: &Case, state: Option<State>) -> TimeRange {
     let execution = Execution {
-        skips,
+        skips: state.is_none(),
         ..Execution::default()
     };
-    let mut simulation = Simulation::new(case.model.clone(), case.time_plan.dt_star, None, execution);
+    let mut simulation = Simulation::new(case.model.clone(), case.time_plan.dt_star, state, execution);
     // The first step brings the lattice into the cache.
     simulation.step();
     let began = Instant::now();
@@ -80,7 +95,10 @@ fn measurements(case: &Case, skips: bool) -> Vec<f64> {
     while measured.is_empty() || (measured.len() < MEASUREMENTS && began.elapsed() < ENOUGH) {
         measured.push(seconds_per_step(&mut simulation));
     }
-    measured
+    TimeRange {
+        least: measured.iter().copied().fold(f64::INFINITY, f64::min),
+        most: measured.iter().copied().fold(0.0, f64::max),
+    }
 }
 
 /// Seconds per step of one measurement.

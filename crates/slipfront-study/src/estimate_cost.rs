@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use jiff::SignedDuration;
 use slipfront_base::number_format::byte_size;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::estimate_cost::{TimeRange, time_per_step};
+use slipfront_run::estimate_cost::{StepTime, TimeRange};
 
 use crate::error::StudyError;
 use crate::plan::Plan;
@@ -26,18 +26,18 @@ pub struct CostLimits {
 pub fn estimated_time(plan: &Plan, threads: usize) -> Result<TimeRange, CaseError> {
     let mut time = TimeRange::default();
     // The time per block depends on the size of the lattice: a small one fits into the cache.
-    let mut per_step: HashMap<usize, TimeRange> = HashMap::new();
+    let mut per_step: HashMap<usize, StepTime> = HashMap::new();
     for run in plan.runs(1) {
         let (steps, n_blocks) = plan.cost(run);
         let of_step = match per_step.get(&n_blocks) {
             Some(&of_step) => of_step,
             None => {
-                let of_step = time_per_step(&plan.case(run, &mut |_| true)?);
+                let of_step = StepTime::of(&plan.case(run, &mut |_| true)?);
                 per_step.insert(n_blocks, of_step);
                 of_step
             }
         };
-        time = time + of_step * steps;
+        time = time + of_step.of_steps(&steps);
     }
     let replicates = plan.settings.min_replicates() as f64;
     Ok(time * (replicates / threads as f64))

@@ -16,7 +16,7 @@ use crate::work_memory::WorkMemory;
 use slipfront_base::machine::available_of;
 use slipfront_base::number_format::byte_size;
 use slipfront_base::text::display_path;
-use slipfront_case::case::{Case, PICTURES, PROGRAM, Ranks, Watch, key_of_body};
+use slipfront_case::case::{Case, ExpectedSteps, PICTURES, PROGRAM, Ranks, Watch, key_of_body};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 
 /// Every run that a study may need.
@@ -51,8 +51,8 @@ struct RunSpec {
     seed: u64,
     /// Hash of all that decides the numbers of a run, but for the seed.
     physics: blake3::Hash,
-    /// Fewest and most steps that are expected.
-    steps: [f64; 2],
+    /// Steps that are expected.
+    steps: ExpectedSteps,
     n_blocks: usize,
     /// Whether the drive stands while blocks slide, for steps that `steps` leave out.
     is_held: bool,
@@ -440,8 +440,8 @@ impl Plan {
         self.identity(run)[..12].to_owned()
     }
 
-    /// Fewest and most steps that are expected of a run, and its blocks: the measure of its cost.
-    pub fn cost(&self, run: RunKey) -> ([f64; 2], usize) {
+    /// Steps that are expected of a run, and its blocks: the measure of its cost.
+    pub fn cost(&self, run: RunKey) -> (ExpectedSteps, usize) {
         let spec = self.spec_of(run);
         (spec.steps, spec.n_blocks)
     }
@@ -449,8 +449,8 @@ impl Plan {
     /// Steps times blocks of all runs with the fewest replicates, at most.
     pub fn block_steps(&self) -> f64 {
         let of_run = |run| {
-            let ([_, most], n_blocks) = self.cost(run);
-            most * n_blocks as f64
+            let (expected, n_blocks) = self.cost(run);
+            expected.steps[1] * n_blocks as f64
         };
         self.settings.min_replicates() as f64 * self.runs(1).map(of_run).sum::<f64>()
     }

@@ -36,7 +36,7 @@ pub use self::model::TextureReport;
 pub use self::output::{MAX_MAPS, MAX_PICTURES, Output, Snapshots, mapped_field};
 pub use self::ranks::Ranks;
 pub use self::runnable::{Case, Expected};
-pub use self::speeds::LoadingSpeed;
+pub use self::speeds::{ExpectedSteps, LoadingSpeed};
 pub use self::stack::BulkBody;
 pub use self::time_plan::TimePlan;
 pub use self::topography::Topography;

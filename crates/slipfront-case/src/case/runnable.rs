@@ -16,6 +16,7 @@ use super::inputs::{Input, Inputs, NamedFiles};
 use super::model::{self, TextureReport};
 use super::output::Output;
 use super::ranks::Ranks;
+use super::speeds::ExpectedSteps;
 use super::textures;
 use super::time_plan::{TimePlan, auto_onset_end, load_factor};
 use crate::arrays::Slab;
@@ -259,16 +260,21 @@ impl Case {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }
 
-    /// Fewest and most steps that are expected, without those in which a held drive stands: all, or those to
-    /// the expected onset, within a tenth, where the onset ends the run.
-    pub fn expected_steps(&self) -> [f64; 2] {
+    /// Steps that are expected, without those in which a held drive stands: all, or those to the expected
+    /// onset, within a tenth, where the onset ends the run.
+    pub fn expected_steps(&self) -> ExpectedSteps {
         let plan = &self.time_plan;
         let last = plan.last_step as f64;
+        let front_ratio = self.front_ratio();
         if self.file.time.stop != StopReason::Onset || self.model.drive.is_held() {
-            return [last; 2];
+            return ExpectedSteps {
+                steps: [last; 2],
+                front_ratio,
+            };
         }
         let [early, late] = self.expected.onset_star;
-        [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last))
+        let steps = [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last));
+        ExpectedSteps { steps, front_ratio }
     }
 
     /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.

@@ -10,15 +10,45 @@ use crate::case_file::{DriveSpeed, TimeStep};
 /// drive adds to mu_s* at a speed that is slow enough, and as a share of drag in kinetic friction.
 const HALF_A_POINT: f64 = 0.005;
 
+/// Steps that a run is expected to take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedSteps {
+    /// Fewest and most steps.
+    pub steps: [f64; 2],
+    /// V* N, the time in which a slip front crosses the slider over that of loading.
+    pub front_ratio: f64,
+}
+
+impl ExpectedSteps {
+    /// Least and largest share of the steps in which blocks slide: slip takes a time of its own, however slow
+    /// the loading is between. In runs with V* N from 0.002 to 5 the share was about
+    ///
+    /// ```text
+    /// (V* N)^0.4 / 2
+    /// ```
+    ///
+    /// half or twice of it.
+    pub fn sliding_share(&self) -> [f64; 2] {
+        let share = 0.5 * libm::pow(self.front_ratio, 0.4);
+        [0.5, 2.0].map(|of_mean| (of_mean * share).min(1.0))
+    }
+
+    /// Steps for an equal path at the speed times a factor.
+    fn at_speed(self, factor: f64) -> Self {
+        Self {
+            steps: self.steps.map(|steps| (steps / factor).ceil()),
+            front_ratio: factor * self.front_ratio,
+        }
+    }
+}
+
 /// A speed of the drive, with the run of equal path that it takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadingSpeed {
     /// Speed over that of the case.
     pub over_given: f64,
-    /// Fewest and most time steps that are expected, see [`Case::expected_steps`].
-    pub steps: [f64; 2],
-    /// V* N, the time in which a slip front crosses the slider over that of loading.
-    pub front_ratio: f64,
+    /// Steps that are expected, see [`Case::expected_steps`].
+    pub steps: ExpectedSteps,
     /// Drag of the damping over kinetic friction without it.
     pub drag_share: f64,
 }
@@ -37,6 +67,11 @@ impl Case {
         }
     }
 
+    /// V* N, the time in which a slip front crosses the slider over that of loading.
+    pub fn front_ratio(&self) -> f64 {
+        self.model.speed_against_front() * self.blocks_along_drive().1
+    }
+
     /// Rise of mu* in a step in which a drive moves and nothing slides, k_s V* dt* for a spring of stiffness
     /// k_s on each block.
     pub fn rise_per_step(&self) -> f64 {
@@ -53,12 +88,10 @@ impl Case {
             && !matches!(file.drive.speed, DriveSpeed::Program(_))
             && file.time.step != TimeStep::Paper
             && !self.model.drive.is_held();
-        let front_ratio = self.model.speed_against_front() * self.blocks_along_drive().1;
         let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
         is_free.then(|| LoadingSpeed {
             over_given: 1.0,
             steps: self.expected_steps(),
-            front_ratio,
             drag_share: drag / (level - drag),
         })
     }
@@ -73,7 +106,7 @@ impl LoadingSpeed {
     }
 
     fn added_static(&self) -> f64 {
-        K_DRIVE * self.front_ratio
+        K_DRIVE * self.steps.front_ratio
     }
 
     /// Factor of the speed up to which the drive adds half a point to mu_s*, and drag no larger a share to
@@ -86,8 +119,7 @@ impl LoadingSpeed {
     pub fn times(self, factor: f64) -> Self {
         Self {
             over_given: factor * self.over_given,
-            steps: self.steps.map(|steps| (steps / factor).ceil()),
-            front_ratio: factor * self.front_ratio,
+            steps: self.steps.at_speed(factor),
             drag_share: factor * self.drag_share,
         }
     }

@@ -1,7 +1,7 @@
 //! `slipfront check`: the physics and the cost of a case, without running it.
 
 use clap::Args;
-use slipfront_run::estimate_cost::time_per_step;
+use slipfront_run::estimate_cost::StepTime;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
@@ -33,9 +33,9 @@ impl CheckCommand {
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
         if self.json {
-            return print(&report::text_of(&report::check(&case, time_per_step(&case))));
+            return print(&report::text_of(&report::check(&case, &StepTime::of(&case))));
         }
         print(&(report::physics(&case) + &report::lengths(&case)))?;
-        print(&report::cost(&case, time_per_step(&case)))
+        print(&report::cost(&case, &StepTime::of(&case)))
     }
 }

@@ -3,7 +3,7 @@
 use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
-use slipfront_run::estimate_cost::TimeRange;
+use slipfront_run::estimate_cost::{StepTime, TimeRange};
 use slipfront_run::times::instant;
 
 use super::speeds::Speeds;
@@ -12,10 +12,10 @@ use super::times::duration;
 
 /// The expected onset, the stability of the step, the cost, the speeds and the warnings; a step takes
 /// `per_step`.
-pub(crate) fn cost(case: &Case, per_step: TimeRange) -> String {
+pub(crate) fn cost(case: &Case, per_step: &StepTime) -> String {
     let (loading, _) = loading(case);
     let speeds = Speeds::of(case).map_or(String::new(), |speeds| speeds.text(case, per_step));
-    let time = per_step * case.expected_steps();
+    let time = per_step.of_steps(&case.expected_steps());
     onset(case) + &loading + &scales(case) + &resources(case, time) + &speeds + &notes(&warnings(case))
 }
 

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use slipfront_base::machine::available_memory;
 use slipfront_case::case::Case;
-use slipfront_run::estimate_cost::TimeRange;
+use slipfront_run::estimate_cost::{StepTime, TimeRange};
 
 use super::cost::warnings;
 use super::speeds::Speeds;
@@ -21,7 +21,7 @@ pub(super) fn seconds(time: TimeRange) -> [f64; 2] {
 /// The physics and the cost of a case, with the names of `summary.json` where that has the same number;
 /// a step takes `per_step`. A number that is not finite, such as the critical size of slip
 /// that is stable at any size, is null.
-pub(crate) fn check(case: &Case, per_step: TimeRange) -> Value {
+pub(crate) fn check(case: &Case, per_step: &StepTime) -> Value {
     let (groups, lattice, plan) = (&case.groups, &case.model.lattice, &case.time_plan);
     let budget = &case.budget;
     let bytes = |estimate: f64| estimate.ceil() as u64;
@@ -62,7 +62,9 @@ pub(crate) fn check(case: &Case, per_step: TimeRange) -> Value {
         "displacement_unit_m": case.scales.displacement(),
         "stress_unit_pa": case.scales.stress(),
         "block_steps": case.block_steps(),
-        "seconds": seconds(per_step * case.expected_steps()),
+        "seconds": seconds(per_step.of_steps(&case.expected_steps())),
+        "seconds_per_step_at_rest": seconds(per_step.at_rest),
+        "seconds_per_step_sliding": seconds(per_step.sliding),
         "speeds": Speeds::of(case).map(|speeds| speeds.json(case, per_step)),
         "memory_bytes": bytes(budget.memory()),
         "memory_available_bytes": available_memory().map(bytes),

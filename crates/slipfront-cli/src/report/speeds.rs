@@ -5,7 +5,7 @@ use slipfront::lattice::K_DRIVE;
 use slipfront_base::number_format::{exact, four_digits, with_si_prefix};
 use slipfront_case::case::{Case, LoadingSpeed};
 use slipfront_case::case_file::{Attached, AttachedEdge, AutoOr, DriveSpeed, RunTime};
-use slipfront_run::estimate_cost::TimeRange;
+use slipfront_run::estimate_cost::StepTime;
 use slipfront_study::text_table::table;
 
 use super::json::seconds;
@@ -36,8 +36,8 @@ impl Speeds {
         let given = case.loading_speed()?;
         let slow = given.times(rounded_down(case, given.factor_to_slow()));
         let held = rounded_down(case, HELD_RISE / case.rise_per_step());
-        let steps = given.times(held).steps[1];
-        let is_cheaper = can_be_held(case) && steps * HELD_IS_CHEAPER < slow.steps[1];
+        let steps = given.times(held).steps.steps[1];
+        let is_cheaper = can_be_held(case) && steps * HELD_IS_CHEAPER < slow.steps.steps[1];
         Some(Self {
             given,
             slow,
@@ -49,7 +49,7 @@ impl Speeds {
     fn all(&self) -> Vec<LoadingSpeed> {
         let is_listed = |speed: &LoadingSpeed| {
             let is_given = (speed.over_given - 1.0).abs() < 1e-6;
-            speed.front_ratio <= FASTEST && !is_given
+            speed.steps.front_ratio <= FASTEST && !is_given
         };
         let mut all = vec![self.given];
         all.extend(
@@ -63,7 +63,7 @@ impl Speeds {
     }
 
     /// The table and the line that names the slow speed; a step takes `per_step`.
-    pub(super) fn text(&self, case: &Case, per_step: TimeRange) -> String {
+    pub(super) fn text(&self, case: &Case, per_step: &StepTime) -> String {
         let rows: Vec<Vec<String>> = self
             .all()
             .iter()
@@ -84,7 +84,7 @@ impl Speeds {
         text += &format!(
             "slow loading      `{}`: {}; mu_s* within {} of slow loading in the mean of surfaces, drag {} of kinetic friction\n",
             self.setting(case, slow.over_given),
-            duration(per_step * slow.steps),
+            duration(per_step.of_steps(&slow.steps)),
             two_digits(slow.static_bound()),
             percent(slow.drag_share)
         );
@@ -98,14 +98,14 @@ impl Speeds {
         text
     }
 
-    fn row(&self, case: &Case, speed: &LoadingSpeed, per_step: TimeRange) -> Vec<String> {
+    fn row(&self, case: &Case, speed: &LoadingSpeed, per_step: &StepTime) -> Vec<String> {
         let mut row = vec![
             value(case, speed.over_given),
-            two_digits(speed.front_ratio),
+            two_digits(speed.steps.front_ratio),
             format!("<{}", two_digits(speed.static_bound())),
             percent(speed.drag_share),
-            steps_in_words(speed.steps[1]),
-            duration(per_step * speed.steps),
+            steps_in_words(speed.steps.steps[1]),
+            duration(per_step.of_steps(&speed.steps)),
         ];
         if speed == &self.given {
             row.push("as given".to_owned());
@@ -132,15 +132,15 @@ impl Speeds {
     }
 
     /// The speeds for programs.
-    pub(super) fn json(&self, case: &Case, per_step: TimeRange) -> Value {
+    pub(super) fn json(&self, case: &Case, per_step: &StepTime) -> Value {
         let speed = |speed: &LoadingSpeed| {
             json!({
                 "v_star": speed.over_given * case.groups.v_star,
-                "front_ratio": speed.front_ratio,
+                "front_ratio": speed.steps.front_ratio,
                 "static_friction_star_bound": speed.static_bound(),
                 "drag_over_kinetic": speed.drag_share,
-                "steps": speed.steps,
-                "seconds": seconds(per_step * speed.steps),
+                "steps": speed.steps.steps[1],
+                "seconds": seconds(per_step.of_steps(&speed.steps)),
             })
         };
         let all: Vec<Value> = self.all().iter().map(speed).collect();

@@ -16,14 +16,14 @@ fn case(changes: &[&str]) -> Case {
 #[test]
 fn a_speed_has_the_numbers_of_its_formulas() {
     let given = case(&["time.stop='end'"]).loading_speed().unwrap();
-    assert_eq!(given.steps, [2667.0; 2]);
+    assert_eq!(given.steps.steps, [2667.0; 2]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-3 * b;
-    assert!(near(given.front_ratio, 0.75));
+    assert!(near(given.steps.front_ratio, 0.75));
     assert!(near(given.static_bound(), 0.375 * 0.75 + 0.005));
     assert!(near(given.drag_share, 0.75_f64.sqrt() * 0.1 * 0.03 / 0.5));
     let slow = given.times(given.factor_to_slow());
     assert!(near(slow.static_bound(), 0.01) && slow.drag_share < 0.005);
-    assert!(near(slow.steps[0], 2667.0 * 0.375 * 0.75 / 0.005));
+    assert!(near(slow.steps.steps[0], 2667.0 * 0.375 * 0.75 / 0.005));
     // On soft springs the drag decides.
     let soft = case(&["drive.stiffness_star=1e-4"]).loading_speed().unwrap();
     let slow = soft.times(soft.factor_to_slow());
