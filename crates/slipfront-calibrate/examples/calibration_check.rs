@@ -30,13 +30,13 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use slipfront_calibrate::{
     Calibration, CalibrationStage, Clipped, Closest, Conditions, Predicted, RunMaker, SamplePoints, SetUp,
-    Training, Unknown, closest,
+    Training, closest,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::run_curve_unless;
-use slipfront_study::{Base, StudyFile};
+use slipfront_study::{Base, StudyFile, Unknown};
 
 use crate::random::{normal, uniform};
 use crate::velocity_steps::{KEYS, RANGES, SPACING, friction};

@@ -21,12 +21,11 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use slipfront_calibrate::{
     Calibration, CalibrationStage, Conditions, Curves, Estimate, RunMaker, SamplePoints, SetUp, Training,
-    Unknown,
 };
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
 use slipfront_run::measured::{Measure, MeasuredRecord};
-use slipfront_study::{Base, StudyFile};
+use slipfront_study::{Base, StudyFile, Unknown};
 
 use crate::random::{normal, uniform};
 

@@ -277,7 +277,7 @@ impl Calibration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unknowns::design_point;
+    use crate::design_point::design_point;
     use slipfront_run::measured::{Measure, MeasuredRecord};
 
     /// A curve with a slope and a level that the slope leads to, both known, and a number that no curve

@@ -14,14 +14,14 @@ use slipfront_run::instrument::{HELD_DRIVE, Instrument};
 use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::names::RUN_JOURNAL;
 use slipfront_run::run_curve::steps_to;
-use toml::{Table, Value};
+use toml::Table;
 
 use crate::doubts::doubts;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, MOST_HALVINGS, SetUp};
 use crate::summaries::{MIN_VALUES, n_summaries};
-use crate::unknowns::Unknown;
 use slipfront_study::StudyError;
+use slipfront_study::Unknown;
 use slipfront_study::axis::overrides;
 use slipfront_study::measured_columns::MeasuredColumns;
 use slipfront_study::project_file::ProjectFile;
@@ -129,37 +129,6 @@ struct RecordKeys {
     shift: Option<String>,
     from: Option<String>,
     to: Option<String>,
-}
-
-/// The range of an unknown.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum RangeKeys {
-    Ends([Number; 2]),
-    Scaled(ScaledKeys),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ScaledKeys {
-    from: Number,
-    to: Number,
-    scale: Scale,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Scale {
-    Linear,
-    Log,
-}
-
-/// A number, or one with a unit.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Number {
-    Plain(f64),
-    WithUnit(String),
 }
 
 /// A record as measured, and the steps in which it is compared.
@@ -277,38 +246,10 @@ impl CalibrationFile {
         self.keys
             .unknowns
             .iter()
-            .map(|(key, range)| self.unknown(key, range))
+            .map(|(key, range)| {
+                Unknown::read(key, range).map_err(|sentence| self.project.error("unknowns", sentence))
+            })
             .collect()
-    }
-
-    fn unknown(&self, key: &str, range: &Value) -> Result<Unknown, CaseError> {
-        let refuse = |sentence: String| self.project.error("unknowns", sentence);
-        let Ok(keys) = range.clone().try_into::<RangeKeys>() else {
-            return Err(refuse(format!(
-                "the range of `{key}` is written [0.3, 0.9], [\"1 um\", \"5 um\"] or {{ from = 0.03, to = 0.5, scale = \"log\" }}"
-            )));
-        };
-        let (ends, is_logarithmic) = match keys {
-            RangeKeys::Ends(ends) => (ends, false),
-            RangeKeys::Scaled(ScaledKeys { from, to, scale }) => ([from, to], matches!(scale, Scale::Log)),
-        };
-        let [(from, unit), (to, other)] = ends.map(Number::parted);
-        let (Some(from), Some(to)) = (from, to) else {
-            return Err(refuse(format!(
-                "the range of `{key}` has ends that are no numbers"
-            )));
-        };
-        if unit != other {
-            return Err(refuse(format!(
-                "the ends of the range of `{key}` differ in their units"
-            )));
-        }
-        let unknown = Unknown::new(key, from, to, is_logarithmic);
-        let unknown = unknown.map_err(|error| refuse(error.to_string()))?;
-        Ok(match unit {
-            Some(unit) => unknown.in_unit(&unit),
-            None => unknown,
-        })
     }
 
     /// Reads records, one for each of `records` in the file, or any number if it has none.
@@ -551,19 +492,6 @@ impl CalibrationFile {
             .records
             .get(record)
             .map_or_else(Vec::new, |record| overrides(&record.set))
-    }
-}
-
-impl Number {
-    /// The number, and the unit.
-    fn parted(self) -> (Option<f64>, Option<String>) {
-        match self {
-            Self::Plain(number) => (Some(number), None),
-            Self::WithUnit(text) => match text.trim().split_once(' ') {
-                Some((number, unit)) => (number.parse().ok(), Some(unit.trim().to_owned())),
-                None => (text.trim().parse().ok(), None),
-            },
-        }
     }
 }
 

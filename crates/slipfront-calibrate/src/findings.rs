@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::calibration::Estimate;
 use crate::intervals::Distribution;
 use crate::record_check::RecordCheck;
-use crate::unknowns::Unknown;
+use slipfront_study::Unknown;
 
 /// Probability of the intervals.
 pub(crate) const CONFIDENCE: f64 = 0.9;

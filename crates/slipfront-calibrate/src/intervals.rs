@@ -62,8 +62,8 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::design_point::design_point;
     use crate::normals::{Stream, normals};
-    use crate::unknowns::design_point;
 
     #[test]
     fn quantiles_of_weighted_values() {

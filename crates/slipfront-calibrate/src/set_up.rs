@@ -8,8 +8,8 @@ use slipfront_run::instrument::{Instrument, InstrumentError, InstrumentKeys};
 use slipfront_run::run_curve::{run_curve_unless, steps_to};
 
 use crate::sample_points::SamplePoints;
-use crate::unknowns::Unknown;
 use slipfront_study::Base;
+use slipfront_study::Unknown;
 use slipfront_study::identity::physics;
 use slipfront_study::{StudyError, TrainingError};
 
@@ -42,6 +42,12 @@ pub struct SetUp {
     pub halvings: u32,
 }
 
+/// The key of the table `[instrument]` that is unknown, and its value at a share of the range; none for a key
+/// of the case.
+fn of_instrument(unknown: &Unknown, share: f64) -> Option<(&str, toml::Value)> {
+    Some((unknown.key().strip_prefix("instrument.")?, unknown.written(share)))
+}
+
 /// Friction without noise, for every record.
 pub type Curves = Vec<Vec<f64>>;
 
@@ -49,7 +55,7 @@ impl SetUp {
     /// Settings of the unknown keys of the case at these shares of the ranges.
     pub(crate) fn set_to(&self, shares: &[f64]) -> Vec<Override> {
         let values = self.unknowns.iter().zip(shares);
-        let of_case = values.filter(|(unknown, share)| unknown.of_instrument(**share).is_none());
+        let of_case = values.filter(|(unknown, share)| of_instrument(unknown, **share).is_none());
         of_case.map(|(unknown, &share)| unknown.set_to(share)).collect()
     }
 
@@ -65,7 +71,7 @@ impl SetUp {
     ) -> Result<Option<Instrument>, InstrumentError> {
         let values = self.unknowns.iter().zip(shares);
         let unknown: toml::Table = values
-            .filter_map(|(unknown, &share)| unknown.of_instrument(share))
+            .filter_map(|(unknown, &share)| of_instrument(unknown, share))
             .map(|(key, value)| (key.to_owned(), value))
             .collect();
         if self.instrument.is_none() && unknown.is_empty() {

@@ -2,10 +2,10 @@
 
 use slipfront_study::StudyError;
 
+use crate::design_point::design_point;
 use crate::progress::CalibrationStage;
 use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, SetUp};
-use crate::unknowns::design_point;
 
 /// Number of the surface of the first run.
 const FIRST_SURFACE: u64 = 1;
@@ -58,8 +58,8 @@ mod tests {
     use super::*;
     use crate::sample_points::SamplePoints;
     use crate::set_up::Conditions;
-    use crate::unknowns::Unknown;
     use slipfront_study::StudyFile;
+    use slipfront_study::Unknown;
 
     /// A set-up with two speeds of a small slider, along a path of the drive in units of length.
     fn set_up(range: [f64; 2], path: f64) -> SetUp {

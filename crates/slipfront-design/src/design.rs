@@ -12,8 +12,10 @@ use crate::judge::{Contender, Judge};
 use crate::limits::{Illegal, Limits};
 use crate::named::{GROOVE, Named, named};
 use crate::open_search::OpenSearch;
-use crate::search::Search;
+use crate::search::{Proposal, Search};
+use crate::shapes::Shapes;
 use crate::slider_blocks::SliderBlocks;
+use crate::space::Space;
 use crate::stages::{Bounds, DesignStage, RunCost, SearchLength, SearchProgress, Stages, Tried};
 use crate::subject::{Fidelity, Subject};
 use crate::verdict::Verdict;
@@ -29,6 +31,8 @@ pub struct Design {
     start: u64,
     /// Masks with which the search also begins, and their names.
     drawn: Vec<(String, Vec<bool>)>,
+    /// The shapes whose numbers are searched for, in place of masks.
+    pub(crate) shapes: Option<Arc<Shapes>>,
 }
 
 /// Result of a search.
@@ -36,6 +40,8 @@ pub struct Design {
 pub struct Outcome {
     /// Textured blocks of the design.
     pub texture: Arc<Vec<bool>>,
+    /// Shares of the ranges of the unknowns, if numbers were searched for.
+    pub(crate) shares: Option<Vec<f64>>,
     /// Verdict on the design.
     pub verdict: Verdict,
     /// Every texture that was judged, by its name, the design first.
@@ -74,7 +80,14 @@ impl Design {
             limits,
             start,
             drawn: Vec::new(),
+            shapes: None,
         })
+    }
+
+    /// Searches for numbers of shapes in place of masks; named patterns and masks are compared with what is
+    /// found, and are no answer.
+    pub(crate) fn vary(&mut self, shapes: Shapes) {
+        self.shapes = Some(Arc::new(shapes));
     }
 
     /// Lets the search begin with a mask too, or with what is legal of it; it counts as a named pattern, and
@@ -92,10 +105,10 @@ impl Design {
             }
             let illegal = limits.check(grid, textured).err()?;
             let named = Named::drawn(grid, name, textured);
-            let made = if limits.texture(grid, &named.draft).is_some() {
-                "the search begins with what is legal of it, which has its name here"
-            } else {
-                "nothing legal is left of it, and it was left out"
+            let made = match limits.texture(grid, &named.draft) {
+                Some(_) if self.shapes.is_some() => "what is legal of it is judged, and has its name here",
+                Some(_) => "the search begins with what is legal of it, which has its name here",
+                None => "nothing legal is left of it, and it was left out",
             };
             Some(format!("the {name} breaks a limit: {illegal}; {made}"))
         };
@@ -120,13 +133,14 @@ impl Design {
             .map(|(named, texture)| Contender {
                 name: named.name.clone(),
                 texture: texture.into(),
+                shapes: None,
             })
             .collect();
         let is_drawn = |named: &Contender| self.drawn.iter().any(|(name, _)| *name == named.name);
         let groove = legal.iter().filter(|named| named.name == GROOVE);
         let drawn = legal.iter().filter(|named| is_drawn(named));
         let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
-        let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
+        let mut stages = Stages::new(&self.evaluator, self.search_from(starts));
         let (of, of_work) = Judge::most_runs(&self.evaluator, legal.len(), beside.len());
         let (made, here) = (Cell::new(0), Cell::new(0.0));
         let mut kept = |runs: &[MadeRun]| {
@@ -144,13 +158,16 @@ impl Design {
             });
         })?;
         let textures = stages.n_textures();
-        let searched: Vec<Contender> = best
-            .into_iter()
-            .map(|texture| Contender {
+        let contender = |found: &Proposal| {
+            let shapes = self.shapes.as_ref().zip(found.shares());
+            let shapes = shapes.map(|(shapes, shares)| shapes.textures(&shares));
+            Ok(Contender {
                 name: "design".to_owned(),
-                texture,
+                texture: Arc::clone(&found.texture),
+                shapes: shapes.transpose()?.map(Arc::new),
             })
-            .collect();
+        };
+        let searched: Vec<Contender> = best.iter().map(contender).collect::<Result<_, StudyError>>()?;
         let (searched_runs, searched_work) = (made.get(), here.get());
         let mut kept = |runs: &[MadeRun]| {
             kept(runs)?;
@@ -162,6 +179,7 @@ impl Design {
                 stage: DesignStage::Judging,
                 best: f64::NAN,
                 best_texture: None,
+                best_shares: None,
                 work: RunCost {
                     here: here.get(),
                     left: (of_work - (here.get() - searched_work)).max(0.0),
@@ -172,11 +190,14 @@ impl Design {
         let judge = Judge {
             evaluator: &self.evaluator,
             stop: bounds.stop,
+            asks_for_numbers: self.shapes.is_some(),
         };
         let judged = judge
             .verdict(&searched, &legal, &beside, known, &mut kept)?
             .ok_or(StudyError::NoDesign)?;
+        let winner = best.iter().find(|found| found.texture == judged.texture);
         Ok(Outcome {
+            shares: winner.and_then(Proposal::shares),
             texture: judged.texture,
             verdict: judged.verdict,
             compared: judged.compared,
@@ -195,12 +216,24 @@ impl Design {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         let starts = self.starts(&|| bounds.stop.load(Ordering::Relaxed)).0;
-        let mut stages = Stages::new(&self.evaluator, self.limits.clone(), self.start, starts);
+        let mut stages = Stages::new(&self.evaluator, self.search_from(starts));
         let best = stages.run(bounds, &mut RunCache::new(), &mut |_| Ok(()), watch)?;
         if best.is_empty() {
             return Err(StudyError::NoDesign);
         }
-        Ok(best)
+        Ok(best.into_iter().map(|found| found.texture).collect())
+    }
+
+    /// A search that begins with patterns, if it is for masks.
+    fn search_from(&self, starts: Vec<Named>) -> Search {
+        let (space, starts) = match &self.shapes {
+            Some(shapes) => (Space::shapes(Arc::clone(shapes)), Vec::new()),
+            None => {
+                let (grid, limits) = (self.evaluator.grid.clone(), self.limits.clone());
+                (Space::patches(grid, limits), starts)
+            }
+        };
+        Search::new(space, self.limits.feature, self.start, starts)
     }
 
     /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer
@@ -217,8 +250,7 @@ impl Design {
 
     /// A search whose runs the caller makes.
     pub fn open_search(&self) -> OpenSearch {
-        let (grid, limits) = (self.evaluator.grid.clone(), self.limits.clone());
-        OpenSearch::new(Search::new(grid, limits, self.start, self.starts(&|| false).0))
+        OpenSearch::new(self.search_from(self.starts(&|| false).0))
     }
 
     /// Checks that a texture is legal.

@@ -14,9 +14,12 @@ use toml::{Table, Value};
 
 use crate::design::Design;
 use crate::limits::Limits;
+use crate::shapes::Shapes;
 use crate::slider_blocks::SliderBlocks;
+use crate::subject::Subject;
 use crate::wish::{Quantity, Wish};
 use slipfront_study::StudyError;
+use slipfront_study::Unknown;
 use slipfront_study::axis::overrides;
 use slipfront_study::measured_columns::MeasuredColumns;
 use slipfront_study::project_file::ProjectFile;
@@ -86,6 +89,10 @@ key_rows! {
         pub runs: u32 = key("10000", whole(1, MAX_RUNS as u64)),
         /// Seed of the random drafts: another one is another search.
         start: u64 = key("1", KeyKind::Special("0 and more")),
+        /// Numbers of the textures of the base that are searched for in place of a mask, each with its range:
+        /// `{ "texture.0.lambda" = ["2 um", "6 um"] }`.
+        unknowns: Table = key("{}", KeyKind::Special("keys of textures")).without("none")
+            .note("[See below](#unknowns)."),
         /// Textures with which the search begins in addition to named patterns: a list of lists, each as
         /// `[[texture]]` of a case file. They are judged too, however good they are; of one that breaks a
         /// limit the search takes what is legal, and a note says so.
@@ -228,6 +235,11 @@ impl DesignFile {
                             `load.redistribute` = { within = \"...\" } in the base, about twice the width of a feature";
             return Err(self.project.error("base", sentence.to_owned()));
         }
+        if is_stack && !self.keys.unknowns.is_empty() && case.file.slider.longest_wave.is_none() {
+            let sentence = "the sheets of a bulk body follow from the pitch of its texture, which is designed: give `slider.longest_wave` \
+                            in the base, the largest pitch, so that all drafts stand on one body";
+            return Err(self.project.error("base", sentence.to_owned()));
+        }
         Ok(case)
     }
 
@@ -326,7 +338,8 @@ impl DesignFile {
         }
         let wished = cases.iter().map(|case| Ok((case, self.wish(case, &grid)?)));
         let wished: Vec<(&Case, Wish)> = wished.collect::<Result<_, StudyError>>()?;
-        let mut design = Design::new(&wished, keys.judge_by == JudgeBy::Worst, limits, keys.start)?;
+        let is_worst = keys.judge_by == JudgeBy::Worst;
+        let mut design = Design::new(&wished, is_worst, limits.clone(), keys.start)?;
         for (k, textures) in keys.starts.iter().enumerate() {
             let textured = self.textured("starts", textures)?;
             design.begin_with(format!("start {} of the file", k + 1), textured);
@@ -334,7 +347,26 @@ impl DesignFile {
         if base.model.surface.texture_percent() > 0.0 {
             design.begin_with("texture of the case".to_owned(), textured_blocks(&base));
         }
+        if !keys.unknowns.is_empty() {
+            let subject = Subject::new(&base, Wish::Least(Quantity::StaticFriction), limits.coverage[1])?;
+            let shapes = Shapes::new(self.unknowns()?, &base, subject, grid, limits);
+            design.vary(shapes.map_err(|error| self.project.found_in("unknowns", error))?);
+        }
         Ok(design)
+    }
+
+    /// The unknown numbers of textures.
+    fn unknowns(&self) -> Result<Vec<Unknown>, CaseError> {
+        let refuse = |sentence: String| self.project.error("unknowns", sentence);
+        let unknown = |(key, range): (&String, &Value)| {
+            if !key.starts_with("texture.") {
+                return Err(refuse(format!(
+                    "the unknown `{key}` is no key of a texture: name one of the base as `--set` does, such as \"texture.0.lambda\""
+                )));
+            }
+            Unknown::read(key, range).map_err(refuse)
+        };
+        self.keys.unknowns.iter().map(unknown).collect()
     }
 
     /// The limits in blocks.

@@ -2,6 +2,7 @@
 //! reads it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use serde::Deserialize;
@@ -127,15 +128,18 @@ impl DesignFolder {
     ) -> Result<Outcome, StudyError> {
         let mut best = None;
         let mut watch = |now: &SearchProgress| {
-            best = now.best_texture.clone().or(best.take());
+            if let Some(texture) = &now.best_texture {
+                best = Some((Arc::clone(texture), now.best_shares.clone()));
+            }
             watch(now);
         };
         let found = self.judged(design, bounds, &mut watch);
-        if let (Err(StudyError::Interrupted), Some(best)) = (&found, best)
+        if let (Err(StudyError::Interrupted), Some((best, shares))) = (&found, best)
             && !self.has_verdict()
         {
             let mut batch = self.files.begin();
-            self.report(&mut batch).write_mask(design, &best)?;
+            self.report(&mut batch)
+                .write_texture(design, &best, shares.as_deref())?;
             batch.place_so_far(Others::Stay)?;
         }
         found

@@ -1,11 +1,11 @@
 //! A front: the best value of a wish for several coverages.
 
-use serde::Serialize;
 use slipfront_base::number_format::four_digits;
 use slipfront_base::text::{COLUMNS, note};
 use slipfront_plot::{Response, Responses};
 
 use crate::design::{Design, Outcome};
+use crate::numbers::{FoundNumber, columns_of_unknowns, numbers_at, numbers_found};
 use crate::report::Report;
 use slipfront_study::StudyError;
 use slipfront_study::text_table::table;
@@ -13,17 +13,16 @@ use slipfront_study::text_table::table;
 /// Table and pictures of a front.
 const FRONT: &str = "front";
 
-/// A row of `front.csv`.
-#[derive(Serialize)]
-struct Row<'a> {
-    coverage_limit_percent: f64,
-    coverage_percent: f64,
-    loss: f64,
-    loss_half_width: Option<f64>,
-    static_friction_star: f64,
-    static_friction_star_half_width: Option<f64>,
-    design: &'a str,
-}
+/// Columns of `front.csv` before those of the unknowns.
+const COLUMNS_OF_FRONT: [&str; 7] = [
+    "coverage_limit_percent",
+    "coverage_percent",
+    "loss",
+    "loss_half_width",
+    "static_friction_star",
+    "static_friction_star_half_width",
+    "design",
+];
 
 impl Report<'_> {
     /// Writes a front as a table and a picture, and returns it as a text; of a coverage that no texture keeps
@@ -53,18 +52,23 @@ impl Report<'_> {
         let surfaces = outcome.verdict.surfaces;
         self.batch.write(&format!("{FRONT}.csv"), |to| {
             let mut table = csv::Writer::from_writer(to);
-            for (limit, (_, Outcome { verdict, .. })) in &designs {
+            let header = COLUMNS_OF_FRONT.map(str::to_owned).into_iter();
+            table
+                .write_record(header.chain(columns_of_unknowns(first)))
+                .map_err(std::io::Error::from)?;
+            for (limit, (design, Outcome { verdict, shares, .. })) in &designs {
                 let friction = verdict.design.cases[0].static_friction_star;
                 table
-                    .serialize(Row {
-                        coverage_limit_percent: **limit,
-                        coverage_percent: verdict.design.coverage_percent,
-                        loss: verdict.design.loss,
-                        loss_half_width: verdict.design.loss_half_width,
-                        static_friction_star: friction.mean,
-                        static_friction_star_half_width: friction.half_width,
-                        design: &verdict.design.name,
-                    })
+                    .serialize((
+                        limit,
+                        verdict.design.coverage_percent,
+                        verdict.design.loss,
+                        verdict.design.loss_half_width,
+                        friction.mean,
+                        friction.half_width,
+                        &verdict.design.name,
+                        numbers_at(design, shares.as_deref()),
+                    ))
                     .map_err(std::io::Error::from)?;
             }
             table.flush()
@@ -72,12 +76,13 @@ impl Report<'_> {
         let mut curve = Response::default();
         let mut rows = Vec::new();
         for (limit, found) in front {
-            let Some((_, Outcome { verdict, .. })) = found else {
+            let Some((searched, Outcome { verdict, shares, .. })) = found else {
                 let none = ["-", "-", "no texture keeps the limits"].map(str::to_owned);
                 rows.push([vec![format!("{} %", four_digits(*limit))], none.to_vec()].concat());
                 continue;
             };
             let design = &verdict.design;
+            let numbers = numbers_found(searched, shares.as_deref());
             let half = design.loss_half_width.unwrap_or(f64::NAN);
             let ends = [design.loss - half, design.loss + half].map(|loss| wish.told(loss));
             curve.x.push(design.coverage_percent);
@@ -88,7 +93,15 @@ impl Report<'_> {
                 format!("{} %", four_digits(*limit)),
                 format!("{} %", four_digits(design.coverage_percent)),
                 format!("{}{}", four_digits(wish.told(design.loss)), wish.loss_unit()),
-                design.name.clone(),
+                if numbers.is_empty() {
+                    design.name.clone()
+                } else {
+                    numbers
+                        .iter()
+                        .map(FoundNumber::told)
+                        .collect::<Vec<_>>()
+                        .join(", ")
+                },
             ]);
         }
         let picture = slipfront_plot::response(&Responses {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
+use slipfront_case::case_file::Texture;
 
 use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::stages::Stages;
@@ -26,6 +27,8 @@ pub(crate) struct Contender {
     pub(crate) name: String,
     /// Blocks of the texture.
     pub(crate) texture: Arc<Vec<bool>>,
+    /// Shapes that the blocks were meshed from, if they were.
+    pub(crate) shapes: Option<Arc<Vec<Texture>>>,
 }
 
 /// A mean over surfaces with its uncertainty.
@@ -89,6 +92,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) evaluator: &'a Evaluator,
     /// Flag that ends all runs.
     pub(crate) stop: &'a AtomicBool,
+    /// Whether the answer is what was searched for, even where a named pattern is as good: it has no numbers.
+    pub(crate) asks_for_numbers: bool,
 }
 
 impl Judge<'_> {

@@ -1,8 +1,8 @@
-//! From a wish to a texture: the search for a mask with the wished friction, within limits, and the verdict
-//! on it.
+//! From a wish to a texture: the search for a mask, or for the numbers of shapes, with the wished friction,
+//! within limits, and the verdict on it.
 //!
 //! ```text
-//! wish, limits -> drafts of patches -> masks -> runs on one surface -> the best on several -> the verdict on fresh ones
+//! wish, limits -> drafts of patches, or numbers -> masks -> runs on one surface -> the best on several -> the verdict on fresh ones
 //! ```
 //!
 //! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on
@@ -16,12 +16,16 @@ mod front;
 mod judge;
 mod limits;
 mod named;
+mod numbers;
 mod open_search;
 mod patch;
+mod ranges;
 mod report;
 mod search;
 mod sensitivity;
+mod shapes;
 mod slider_blocks;
+mod space;
 mod stages;
 mod start;
 mod subject;

@@ -2,7 +2,7 @@
 
 use slipfront_base::number_format::{are, count as count_of};
 
-use crate::patch::Draft;
+use crate::patch::PatchDraft;
 use crate::slider_blocks::{SliderBlocks, count};
 
 /// Limits of a design, in blocks.
@@ -116,7 +116,7 @@ impl Limits {
 
     /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest
     /// legal texture within the coverage of the draft; none if there is none.
-    pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &Draft) -> Option<Vec<bool>> {
+    pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &PatchDraft) -> Option<Vec<bool>> {
         let growth = self.growth(grid, draft);
         let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
         levels.sort_unstable_by(f64::total_cmp);
@@ -145,7 +145,7 @@ impl Limits {
 
     /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must
     /// touch.
-    fn growth(&self, grid: &SliderBlocks, draft: &Draft) -> Vec<f64> {
+    fn growth(&self, grid: &SliderBlocks, draft: &PatchDraft) -> Vec<f64> {
         let of_draft = draft.growth(grid);
         let mut growth = vec![f64::INFINITY; of_draft.len()];
         for (block, value) in of_draft.into_iter().enumerate() {
@@ -228,6 +228,7 @@ mod tests {
     use crate::named::named;
     use crate::search::Search;
     use crate::slider_blocks::tests::{drawn, whole};
+    use crate::space::Space;
 
     #[test]
     fn every_limit_is_told_by_what_breaks_it() {
@@ -280,7 +281,12 @@ mod tests {
             max_features: Some(0),
             ..Limits::default()
         };
-        let mut search = Search::new(whole([8, 8], [false; 2]), limits, 1, Vec::new());
+        let mut search = Search::new(
+            Space::patches(whole([8, 8], [false; 2]), limits),
+            1,
+            1,
+            Vec::new(),
+        );
         assert!(search.ask(8, &|| false).is_empty());
     }
 
@@ -321,7 +327,8 @@ mod tests {
                     .map(|(named, _)| named)
                     .collect()
             };
-            let mut twins = [0; 2].map(|_| Search::new(grid.clone(), limits.clone(), 5, starts()));
+            let mut twins =
+                [0; 2].map(|_| Search::new(Space::patches(grid.clone(), limits.clone()), 2, 5, starts()));
             let mut seen = std::collections::HashSet::new();
             for _ in 0..4 {
                 let [asked, again] = twins.each_mut().map(|search| search.ask(24, &|| false));

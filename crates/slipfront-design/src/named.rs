@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::limits::Limits;
-use crate::patch::{Draft, Form, Patch};
+use crate::patch::{Form, Patch, PatchDraft};
 use crate::slider_blocks::{SliderBlocks, count};
 
 /// A pattern and its name.
@@ -12,7 +12,7 @@ pub(crate) struct Named {
     /// Name of the pattern.
     pub(crate) name: String,
     /// Draft of the pattern.
-    pub(crate) draft: Draft,
+    pub(crate) draft: PatchDraft,
 }
 
 impl Named {
@@ -20,7 +20,7 @@ impl Named {
     pub(crate) fn drawn(grid: &SliderBlocks, name: &str, textured: &[bool]) -> Self {
         Self {
             name: name.to_owned(),
-            draft: Draft::drawn(grid, textured),
+            draft: PatchDraft::drawn(grid, textured),
         }
     }
 }
@@ -120,7 +120,7 @@ fn shifted(grid: &SliderBlocks, percent: f64, shift: f64) -> Vec<Named> {
     ];
     let pattern = |(name, patches): (&str, Vec<Patch>)| Named {
         name: name.to_owned(),
-        draft: Draft {
+        draft: PatchDraft {
             patches,
             drawn: None,
             percent,

@@ -75,9 +75,9 @@ fn rounded(growth: f64) -> f64 {
     (growth * 1e6).round() * 1e-6
 }
 
-/// A draft of a texture.
+/// A draft of a texture that patches make.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Draft {
+pub(crate) struct PatchDraft {
     /// Patches of the draft.
     pub(crate) patches: Vec<Patch>,
     /// Growth by which a texture that was drawn block by block holds each block, in blocks, if the draft
@@ -87,7 +87,7 @@ pub(crate) struct Draft {
     pub(crate) percent: f64,
 }
 
-impl Draft {
+impl PatchDraft {
     /// A texture that was drawn block by block.
     pub(crate) fn drawn(grid: &SliderBlocks, textured: &[bool]) -> Self {
         Self {
@@ -156,7 +156,7 @@ mod tests {
     use crate::slider_blocks::tests::whole;
 
     fn of(patch: Patch, grid: &SliderBlocks) -> Vec<f64> {
-        let draft = Draft {
+        let draft = PatchDraft {
             patches: vec![patch],
             drawn: None,
             percent: 100.0,

@@ -19,6 +19,7 @@ use slipfront_run::running;
 use crate::design::{Design, Outcome};
 use crate::file::DesignFile;
 use crate::judge::Mean;
+use crate::numbers::{FoundNumber, columns_of_unknowns, numbers_at, numbers_found, table_of_numbers};
 use crate::stages::{SearchLength, Tried};
 use crate::subject::{Fidelity, MASK, masked};
 use crate::verdict::{FreshValues, OnFresh, Verdict};
@@ -58,23 +59,24 @@ pub(crate) struct AsMeshed {
 #[derive(Serialize)]
 struct DesignJson<'a> {
     search: SearchLength,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unknowns: Vec<FoundNumber>,
     as_meshed: &'a AsMeshed,
     #[serde(flatten)]
     verdict: &'a Verdict,
     version: &'static str,
 }
 
-/// A row of `evaluations.csv`.
-#[derive(Serialize)]
-struct Row<'a> {
-    number: usize,
-    stage: &'static str,
-    origin: &'a str,
-    coverage_percent: f64,
-    loss: f64,
-    texture: String,
-    lost: &'a str,
-}
+/// Columns of `evaluations.csv` before those of the unknowns.
+const COLUMNS_OF_DRAFTS: [&str; 7] = [
+    "number",
+    "stage",
+    "origin",
+    "coverage_percent",
+    "loss",
+    "texture",
+    "lost",
+];
 
 /// Writer of the results of a design.
 pub(crate) struct Report<'a> {
@@ -93,7 +95,8 @@ impl Report<'_> {
     /// When the system refuses to write, or a picture cannot be drawn.
     pub(crate) fn write(&mut self, design: &Design, outcome: &Outcome) -> Result<String, StudyError> {
         let texture = outcome.texture.as_slice();
-        let case = self.write_mask(design, texture)?;
+        let shares = outcome.shares.as_deref();
+        let case = self.write_texture(design, texture, shares)?;
         for ending in MASK_ENDINGS {
             let name = format!("mask.{ending}");
             let (bytes, _) = texture_file::contents(&case, Path::new(&name), None)?;
@@ -106,6 +109,7 @@ impl Report<'_> {
         let [numbers, words] = VERDICT;
         let written = DesignJson {
             search: outcome.length,
+            unknowns: numbers_found(design, shares),
             as_meshed: &as_meshed,
             verdict: &outcome.verdict,
             version: env!("CARGO_PKG_VERSION"),
@@ -117,18 +121,28 @@ impl Report<'_> {
         Ok(text)
     }
 
-    /// Writes a mask, and the cases that read it; returns the first of these.
-    pub(crate) fn write_mask(&mut self, design: &Design, texture: &[bool]) -> Result<Case, StudyError> {
+    /// Writes a texture as a mask, and the cases that have it, with its shapes if their numbers are known by
+    /// the shares of their ranges; returns the first of these.
+    pub(crate) fn write_texture(
+        &mut self,
+        design: &Design,
+        texture: &[bool],
+        shares: Option<&[f64]>,
+    ) -> Result<Case, StudyError> {
         let [nx, ny] = design.evaluator.grid.size();
         self.batch
             .write(MASK, |to| to.write_all(&npy_of_mask(nx, texture)))?;
         let path = self.path.join(PICTURE);
         let picture = png_of_mask(nx, ny, texture).map_err(|source| StudyError::Write { path, source })?;
         self.batch.write(PICTURE, |to| to.write_all(&picture))?;
+        // A picture is laid over every mesh; an array belongs to its blocks.
+        let textures = match design.shapes.as_ref().zip(shares) {
+            Some((shapes, shares)) => shapes.textures(shares)?,
+            None => vec![masked(PICTURE)],
+        };
         let mut first = None;
         for (k, Case { mut file, .. }) in self.file.cases()?.into_iter().enumerate() {
-            // A picture is laid over every mesh; an array belongs to its blocks.
-            file.texture = vec![masked(PICTURE)];
+            file.texture.clone_from(&textures);
             let text = file.to_toml()?;
             self.batch
                 .write(&case_name(k), |to| to.write_all(text.as_bytes()))?;
@@ -227,6 +241,8 @@ impl Report<'_> {
     fn in_words(&self, design: &Design, outcome: &Outcome, as_meshed: &AsMeshed, case: &Case) -> String {
         let (wish, verdict) = (design.evaluator.wish(), &outcome.verdict);
         let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
+        let numbers = numbers_found(design, outcome.shares.as_deref());
+        text += &table_of_numbers(&numbers);
         text += &on_fresh(wish, verdict);
         text += &if design.evaluator.scatters() {
             format!(
@@ -275,6 +291,7 @@ impl Report<'_> {
         let sentences = losses(&outcome.tried, verdict)
             .into_iter()
             .chain(design.notes())
+            .chain(numbers.iter().filter_map(FoundNumber::at_an_end))
             .chain(thick);
         text.extend(sentences.map(|sentence| note(&sentence, COLUMNS)));
         let lengths = case.file.lengths_of_a_block();
@@ -303,21 +320,25 @@ fn case_name(k: usize) -> String {
 /// Writes a row for every draft that was tried.
 fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_writer(to);
+    let header = COLUMNS_OF_DRAFTS.map(str::to_owned).into_iter();
+    table.write_record(header.chain(columns_of_unknowns(design)))?;
     for (k, tried) in outcome.tried.iter().enumerate() {
         let hash = blake3::Hash::from_bytes(crate::search::hash(&tried.texture));
-        table.serialize(Row {
-            number: k + 1,
-            stage: if tried.is_refined {
-                "several surfaces"
-            } else {
-                "one surface"
-            },
-            origin: &tried.origin,
-            coverage_percent: design.evaluator.grid.percent(&tried.texture),
-            loss: tried.loss,
-            texture: hash.to_hex()[..16].to_owned(),
-            lost: tried.lost.as_deref().unwrap_or_default(),
-        })?;
+        let stage = if tried.is_refined {
+            "several surfaces"
+        } else {
+            "one surface"
+        };
+        table.serialize((
+            k + 1,
+            stage,
+            &tried.origin,
+            design.evaluator.grid.percent(&tried.texture),
+            tried.loss,
+            &hash.to_hex()[..16],
+            tried.lost.as_deref().unwrap_or_default(),
+            numbers_at(design, tried.shares.as_deref()),
+        ))?;
     }
     Ok(table.flush()?)
 }
@@ -367,6 +388,18 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
         text += &format!(
             ". It is the {}: nothing that the search found is better on fresh surfaces with 95 % confidence",
             verdict.design.name
+        );
+    }
+    // Only where numbers are the answer can a pattern be better than the design.
+    let better = verdict.others.iter().filter_map(|other| {
+        let by = other.design_is_better_by?;
+        (by.mean + by.half_width.unwrap_or(0.0) < 0.0).then_some((&other.name, by))
+    });
+    if let Some((name, by)) = better.min_by(|one, other| one.1.mean.total_cmp(&other.1.mean)) {
+        text += &format!(
+            ". The {name}, which these shapes are not, is better by {}{}",
+            four_digits(-wish.difference_told(by.mean)),
+            wish.loss_unit()
         );
     }
     text + wish.missed(loss)

@@ -11,18 +11,13 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::limits::Limits;
 use crate::named::Named;
-use crate::patch::{Draft, Form};
-use crate::slider_blocks::SliderBlocks;
-use crate::start::{GENERATION, Ranges, Start};
+use crate::space::{Draft, Space};
+use crate::start::{GENERATION, Start};
 use slipfront_study::draws::Draws;
 
 /// Number of drafts that are tried for every texture asked for.
 const TRIES: usize = 50;
-
-/// Numbers of patches of starts anywhere, in turn.
-const PATCHES: [usize; 4] = [2, 3, 1, 4];
 
 /// Deviation of drafts of a start anywhere, as a share of the range of every number.
 const WIDE: f64 = 0.2;
@@ -42,6 +37,16 @@ pub(crate) struct Proposal {
     drawn: Option<(usize, Vec<f64>)>,
 }
 
+impl Proposal {
+    /// Shares of the ranges of the unknowns, if numbers are searched for.
+    pub(crate) fn shares(&self) -> Option<Vec<f64>> {
+        match &self.draft {
+            Draft::Shapes(shares) => Some(shares.clone()),
+            Draft::Patches(_) => None,
+        }
+    }
+}
+
 /// A texture with its loss.
 #[derive(Clone, Debug)]
 pub(crate) struct RatedTexture {
@@ -54,9 +59,9 @@ pub(crate) struct RatedTexture {
 /// A search in progress.
 #[derive(Debug)]
 pub(crate) struct Search {
-    grid: SliderBlocks,
-    limits: Limits,
-    ranges: Ranges,
+    space: Space,
+    /// Smallest width of a feature in blocks, by which the best textures must differ.
+    feature: usize,
     draws: Draws,
     /// Patterns that were not proposed yet, the next one last.
     named: Vec<Named>,
@@ -68,28 +73,24 @@ pub(crate) struct Search {
     starts: Vec<Start>,
     /// Number of starts so far.
     n_starts: usize,
-    /// Number of starts anywhere so far.
-    n_anywhere: usize,
     /// Whether every start begins with one of the best textures.
     is_refining: bool,
 }
 
 impl Search {
     /// A search that begins with named patterns.
-    pub(crate) fn new(grid: SliderBlocks, limits: Limits, start: u64, mut named: Vec<Named>) -> Self {
+    pub(crate) fn new(space: Space, feature: usize, start: u64, mut named: Vec<Named>) -> Self {
         // Taken from the end.
         named.reverse();
         Self {
-            ranges: Ranges::new(&grid, &limits),
-            grid,
-            limits,
+            space,
+            feature,
             draws: Draws::new(start),
             named,
             seen: HashSet::new(),
             best: Vec::new(),
             starts: Vec::new(),
             n_starts: 0,
-            n_anywhere: 0,
             is_refining: false,
         }
     }
@@ -106,7 +107,7 @@ impl Search {
             }
             let place = asked.len() / GENERATION;
             let (origin, draft, drawn) = self.draft(place);
-            let texture = self.limits.texture(&self.grid, &draft);
+            let texture = self.space.texture(&draft);
             if let Some(texture) = texture.filter(|texture| self.seen.insert(hash(texture))) {
                 in_vain = 0;
                 asked.push(Proposal {
@@ -136,7 +137,7 @@ impl Search {
             .cloned()
             .collect();
         // Lost textures teach a start where not to go, but no start begins with one.
-        merge(&mut self.best, &finite, self.limits.feature);
+        merge(&mut self.best, &finite, self.feature);
         for RatedTexture { proposal, loss } in found {
             let Some((number, normal)) = &proposal.drawn else {
                 continue;
@@ -145,14 +146,14 @@ impl Search {
                 start.tell(*loss, normal);
             }
         }
-        self.starts.retain(|start| !start.has_ended());
+        self.starts.retain(|start| !start.has_ended(&self.space));
     }
 
     /// A proposal for a texture of the caller, whose loss may be told as if it had been asked for.
     pub(crate) fn of_other(&self, texture: Vec<bool>) -> Proposal {
         Proposal {
             origin: "another search".to_owned(),
-            draft: Draft::drawn(&self.grid, &texture),
+            draft: self.space.drawn(&texture),
             texture: texture.into(),
             drawn: None,
         }
@@ -191,14 +192,14 @@ impl Search {
     /// it.
     fn draft(&mut self, place: usize) -> (String, Draft, Option<(usize, Vec<f64>)>) {
         if let Some(Named { name, draft }) = self.named.pop() {
-            return (name, draft, None);
+            return (name, Draft::Patches(draft), None);
         }
         while self.starts.len() <= place {
             let start = self.new_start();
             self.starts.push(start);
         }
         let start = &self.starts[place];
-        let (draft, normal) = start.draw(&mut self.draws);
+        let (draft, normal) = start.draw(&self.space, &mut self.draws);
         (
             format!("start {}", start.number),
             draft,
@@ -209,44 +210,18 @@ impl Search {
     fn new_start(&mut self) -> Start {
         self.n_starts += 1;
         let n = self.best.len();
-        let (from, spread) = if n > 0 && (self.is_refining || self.n_starts.is_multiple_of(2)) {
+        let is_near = n > 0 && (self.is_refining || self.n_starts.is_multiple_of(2));
+        let near = is_near.then(|| {
             let draws = &mut self.draws;
             // The best of three places: good textures more often, and every one at times.
             let index = draws.below(n).min(draws.below(n)).min(draws.below(n));
-            let mut from = self.best[index].proposal.draft.clone();
-            if from.patches.is_empty() {
-                from.patches
-                    .push(self.ranges.random_patch(Form::Rectangle, draws));
-            }
-            (from, NEAR)
-        } else {
-            (self.random_draft(), WIDE)
-        };
-        Start::new(self.n_starts, from, spread, self.ranges)
-    }
-
-    /// Patches anywhere: strips that cover the most the first time, cavities among them and less coverage at
-    /// times later.
-    fn random_draft(&mut self) -> Draft {
-        let is_first = self.n_anywhere == 0;
-        let most = self.limits.max_features.unwrap_or(usize::MAX);
-        // Limits that allow no feature allow no texture; a draft has numbers all the same.
-        let n = PATCHES[self.n_anywhere % PATCHES.len()].min(most).max(1);
-        self.n_anywhere += 1;
-        let draws = &mut self.draws;
-        let patches = (0..n).map(|_| {
-            let is_strip = is_first || draws.uniform() < 0.8;
-            let form = if is_strip { Form::Rectangle } else { Form::Ellipse };
-            self.ranges.random_patch(form, draws)
+            self.space.near(&self.best[index].proposal.draft, draws)
         });
-        let patches = patches.collect();
-        let [least, most] = self.limits.coverage;
-        let is_full = is_first || draws.uniform() < 0.5;
-        Draft {
-            patches,
-            drawn: None,
-            percent: if is_full { most } else { draws.between(least, most) },
-        }
+        let (from, spread) = match near.flatten() {
+            Some(from) => (from, NEAR),
+            None => (self.space.anywhere(&mut self.draws), WIDE),
+        };
+        Start::new(self.n_starts, from, spread, &self.space)
     }
 }
 

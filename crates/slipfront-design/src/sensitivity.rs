@@ -88,6 +88,7 @@ impl Judge<'_> {
             let shifted = Contender {
                 name: design.name.clone(),
                 texture: moved(&self.evaluator.grid, &design.texture, shift).into(),
+                shapes: None,
             };
             let changed = self.under(change, &shifted, other, known, keep)?;
             found.changed.push(changed);
@@ -106,11 +107,18 @@ impl Judge<'_> {
         match self.evaluator.on_finer_blocks() {
             Ok(evaluator) => {
                 let size = self.evaluator.grid.size();
-                let finer = |contender: &Contender| Contender {
-                    name: contender.name.clone(),
-                    texture: doubled(size, &contender.texture).into(),
+                let finer = |contender: &Contender| -> Result<Contender, CaseError> {
+                    // Finer blocks come nearer to a shape; a mask stays as it is.
+                    let texture = match &contender.shapes {
+                        Some(shapes) => evaluator.subjects[0].textured(shapes)?,
+                        None => doubled(size, &contender.texture),
+                    };
+                    Ok(Contender {
+                        texture: texture.into(),
+                        ..contender.clone()
+                    })
                 };
-                let (design, other) = (finer(design), other.map(finer));
+                let (design, other) = (finer(design)?, other.map(finer).transpose()?);
                 let judge = self.with(&evaluator);
                 let changed = judge.under(change, &design, other.as_ref(), known, keep)?;
                 found.changed.push(changed);

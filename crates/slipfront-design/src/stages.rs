@@ -8,8 +8,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use crate::evaluate::{Evaluator, Keep, RunCache};
-use crate::limits::Limits;
-use crate::named::Named;
 use crate::search::{Proposal, RatedTexture, Search};
 use crate::start::GENERATION;
 use crate::subject::Fidelity;
@@ -38,6 +36,8 @@ pub(crate) struct Tried {
     pub(crate) origin: String,
     /// Blocks of the draft.
     pub(crate) texture: Arc<Vec<bool>>,
+    /// Shares of the ranges of the unknowns, if numbers are designed.
+    pub(crate) shares: Option<Vec<f64>>,
     /// Loss of the draft, a mean over surfaces.
     pub(crate) loss: f64,
     /// Reason for which the loss is infinite, if it is.
@@ -70,6 +70,8 @@ pub struct SearchProgress {
     pub best: f64,
     /// Blocks of the best draft.
     pub best_texture: Option<Arc<Vec<bool>>>,
+    /// Shares of the ranges of the unknowns in the best draft, if numbers are designed.
+    pub best_shares: Option<Vec<f64>>,
     /// Cost of the runs of this call, search and verdict.
     pub work: RunCost,
 }
@@ -159,9 +161,8 @@ pub(crate) struct Stages<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// A search that begins with named patterns.
-    pub(crate) fn new(evaluator: &'a Evaluator, limits: Limits, start: u64, starts: Vec<Named>) -> Self {
-        let search = Search::new(evaluator.grid.clone(), limits, start, starts);
+    /// The stages of a search that has asked for nothing yet.
+    pub(crate) fn new(evaluator: &'a Evaluator, search: Search) -> Self {
         Self {
             evaluator,
             search,
@@ -180,7 +181,7 @@ impl<'a> Stages<'a> {
         known: &mut RunCache,
         keep: &mut Keep,
         watch: &mut dyn FnMut(&SearchProgress),
-    ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
+    ) -> Result<Vec<Proposal>, StudyError> {
         self.evaluator.check_reference(known, bounds.stop, keep)?;
         let explored = explored(bounds);
         while self.runs < explored && self.has_time(bounds, false) {
@@ -202,7 +203,7 @@ impl<'a> Stages<'a> {
             goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
         }
         let best = self.search.best().iter();
-        Ok(best.map(|found| Arc::clone(&found.proposal.texture)).collect())
+        Ok(best.map(|found| found.proposal.clone()).collect())
     }
 
     /// Textures to try, unless the search ends: on a large lattice they take seconds to be drawn.
@@ -282,6 +283,7 @@ impl<'a> Stages<'a> {
                 is_refined,
                 origin: proposal.origin.clone(),
                 texture: Arc::clone(&proposal.texture),
+                shares: proposal.shares(),
                 loss: *loss,
                 lost,
             });
@@ -306,6 +308,7 @@ impl<'a> Stages<'a> {
             },
             best: best.map_or(f64::NAN, |found| self.evaluator.wish().told(found.loss)),
             best_texture: best.map(|found| Arc::clone(&found.proposal.texture)),
+            best_shares: best.and_then(|found| found.proposal.shares()),
             work: RunCost {
                 here: 0.0,
                 left: self.work_left(bounds),

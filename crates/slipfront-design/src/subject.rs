@@ -9,6 +9,7 @@ use slipfront_case::case_file::{
     Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape,
     Snapshots, Texture, TimeStep,
 };
+use slipfront_case::texture_file::textured_blocks;
 
 use crate::wish::Wish;
 use slipfront_study::identity::physics;
@@ -165,6 +166,16 @@ impl Subject {
             Fidelity::Fine => [own, searched],
             Fidelity::Verdict => [own, judged],
         }
+    }
+
+    /// The blocks of the case that textures cover.
+    ///
+    /// # Errors
+    /// When the case refuses the textures.
+    pub(crate) fn textured(&self, textures: &[Texture]) -> Result<Vec<bool>, CaseError> {
+        let mut file = self.file.clone();
+        file.texture = textures.to_vec();
+        Ok(textured_blocks(&self.made_of(file, &self.files)?))
     }
 
     /// The case with a texture.

@@ -122,14 +122,16 @@ impl Judge<'_> {
             best.cloned()
         };
         let (winner, best_named) = (by_loss(searched, known), by_loss(named, known));
-        let Some(first) = winner.clone().or_else(|| best_named.clone()) else {
+        let without_search = || best_named.clone().filter(|_| !self.asks_for_numbers);
+        let Some(first) = winner.clone().or_else(without_search) else {
             return Ok(None);
         };
         let to_judge: Vec<&Contender> = winner.iter().chain(&best_named).chain(beside).collect();
         self.run(&to_judge, judged.clone(), known, keep)?;
         // Where both are lost, neither is better.
         let is_better = |named: &Contender| self.difference(named, &first, judged.clone(), known).low() > 0.0;
-        let is_named = winner.is_none() || !best_named.as_ref().is_none_or(is_better);
+        let is_named =
+            !self.asks_for_numbers && (winner.is_none() || !best_named.as_ref().is_none_or(is_better));
         let design = match &best_named {
             Some(named) if is_named => named.clone(),
             _ => first.clone(),

@@ -10,6 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::texture_file::textured_blocks;
 use slipfront_design::{
     Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignKeys, DesignStage, Outcome, RunCache, RunCost,
 };
@@ -110,6 +112,7 @@ fn design_files_are_true() {
         "runs",
         "start",
         "starts",
+        "unknowns",
     ] {
         assert!(text.contains(&format!("`{key}`")), "`{key}` is not explained");
     }
@@ -277,11 +280,152 @@ fn a_value_is_found_or_told_as_out_of_reach() {
     assert!(verdict.design.loss < 0.005);
 }
 
+/// A disc of the base whose size is unknown, on surfaces that do not differ.
+const DISC: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
+    friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n\
+    texture = [{ shape = 'cavity', lambda = '2 um' }]\n[design]\n";
+
+/// The best of a scan over the sizes of a disc, in steps that make every texture there is, is what a search
+/// for the size finds; the case in the folder has the disc, and the outline is a circle.
+#[test]
+fn the_number_of_a_shape_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let keys = "wish = { value = 0.7, of = 'static_friction' }\ncoverage = [0, 40]\n\
+                unknowns = { 'texture.0.lambda' = ['1 um', '6 um'] }";
+    let file = file_of(DISC, keys);
+    let design = file.design().unwrap();
+    let disc = |lambda: f64| {
+        let text =
+            format!("slider.blocks = [16, 16]\ntexture = [{{ shape = 'cavity', lambda = '{lambda} um' }}]");
+        textured_blocks(&Case::parse(&text, "case", "", &[]).unwrap())
+    };
+    let mut discs: Vec<Arc<Vec<bool>>> = (0..=500)
+        .map(|k| disc(1.0 + 0.01 * f64::from(k)).into())
+        .collect();
+    discs.dedup();
+    discs.retain(|disc| design.check(disc).is_ok());
+    let never = AtomicBool::new(false);
+    let losses = design.losses_on_fresh(&discs, 1, &never).unwrap();
+    let least = losses.into_iter().map(|losses| losses[0]).fold(1.0, f64::min);
+    let mut opened = DesignFolder::open(&out, &file, false).unwrap();
+    let told = opened.find(&bounds(150, &never), &mut |_| {}).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
+    assert_eq!(found["design"]["loss"], least, "{told}");
+    assert!(discs.len() > 10 && least > 0.0, "{} {least}", discs.len());
+    let [unknown] = found["unknowns"].as_array().unwrap().as_slice() else {
+        panic!("{found}")
+    };
+    assert_eq!(
+        (&unknown["key"], &unknown["unit"]),
+        (&"texture.0.lambda".into(), &"um".into())
+    );
+    let value = unknown["value"].as_f64().unwrap();
+    let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains(&format!("texture.0.lambda {value} um 1 um to 6 um")),
+        "{told}"
+    );
+    let case = Case::load(&out.join("case.toml"), &[], &mut |_| true, Ranks::ALONE).unwrap();
+    assert_eq!(textured_blocks(&case), disc(value));
+    let drawn = fs::read_to_string(out.join("mask.svg")).unwrap();
+    let radius = drawn.split(" r=\"").nth(1).unwrap().split('"').next().unwrap();
+    // In mm. No laser places an outline within a millionth of its radius; what is off here is rounding.
+    let off = radius.parse::<f64>().unwrap() / (value * 1e-3) - 1.0;
+    assert!(off.abs() < 1e-6, "{drawn}");
+    let tried = fs::read_to_string(out.join("evaluations.csv")).unwrap();
+    assert!(
+        tried
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with(",lost,texture.0.lambda (um)"),
+        "{tried}"
+    );
+}
+
+/// Counts are whole numbers and limits hold, also those of every design of a front, which has its own
+/// numbers; a search that was stopped goes on to the same bytes.
+#[test]
+fn numbers_keep_the_limits_and_survive_stops() {
+    let keys = "wish = { least = 'static_friction' }\ncoverage = [0, 30]\ngap_blocks = 2\nfront = [12]\n\
+                [design.unknowns]\n'texture.0.array.0' = [1, 3]\n'texture.0.lambda' = { from = '1 um', to = '4 um', scale = 'log' }";
+    let base = DISC.replace("lambda = '2 um'", "lambda = '2 um', array = [1, 1]");
+    let file = file_of(&base, keys);
+    let folders = [0; 2].map(|_| tempfile::tempdir().unwrap());
+    let never = AtomicBool::new(false);
+    let mut in_one_go = DesignFolder::open(folders[0].path(), &file, false).unwrap();
+    let told = in_one_go.find(&bounds(80, &never), &mut |_| {}).unwrap();
+    assert!(told.contains("texture.0.array.0 = "), "{told}");
+    let front = fs::read_to_string(folders[0].path().join("front.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = front.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        rows[0][6..],
+        ["design", "texture.0.array.0", "texture.0.lambda (um)"]
+    );
+    let numbers: Vec<f64> = [1, 2, 7, 8]
+        .map(|column| rows[1][column].parse().unwrap())
+        .to_vec();
+    let [covered, loss, columns, radius] = numbers[..] else {
+        panic!("{front}")
+    };
+    assert!(covered <= 12.0 && loss < 1.0 && columns.fract() == 0.0, "{front}");
+    assert!(
+        (1.0..=3.0).contains(&columns) && (1.0..=4.0).contains(&radius),
+        "{front}"
+    );
+    let mask = textured_blocks(
+        &Case::load(
+            &folders[0].path().join("case.toml"),
+            &[],
+            &mut |_| true,
+            Ranks::ALONE,
+        )
+        .unwrap(),
+    );
+    assert_eq!(file.design().unwrap().check(&mask), Ok(()));
+    let mut rounds = 0;
+    loop {
+        let mut stopped = DesignFolder::open(folders[1].path(), &file, false).unwrap();
+        let stop = AtomicBool::new(false);
+        let before = stopped.n_kept();
+        let found = stopped.find(&bounds(80, &stop), &mut |now| {
+            if now.runs > 8 && stopped_at(rounds, now.stage) {
+                stop.store(true, Ordering::Relaxed);
+            }
+        });
+        match found {
+            Ok(_) => break,
+            Err(StudyError::Interrupted) => assert!(stopped.n_kept() >= before),
+            Err(error) => panic!("{error}"),
+        }
+        let case = fs::read_to_string(folders[1].path().join("case.toml")).unwrap();
+        assert!(case.contains("shape = \"cavity\""), "{case}");
+        rounds += 1;
+    }
+    assert_eq!(rounds, 3);
+    assert!(
+        files(folders[0].path()) == files(folders[1].path()),
+        "the folders differ"
+    );
+}
+
+/// Whether a search is stopped in a stage of this round.
+fn stopped_at(round: usize, stage: DesignStage) -> bool {
+    match round {
+        0 => stage == DesignStage::Exploring,
+        1 => stage == DesignStage::Refining,
+        2 => stage == DesignStage::Judging,
+        _ => false,
+    }
+}
+
 /// A curve of a texture is met by a texture.
 #[test]
 fn a_curve_is_followed() {
     let folder = tempfile::tempdir().unwrap();
-    let case = slipfront_case::case::Case::parse(
+    let case = Case::parse(
         "slider.blocks = [16, 16]\ndrive.v_star = 0.1\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\ntexture = [{ shape = 'groove', coverage = 12.5 }]",
         "case",
         "",
@@ -713,6 +857,18 @@ fn what_cannot_be_is_told_with_its_place() {
         (
             &format!("{wish}\ncoverage = [0, 10]\n[study]\nreplicates = 3"),
             "study",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'drive.v_star' = [0.1, 0.2] }}"),
+            "the unknown `drive.v_star` is no key of a texture",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'texture.0.lambda' = ['6 um', '2 um'] }}"),
+            "the range of `texture.0.lambda` goes from 6 to 2",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'texture.0.lambda' = ['2 um', '6 um'] }}"),
+            "The case has no such texture",
         ),
     ] {
         let said = said(keys);

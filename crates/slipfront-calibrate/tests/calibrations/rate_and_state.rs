@@ -12,10 +12,11 @@ use std::sync::atomic::AtomicBool;
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 use slipfront_calibrate::{
-    Calibration, CalibrationStage, Conditions, RunMaker, SamplePoints, SetUp, Training, Unknown,
+    Calibration, CalibrationStage, Conditions, RunMaker, SamplePoints, SetUp, Training,
 };
 use slipfront_case::case::Case;
 use slipfront_run::measured::{Measure, MeasuredRecord};
+use slipfront_study::Unknown;
 
 use self::velocity_steps::{KEYS, RANGES, SPACING};
 

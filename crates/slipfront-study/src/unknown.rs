@@ -1,9 +1,10 @@
-//! The unknowns of a calibration: numeric keys of the case or of the instrument, each with a range.
+//! Unknowns of a calibration and of a design: numeric keys, each with a range of values.
 
+use serde::Deserialize;
 use slipfront_case::case_file::Override;
-use sobol_burley::{NUM_DIMENSIONS, sample};
+use toml::Value;
 
-/// A key of the case with a range of values, which are all equally likely before there is a record.
+/// A key with a range of values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
     key: String,
@@ -11,6 +12,37 @@ pub struct Unknown {
     to: f64,
     unit: Option<String>,
     is_logarithmic: bool,
+}
+
+/// The range of an unknown.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RangeKeys {
+    Ends([Number; 2]),
+    Scaled(ScaledKeys),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScaledKeys {
+    from: Number,
+    to: Number,
+    scale: Scale,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Scale {
+    Linear,
+    Log,
+}
+
+/// A number, or one with a unit.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Plain(f64),
+    WithUnit(String),
 }
 
 /// Reason for which a range is refused.
@@ -61,6 +93,33 @@ impl Unknown {
         })
     }
 
+    /// The unknown of a key and of its range as a file has it: `[0.3, 0.9]`, `["1 um", "5 um"]`, or
+    /// `{ from = 0.03, to = 0.5, scale = "log" }`.
+    ///
+    /// # Errors
+    /// A sentence, when the range has another form, ends with different units, or is refused by
+    /// [`new`](Self::new).
+    pub fn read(key: &str, range: &Value) -> Result<Self, String> {
+        let Ok(keys) = range.clone().try_into::<RangeKeys>() else {
+            return Err(format!(
+                "the range of `{key}` is written [0.3, 0.9], [\"1 um\", \"5 um\"] or {{ from = 0.03, to = 0.5, scale = \"log\" }}"
+            ));
+        };
+        let (ends, is_logarithmic) = match keys {
+            RangeKeys::Ends(ends) => (ends, false),
+            RangeKeys::Scaled(ScaledKeys { from, to, scale }) => ([from, to], matches!(scale, Scale::Log)),
+        };
+        let [(from, unit), (to, other)] = ends.map(Number::parted);
+        let (Some(from), Some(to)) = (from, to) else {
+            return Err(format!("the range of `{key}` has ends that are no numbers"));
+        };
+        if unit != other {
+            return Err(format!("the ends of the range of `{key}` differ in their units"));
+        }
+        let unknown = Self::new(key, from, to, is_logarithmic).map_err(|error| error.to_string())?;
+        Ok(Self { unit, ..unknown })
+    }
+
     /// Returns the unknown with values that are written with a unit, such as `um`.
     #[must_use]
     pub fn in_unit(self, unit: &str) -> Self {
@@ -84,7 +143,7 @@ impl Unknown {
     /// logarithmic scale.
     ///
     /// ```
-    /// use slipfront_calibrate::Unknown;
+    /// use slipfront_study::Unknown;
     /// let damping = Unknown::new("slider.omega_star", 0.01, 1.0, true)?;
     /// assert!((damping.at(0.5) - 0.1).abs() < 1e-15 && (damping.share_of(0.1) - 0.5).abs() < 1e-15);
     /// assert_eq!(Unknown::new("friction.mu_static", 0.3, 0.9, false)?.at(1.0), 0.9);
@@ -116,32 +175,30 @@ impl Unknown {
     }
 
     /// The value at a share of the range as a file has it.
-    fn written(&self, share: f64) -> toml::Value {
-        let value = self.at(share);
-        match &self.unit {
-            Some(unit) => toml::Value::from(format!("{value} {unit}")),
-            None => toml::Value::from(value),
-        }
+    pub fn written(&self, share: f64) -> Value {
+        self.with_unit(self.at(share))
     }
 
-    /// The key of the table `[instrument]` that is unknown, and its value at a share of the range; none for a
-    /// key of the case.
-    pub(crate) fn of_instrument(&self, share: f64) -> Option<(&str, toml::Value)> {
-        Some((self.key.strip_prefix("instrument.")?, self.written(share)))
+    /// A value of the key as a file has it.
+    pub fn with_unit(&self, value: f64) -> Value {
+        match &self.unit {
+            Some(unit) => Value::from(format!("{value} {unit}")),
+            None => Value::from(value),
+        }
     }
 }
 
-/// Shares of the ranges of `count` unknowns in training run `run`, of at most 65536: points that fill the
-/// ranges evenly, for any number of runs.
-///
-/// They are Sobol's sequence with the directions of Joe and Kuo (SIAM Journal on Scientific Computing 30
-/// (2008) 2635), its digits scrambled as Owen proposed: every unknown alone, and every two together, take
-/// values as even as those of a grid. Multiples of powers of one number do not, since such a power may lie
-/// near a fraction of small numbers.
-pub fn design_point(run: usize, count: usize) -> Vec<f64> {
-    // Beyond the last dimension the sequence begins again, with other digits.
-    let share = |j: u32| sample(run as u32, j % NUM_DIMENSIONS, j / NUM_DIMENSIONS);
-    (0..count as u32).map(|j| f64::from(share(j))).collect()
+impl Number {
+    /// The number, and the unit.
+    fn parted(self) -> (Option<f64>, Option<String>) {
+        match self {
+            Self::Plain(number) => (Some(number), None),
+            Self::WithUnit(text) => match text.trim().split_once(' ') {
+                Some((number, unit)) => (number.parse().ok(), Some(unit.trim().to_owned())),
+                None => (text.trim().parse().ok(), None),
+            },
+        }
+    }
 }
 
 #[cfg(test)]
@@ -168,52 +225,6 @@ mod tests {
         let unknown = Unknown::new("friction.r_star", 0.25, 0.75, false).unwrap();
         assert_eq!(unknown.set_to(0.5).to_string(), "friction.r_star=0.5");
         let length = Unknown::new("friction.correlation_length", 1.0, 3.0, false).unwrap();
-        assert_eq!(
-            length.in_unit("um").set_to(0.5).value(),
-            toml::Value::from("2 um")
-        );
-    }
-
-    /// The largest distance of the share of values below a number from that number.
-    fn unevenness(mut values: Vec<f64>) -> f64 {
-        values.sort_by(f64::total_cmp);
-        let n = values.len() as f64;
-        let distances = values.iter().enumerate();
-        distances.fold(0.0, |largest: f64, (i, value)| {
-            largest
-                .max((value - i as f64 / n).abs())
-                .max((value - (i as f64 + 1.0) / n).abs())
-        })
-    }
-
-    /// The share of n values below any number differs from it by less than log2(n)/n, for n that are no
-    /// powers of two as well.
-    #[test]
-    fn design_points_fill_the_range_of_every_unknown() {
-        for (runs, count) in [(100, 3), (300, 8), (400, 4), (2500, 6), (2500, 12), (100, 300)] {
-            let points: Vec<Vec<f64>> = (0..runs).map(|run| design_point(run, count)).collect();
-            for j in 0..count {
-                let found = unevenness(points.iter().map(|point| point[j]).collect());
-                let n = runs as f64;
-                assert!(found < n.log2() / n, "{runs} {count} {j}: {found}");
-            }
-        }
-    }
-
-    /// Every square of a grid of 16 x 16 holds at least one of 1024 values of two unknowns: random ones would
-    /// leave some five squares empty.
-    #[test]
-    fn design_points_fill_the_ranges_of_two_unknowns() {
-        let points: Vec<Vec<f64>> = (0..1024).map(|run| design_point(run, 8)).collect();
-        for first in 0..8 {
-            for second in 0..first {
-                let mut counts = [0; 256];
-                for point in &points {
-                    let [row, column] = [first, second].map(|j| (16.0 * point[j]) as usize);
-                    counts[16 * row + column] += 1;
-                }
-                assert!(counts.iter().all(|&count| count > 0), "{first} {second}");
-            }
-        }
+        assert_eq!(length.in_unit("um").set_to(0.5).value(), Value::from("2 um"));
     }
 }
