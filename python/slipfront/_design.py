@@ -77,8 +77,9 @@ class Design:
     coverage
         Least and largest share of the slider that is textured, %.
     keys
-        Further keys of the table ``[design]``, such as ``feature``, ``gap``, ``feature_blocks``, ``runs`` or ``forbidden``. Masks in textures
-        may be arrays.
+        Further keys of the table ``[design]``, such as ``feature``, ``gap``, ``feature_blocks``, ``runs``, ``tolerance`` or ``forbidden``. Masks
+        in textures may be arrays. With ``unknowns``, such as ``{"texture.0.lambda": ("2 um", "6 um")}``, the search is for numbers of the
+        textures of the case.
 
     Examples
     --------
@@ -87,6 +88,14 @@ class Design:
     >>> found = design.run(progress=False)
     >>> found.mask.shape, bool(found.coverage <= 15)
     ((16, 16), True)
+
+    Numbers of a shape in place of a mask:
+
+    >>> disc = slider | {"texture": [{"shape": "cavity", "lambda": "2 um"}]}
+    >>> wish = Value(0.7, "static_friction_star")
+    >>> found = Design(disc, wish, (0, 40), unknowns={"texture.0.lambda": ("1 um", "6 um")}, tolerance=0.02, runs=60).run(progress=False)
+    >>> list(found.unknowns), found.within_tolerance[1]
+    (['texture.0.lambda'], 64)
 
     Another search in place of its own: ask for legal textures, or draw some, and tell how good they are.
 
@@ -288,6 +297,17 @@ class DesignResults:
     def coverage(self) -> float:
         """Textured share of the slider, %."""
         return float(self._found["as_meshed"]["coverage_percent"])
+
+    @property
+    def unknowns(self) -> dict[str, float]:
+        """Numbers that were found, by their keys and in the units of their ranges; empty for a mask."""
+        return {found["key"]: float(found["value"]) for found in self._found.get("unknowns", [])}
+
+    @property
+    def within_tolerance(self) -> tuple[int, int] | None:
+        """Parts within the tolerance of the wish, and all parts that were judged; None without a tolerance."""
+        found = self._found["design"].get("within_tolerance")
+        return None if found is None else (int(found["within"]), int(found["parts"]))
 
     @property
     def loss(self) -> float:

@@ -21,7 +21,9 @@ use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case::Case;
 use slipfront_case::texture_file::textured_blocks;
-use slipfront_design::{Bounds, Design, Limits, Mean, OnFresh, Quantity, Verdict, Wish};
+use slipfront_design::{
+    Bounds, Design, FrictionUnit, Limits, Mean, OnFresh, Quantity, Target, Verdict, Wish,
+};
 use slipfront_run::running;
 
 /// Keys that are added to the case whose curve is asked for.
@@ -53,7 +55,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let wanted = match wish.as_str() {
         "least" | "worst" => Wish::Least(Quantity::StaticFriction),
         "curve" => curve(case(1.0, CAVITY)?, 3.0 / v_star)?,
-        value => Wish::Value(Quantity::StaticFriction, value.parse()?),
+        value => Wish::Value(Target {
+            quantity: Quantity::StaticFriction,
+            star: value.parse()?,
+            tolerance_star: None,
+            unit: FrictionUnit::share(),
+        }),
     };
     let cavity = textured_blocks(&case(1.0, CAVITY)?);
     let limits = Limits {
@@ -99,7 +106,7 @@ fn told(verdict: &Verdict, wanted: &Wish, of_cavity: f64) -> String {
     let better: Vec<String> = better.collect();
     let design = &verdict.design;
     let given = match wanted {
-        Wish::Value(_, wanted) => {
+        Wish::Value(Target { star: wanted, .. }) => {
             let found = design.cases[0].static_friction_star;
             let half = found.half_width.unwrap_or(0.0);
             let distance = 100.0 * (found.mean / wanted - 1.0);

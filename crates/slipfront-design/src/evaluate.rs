@@ -14,6 +14,7 @@ use slipfront_run::running::{RunData, run_unless};
 use crate::search::hash;
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::{Fidelity, Subject};
+use crate::tolerance::WithinTolerance;
 use crate::wish::{Measured, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::statistics::mean;
@@ -258,7 +259,7 @@ impl Evaluator {
     ) -> f64 {
         let losses = (0..self.subjects.len()).map(|subject| {
             let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
-            let loss = self.wish().loss(mean(&deviations));
+            let loss = self.wish().loss(&deviations);
             if loss.is_nan() { f64::INFINITY } else { loss }
         });
         if self.is_worst {
@@ -268,9 +269,8 @@ impl Evaluator {
         }
     }
 
-    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss. Where a
-    /// value is wished for, parts have the sign of the mean deviation, and if the worst case counts they are
-    /// those of this case, so that the scatter of the parts is that of the loss.
+    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss, and their
+    /// scatter that of the loss. If the worst case counts they are those of this case.
     pub(crate) fn loss_by_surface(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -281,16 +281,10 @@ impl Evaluator {
         let n_surfaces = (surfaces.end - surfaces.start) as usize;
         let of_case = |subject: usize| -> Vec<f64> {
             let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
-            let mean = mean(&deviations);
-            let sign = if self.wish().loss(mean) == mean { 1.0 } else { -1.0 };
-            let part = |deviation: f64| {
-                if deviation.is_nan() {
-                    f64::INFINITY
-                } else {
-                    sign * deviation
-                }
-            };
-            deviations.into_iter().map(part).collect()
+            let parts = self.wish().parts_of_loss(&deviations).into_iter();
+            parts
+                .map(|part| if part.is_nan() { f64::INFINITY } else { part })
+                .collect()
         };
         let cases: Vec<Vec<f64>> = (0..self.subjects.len()).map(of_case).collect();
         if self.is_worst {
@@ -299,6 +293,29 @@ impl Evaluator {
         }
         let of_surface = |k: usize| mean(&cases.iter().map(|parts| parts[k]).collect::<Vec<_>>());
         (0..n_surfaces).map(of_surface).collect()
+    }
+
+    /// Parts within the tolerance of the wish, each of which is a surface, in every case; none without a
+    /// tolerance.
+    pub(crate) fn within(
+        &self,
+        texture: &Arc<Vec<bool>>,
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &RunCache,
+    ) -> Option<WithinTolerance> {
+        self.wish().is_within(0.0)?;
+        let parts = (surfaces.end - surfaces.start) as usize;
+        let mut is_good = vec![true; parts];
+        for (number, subject) in self.subjects.iter().enumerate() {
+            let deviations = self.deviations(number, texture, surfaces.clone(), fidelity, known);
+            for (is_good, deviation) in is_good.iter_mut().zip(deviations) {
+                // A lost part has no deviation, and is none within.
+                *is_good &= subject.wish.is_within(deviation) == Some(true);
+            }
+        }
+        let within = is_good.into_iter().filter(|&is_good| is_good).count();
+        Some(WithinTolerance { within, parts })
     }
 
     /// Reason for which a texture is lost on some surfaces: that of the first run without a deviation from

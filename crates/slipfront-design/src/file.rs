@@ -17,7 +17,7 @@ use crate::limits::Limits;
 use crate::shapes::Shapes;
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::Subject;
-use crate::wish::{Quantity, Wish};
+use crate::wish::{FrictionUnit, Quantity, Target, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::Unknown;
 use slipfront_study::axis::overrides;
@@ -53,6 +53,9 @@ key_rows! {
     pub struct DesignKeys {
         /// Aim of the texture.
         wish: WishKeys = key("", KeyKind::Special("")).without("needed").note("[See below](#wish)."),
+        /// Distance from the value of the wish up to which a part is good, in the unit of the value. [See
+        /// below](#tolerance).
+        tolerance: Option<Number> = key("", KeyKind::Special("more than 0")).without("none"),
         /// Least and largest share of the slider that is textured, %.
         coverage: [f64; 2] = key("", KeyKind::Special("from at least 0 to less than 100")).without("needed"),
         /// Smallest width of a feature, a length. It becomes a whole number of blocks, rounded up.
@@ -120,6 +123,19 @@ struct WishKeys {
 enum Number {
     Coefficient(f64),
     Force(String),
+}
+
+impl Number {
+    /// The number, a force in N, and whether it is one.
+    fn number(&self) -> Result<(f64, bool), String> {
+        match self {
+            Self::Coefficient(number) => Ok((*number, false)),
+            Self::Force(text) => {
+                let force = text.parse::<Force>().map_err(|error| error.to_string())?;
+                Ok((force.si(), true))
+            }
+        }
+    }
 }
 
 /// A curve to follow: two columns of a table, path of the drive and friction.
@@ -447,6 +463,12 @@ impl DesignFile {
         let mu_s = case.scales.mu_static_mean;
         let load = case.scales.pressure * case.scales.block_size.powi(2) * grid.n_blocks() as f64;
         let keys = &self.keys.wish;
+        let tolerance = self.keys.tolerance.as_ref();
+        if let (Some(_), None) = (tolerance, &keys.value) {
+            let sentence = "`tolerance` belongs to a wish for a value, such as { value = 0.3, of = \"static_friction\" }: \
+                            leave it out, or wish for one";
+            return Err(self.project.error("tolerance", sentence.to_owned()).into());
+        }
         match (keys.least, keys.largest, &keys.value, &keys.of, &keys.curve) {
             (Some(quantity), None, None, None, None) => Ok(Wish::Least(quantity)),
             (None, Some(quantity), None, None, None) => Ok(Wish::Largest(quantity)),
@@ -462,23 +484,39 @@ impl DesignFile {
                         ));
                     }
                 };
-                let star = match value {
-                    Number::Coefficient(value) if is_star => *value,
-                    Number::Coefficient(value) => value / mu_s,
-                    Number::Force(_) if is_star => {
+                let force_of_mu_s = load * mu_s;
+                let unit = match value.number() {
+                    Err(why) => return refuse(&format!("`value`: {why}")),
+                    Ok((_, true)) if is_star => {
                         return refuse(
                             "`value` is a force, and `of` with _star asks for a share of mu_s: leave out _star",
                         );
                     }
-                    Number::Force(text) => match text.parse::<Force>() {
-                        Ok(force) => force.si() / (load * mu_s),
-                        Err(error) => return refuse(&format!("`value`: {error}")),
-                    },
+                    Ok((force, true)) => FrictionUnit::force(force, force_of_mu_s),
+                    Ok(_) if is_star => FrictionUnit::share(),
+                    Ok(_) => FrictionUnit::coefficient(mu_s),
                 };
-                if !(star > 0.0 && star.is_finite()) {
-                    return refuse("`value` must be a number of more than 0");
-                }
-                Ok(Wish::Value(quantity, star))
+                let in_mu_s = |key: &str, number: &Number| {
+                    let refuse = |sentence: String| self.project.error(key, sentence);
+                    let (number, is_force) =
+                        number.number().map_err(|why| refuse(format!("`{key}`: {why}")))?;
+                    if is_force != matches!(value, Number::Force(_)) {
+                        let sentence =
+                            "`tolerance` is in the unit of `value`: write both as forces, or both as numbers";
+                        return Err(refuse(sentence.to_owned()));
+                    }
+                    let star = number / if is_force { force_of_mu_s } else { unit.mu_s };
+                    if !(star > 0.0 && star.is_finite()) {
+                        return Err(refuse(format!("`{key}` must be a number of more than 0")));
+                    }
+                    Ok(star)
+                };
+                Ok(Wish::Value(Target {
+                    quantity,
+                    star: in_mu_s("wish", value).map_err(|error| self.project.found_in("wish", error))?,
+                    tolerance_star: tolerance.map(|given| in_mu_s("tolerance", given)).transpose()?,
+                    unit: unit.clone(),
+                }))
             }
             (None, None, None, None, Some(curve)) => self.curve(curve, case, load),
             _ => refuse(

@@ -10,6 +10,7 @@ use slipfront_case::case_file::Texture;
 use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::stages::Stages;
 use crate::subject::Fidelity;
+use crate::tolerance::WithinTolerance;
 use slipfront_study::CONFIDENCE;
 use slipfront_study::Sample;
 use slipfront_study::StudyError;
@@ -151,6 +152,17 @@ impl Judge<'_> {
     ) -> Option<String> {
         self.evaluator
             .lost(&contender.texture, surfaces, Fidelity::Verdict, known)
+    }
+
+    /// Parts of a texture within the tolerance of the wish, if it has one.
+    pub(crate) fn within(
+        &self,
+        contender: &Contender,
+        surfaces: Range<u64>,
+        known: &RunCache,
+    ) -> Option<WithinTolerance> {
+        self.evaluator
+            .within(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 
     fn loss_by_surface(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> Vec<f64> {

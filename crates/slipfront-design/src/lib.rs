@@ -29,6 +29,7 @@ mod space;
 mod stages;
 mod start;
 mod subject;
+mod tolerance;
 mod verdict;
 mod wish;
 
@@ -42,5 +43,6 @@ pub use open_search::OpenSearch;
 pub use sensitivity::{Changed, LeftOut, Sensitivity};
 pub use slider_blocks::SliderBlocks;
 pub use stages::{Bounds, Cut, DesignStage, RunCost, SearchProgress};
+pub use tolerance::WithinTolerance;
 pub use verdict::{FreshValues, OnFresh, Verdict};
-pub use wish::{Measured, Quantity, Wish};
+pub use wish::{FrictionUnit, Measured, Quantity, Target, Wish};

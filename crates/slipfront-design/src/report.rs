@@ -20,10 +20,12 @@ use crate::design::{Design, Outcome};
 use crate::file::DesignFile;
 use crate::judge::Mean;
 use crate::numbers::{FoundNumber, columns_of_unknowns, numbers_at, numbers_found, table_of_numbers};
+use crate::sensitivity::Changed;
 use crate::stages::{SearchLength, Tried};
 use crate::subject::{Fidelity, MASK, masked};
-use crate::verdict::{FreshValues, OnFresh, Verdict};
-use crate::wish::{Quantity, Wish};
+use crate::tolerance::WithinTolerance;
+use crate::verdict::{OnFresh, Verdict};
+use crate::wish::{FrictionUnit, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::Batch;
 use slipfront_study::text_table::table;
@@ -62,6 +64,8 @@ struct DesignJson<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unknowns: Vec<FoundNumber>,
     as_meshed: &'a AsMeshed,
+    /// Unit in which friction is told, with one mu_s in it.
+    unit: &'a FrictionUnit,
     #[serde(flatten)]
     verdict: &'a Verdict,
     version: &'static str,
@@ -111,6 +115,7 @@ impl Report<'_> {
             search: outcome.length,
             unknowns: numbers_found(design, shares),
             as_meshed: &as_meshed,
+            unit: &design.evaluator.subjects[0].unit,
             verdict: &outcome.verdict,
             version: env!("CARGO_PKG_VERSION"),
         };
@@ -240,7 +245,7 @@ impl Report<'_> {
     /// The verdict as a text for a person.
     fn in_words(&self, design: &Design, outcome: &Outcome, as_meshed: &AsMeshed, case: &Case) -> String {
         let (wish, verdict) = (design.evaluator.wish(), &outcome.verdict);
-        let mut text = format!("{}\n\n", wrapped(&headline(wish, verdict), COLUMNS));
+        let mut text = format!("{}\n\n", wrapped(&headline(design, verdict), COLUMNS));
         let numbers = numbers_found(design, outcome.shares.as_deref());
         text += &table_of_numbers(&numbers);
         text += &on_fresh(wish, verdict);
@@ -254,7 +259,8 @@ impl Report<'_> {
             "\nCoefficients do not scatter, so that there is one surface, which the search has seen.\n"
                 .to_owned()
         };
-        text += &scatter(wish, verdict).unwrap_or_default();
+        let unit = &design.evaluator.subjects[0].unit;
+        text += &friction_of_parts(unit, wish, verdict).unwrap_or_default();
         let length =
             |length: Option<f64>| length.map_or("none".to_owned(), |length| with_si_prefix(length, "m"));
         text += &format!(
@@ -278,7 +284,7 @@ impl Report<'_> {
             text += &table(&["case", "the base with", "file"], &rows);
         }
         text += "\nUnder changes:\n";
-        text += &under_changes(wish, verdict);
+        text += &under_changes(design, verdict);
         for left_out in &verdict.sensitivity.left_out {
             text += &note(
                 &format!("nothing is known of {}: {}", left_out.change, left_out.why),
@@ -370,7 +376,8 @@ fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
     of_search.into_iter().chain(on_fresh).chain(changed).collect()
 }
 
-fn headline(wish: &Wish, verdict: &Verdict) -> String {
+fn headline(design: &Design, verdict: &Verdict) -> String {
+    let (wish, unit) = (design.evaluator.wish(), &design.evaluator.subjects[0].unit);
     if verdict.design.lost.is_some() {
         return "no verdict: every texture that was judged is lost on fresh surfaces".to_owned();
     }
@@ -378,12 +385,18 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
     let loss = wish.told(design.loss);
     let half_width = design.loss_half_width.map(|half| wish.difference_told(half));
     let found = match design.cases.as_slice() {
-        [one] => given(wish.quantity(), one).map_or("nothing".to_owned(), |mean| {
-            with_half_width(mean.mean, mean.half_width)
-        }),
+        [one] => one
+            .wished_star
+            .map_or("nothing".to_owned(), |mean| unit.told_mean(&mean)),
         _ => String::new(),
     };
     let mut text = wish.headline(loss, half_width, &found);
+    if matches!(wish, Wish::Value(_)) && !found.is_empty() {
+        text.extend(scatter(unit, verdict).map(|scatter| format!("; {scatter}")));
+    }
+    if let Some((parts, tolerance)) = design_within(wish, verdict) {
+        text += &format!("; {}", parts.in_words(&tolerance));
+    }
     if verdict.is_named {
         text += &format!(
             ". It is the {}: nothing that the search found is better on fresh surfaces with 95 % confidence",
@@ -397,7 +410,7 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
     });
     if let Some((name, by)) = better.min_by(|one, other| one.1.mean.total_cmp(&other.1.mean)) {
         text += &format!(
-            ". The {name}, which these shapes are not, is better by {}{}",
+            ". Another texture is better, by {}{}: {name}",
             four_digits(-wish.difference_told(by.mean)),
             wish.loss_unit()
         );
@@ -405,32 +418,40 @@ fn headline(wish: &Wish, verdict: &Verdict) -> String {
     text + wish.missed(loss)
 }
 
-fn given(quantity: Quantity, given: &FreshValues) -> Option<Mean> {
-    match quantity {
-        Quantity::StaticFriction => Some(given.static_friction_star),
-        Quantity::KineticFriction => given.kinetic_friction_star,
-        Quantity::FrictionDrop => given.kinetic_friction_star.map(|kinetic| Mean {
-            mean: given.static_friction_star.mean - kinetic.mean,
-            half_width: None,
-            deviation: None,
-        }),
-    }
+/// The scatter of the design from part to part in the unit of the wish, for a sentence, where parts differ.
+fn scatter(unit: &FrictionUnit, verdict: &Verdict) -> Option<String> {
+    let mean = verdict.design.cases[0].wished_star?;
+    let deviation = unit.told_scatter(mean.deviation?);
+    Some(format!("parts scatter by {deviation} (1 s.d.)"))
 }
 
-/// A line on how much one surface differs from another.
-fn scatter(wish: &Wish, verdict: &Verdict) -> Option<String> {
-    let mean = given(wish.quantity(), &verdict.design.cases[0])?;
-    let percent = 100.0 * mean.deviation? / mean.mean;
+/// The parts of the design within the tolerance of the wish, and the tolerance as told.
+fn design_within(wish: &Wish, verdict: &Verdict) -> Option<(WithinTolerance, String)> {
+    Some((verdict.design.within_tolerance?, wish.tolerance_told()?))
+}
+
+/// A line on the friction of the design in the unit of the wish, for a wish whose headline does not say it.
+fn friction_of_parts(unit: &FrictionUnit, wish: &Wish, verdict: &Verdict) -> Option<String> {
+    let [one] = verdict.design.cases.as_slice() else {
+        return None;
+    };
+    if matches!(wish, Wish::Value(_)) {
+        return None;
+    }
+    let end = scatter(unit, verdict).map_or(String::new(), |scatter| format!("; {scatter}"));
     Some(format!(
-        "From surface to surface, {} has a standard deviation of {} %.\n",
+        "The {} of the design is {}{end}.\n",
         wish.quantity().name(),
-        four_digits(percent)
+        unit.told_mean(&one.wished_star?)
     ))
 }
 
 /// Rows of the table: one for every texture that was judged, and every case.
 fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
-    let header = [
+    let within = wish
+        .tolerance_told()
+        .map(|tolerance| format!("within \u{b1} {tolerance}"));
+    let mut header = vec![
         "texture",
         "covers",
         "largest mu*",
@@ -439,6 +460,7 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
         wish.loss_name(),
         "the design is better by",
     ];
+    header.extend(within.as_deref());
     let mut rows = Vec::new();
     for found in std::iter::once(&verdict.design).chain(&verdict.others) {
         for (k, given) in found.cases.iter().enumerate() {
@@ -457,7 +479,7 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
                 }
             };
             let is_first = k == 0;
-            rows.push(vec![
+            let mut row = vec![
                 name,
                 format!("{} %", four_digits(found.coverage_percent)),
                 mean(given.static_friction_star),
@@ -465,7 +487,11 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
                 given.kinetic_friction_star.map_or("-".to_owned(), mean),
                 loss_cell(wish, found, is_first),
                 better_cell(wish, found.design_is_better_by.filter(|_| is_first)),
-            ]);
+            ];
+            if within.is_some() {
+                row.push(within_cell(found.within_tolerance.filter(|_| is_first)));
+            }
+            rows.push(row);
         }
     }
     table(&header, &rows)
@@ -479,6 +505,10 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
     } else {
         "-".to_owned()
     }
+}
+
+fn within_cell(found: Option<WithinTolerance>) -> String {
+    found.map_or("-".to_owned(), WithinTolerance::cell)
 }
 
 /// Cell of a difference of losses as reported.
@@ -497,27 +527,43 @@ fn optimism(wish: &Wish, verdict: &Verdict) -> String {
     )
 }
 
-fn under_changes(wish: &Wish, verdict: &Verdict) -> String {
-    let header = ["change", wish.loss_name(), "better than the best named by"];
-    let rows: Vec<Vec<String>> = verdict
-        .sensitivity
-        .changed
-        .iter()
-        .map(|changed| {
-            vec![
-                changed.change.clone(),
-                if changed.lost.is_some() {
-                    "lost".to_owned()
-                } else {
-                    format!(
-                        "{}{}",
-                        four_digits(wish.told(changed.loss.mean)),
-                        wish.loss_unit()
-                    )
-                },
-                better_cell(wish, changed.better_by),
-            ]
-        })
-        .collect();
+/// Rows of the table of changes; the friction under each is that of the one case, if there is one.
+fn under_changes(design: &Design, verdict: &Verdict) -> String {
+    let (wish, subjects) = (design.evaluator.wish(), &design.evaluator.subjects);
+    let unit = match subjects.as_slice() {
+        [one] => Some(&one.unit),
+        _ => None,
+    };
+    let within = wish
+        .tolerance_told()
+        .map(|tolerance| format!("within \u{b1} {tolerance}"));
+    let mut header = vec!["change"];
+    if unit.is_some() {
+        header.extend([wish.quantity().name(), "scatter (1 s.d.)"]);
+    }
+    header.extend(within.as_deref());
+    header.extend([wish.loss_name(), "better than the best named by"]);
+    let row = |changed: &Changed| {
+        let mut row = vec![changed.change.clone()];
+        if let Some(unit) = unit {
+            // A mean over those surfaces alone on which the design is not lost would flatter it.
+            let found = changed.wished_star.filter(|_| changed.lost.is_none());
+            let deviation = found.and_then(|mean| mean.deviation);
+            row.push(found.map_or("-".to_owned(), |mean| unit.told_mean(&mean)));
+            row.push(deviation.map_or("-".to_owned(), |deviation| unit.told_scatter(deviation)));
+        }
+        if within.is_some() {
+            row.push(within_cell(changed.within_tolerance));
+        }
+        row.push(if changed.lost.is_some() {
+            "lost".to_owned()
+        } else {
+            let loss = wish.told(changed.loss.mean);
+            format!("{}{}", four_digits(loss), wish.loss_unit())
+        });
+        row.push(better_cell(wish, changed.better_by));
+        row
+    };
+    let rows: Vec<Vec<String>> = verdict.sensitivity.changed.iter().map(row).collect();
     table(&header, &rows)
 }

@@ -9,6 +9,7 @@ use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::judge::{Contender, Judge, Mean, Surfaces};
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::{Fidelity, Subject};
+use crate::tolerance::WithinTolerance;
 use slipfront_study::StudyError;
 
 /// Number of surfaces for each change.
@@ -21,6 +22,11 @@ pub struct Changed {
     pub change: String,
     /// Loss of the design under the change, the mean over surfaces; infinite if the design is lost.
     pub loss: Mean,
+    /// The quantity of the wish in the first case under the change, in units of mu_s, where runs have it.
+    pub wished_star: Option<Mean>,
+    /// Parts within the tolerance of the wish under the change, if it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub within_tolerance: Option<WithinTolerance>,
     /// Reason for which the design is lost, if it is: a run of it has not the numbers of the wish.
     pub lost: Option<String>,
     /// The loss of the other texture under this change less that of the design, surface by surface: above 0
@@ -148,6 +154,10 @@ impl Judge<'_> {
         Ok(Changed {
             change: change.to_owned(),
             loss: self.mean_loss(design, surfaces.clone(), known),
+            wished_star: self
+                .fresh_values(Some(design), 0, surfaces.clone(), known)
+                .wished_star,
+            within_tolerance: self.within(design, surfaces.clone(), known),
             lost: self.lost(design, surfaces.clone(), known),
             better_by: other.map(|other| self.difference(other, design, surfaces, known)),
         })

@@ -11,7 +11,7 @@ use slipfront_case::case_file::{
 };
 use slipfront_case::texture_file::textured_blocks;
 
-use crate::wish::Wish;
+use crate::wish::{FrictionUnit, Wish};
 use slipfront_study::identity::physics;
 
 /// The step with which designs are tried: it orders reductions as a quarter of the step does, at a third of
@@ -54,6 +54,8 @@ pub(crate) struct Subject {
     ends: [f64; 2],
     /// The wish, in units of this case.
     pub(crate) wish: Wish,
+    /// Unit in which friction is told: that of the wish.
+    pub(crate) unit: FrictionUnit,
     /// Path of the drive in one unit of time, m.
     path_per_time: f64,
     /// Hash of all that decides its numbers but texture, seed, step and end.
@@ -91,6 +93,10 @@ impl Subject {
             seed: file.friction.seed,
             scatters: case.groups.sigma_static_star > 0.0 || case.groups.sigma_kinetic_star > 0.0,
             most,
+            unit: match &wish {
+                Wish::Value(target) => target.unit.clone(),
+                _ => FrictionUnit::coefficient(case.scales.mu_static_mean),
+            },
             wish,
             file,
         };

@@ -9,6 +9,7 @@ use crate::evaluate::{Evaluator, Keep, RunCache, Wanted};
 use crate::judge::{Contender, Judge, Mean, Surfaces};
 use crate::sensitivity::{self, Sensitivity};
 use crate::subject::Fidelity;
+use crate::tolerance::WithinTolerance;
 use crate::wish::Measured;
 use slipfront_study::StudyError;
 
@@ -23,6 +24,8 @@ const NAMED_FINALISTS: usize = 4;
 pub struct FreshValues {
     /// Number of surfaces over which the means are taken: all, unless the texture is lost on some.
     pub surfaces: u64,
+    /// The quantity of the wish in units of mu_s, where runs have it; for a curve the largest mu*.
+    pub wished_star: Option<Mean>,
     /// The largest mu*.
     pub static_friction_star: Mean,
     /// The first peak of mu*.
@@ -46,6 +49,9 @@ pub struct OnFresh {
     pub loss_half_width: Option<f64>,
     /// Standard deviation of the loss from surface to surface.
     pub loss_deviation: Option<f64>,
+    /// Parts within the tolerance of the wish, if it has one and there is a texture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub within_tolerance: Option<WithinTolerance>,
     /// Reason for which the texture is lost, if it is: a run of it has not the numbers of the wish.
     pub lost: Option<String>,
     /// The loss of this texture less that of the design, surface by surface: above 0 where the design is
@@ -211,26 +217,7 @@ impl Judge<'_> {
         surfaces: Range<u64>,
         known: &RunCache,
     ) -> OnFresh {
-        let given = |subject: usize| {
-            let run = |surface| Wanted {
-                subject,
-                texture: contender.map(|contender| Arc::clone(&contender.texture)),
-                surface,
-                fidelity: Fidelity::Verdict,
-            };
-            let found: Vec<Measured> = surfaces
-                .clone()
-                .filter_map(|surface| self.evaluator.ended(&run(surface), known).ok())
-                .collect();
-            let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
-            let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
-            FreshValues {
-                surfaces: found.len() as u64,
-                static_friction_star: mean(&|found| found.largest_star),
-                first_peak_star: mean(&|found| found.first_peak_star),
-                kinetic_friction_star: kinetic.map(|values| Mean::of(&values)),
-            }
-        };
+        let given = |subject: usize| self.fresh_values(contender, subject, surfaces.clone(), known);
         let loss = contender.map(|contender| self.mean_loss(contender, surfaces.clone(), known));
         OnFresh {
             name: contender
@@ -241,10 +228,40 @@ impl Judge<'_> {
             loss: loss.map_or(f64::NAN, |loss| loss.mean),
             loss_half_width: loss.and_then(|loss| loss.half_width),
             loss_deviation: loss.and_then(|loss| loss.deviation),
+            within_tolerance: contender.and_then(|found| self.within(found, surfaces.clone(), known)),
             lost: contender.and_then(|contender| self.lost(contender, surfaces.clone(), known)),
             design_is_better_by: contender
                 .filter(|contender| contender.texture != design.texture)
                 .map(|contender| self.difference(contender, design, surfaces.clone(), known)),
+        }
+    }
+
+    /// Values of a texture in one case on some surfaces; without a texture those of the bare slider.
+    pub(crate) fn fresh_values(
+        &self,
+        contender: Option<&Contender>,
+        subject: usize,
+        surfaces: Range<u64>,
+        known: &RunCache,
+    ) -> FreshValues {
+        let run = |surface| Wanted {
+            subject,
+            texture: contender.map(|contender| Arc::clone(&contender.texture)),
+            surface,
+            fidelity: Fidelity::Verdict,
+        };
+        let found: Vec<Measured> = surfaces
+            .filter_map(|surface| self.evaluator.ended(&run(surface), known).ok())
+            .collect();
+        let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
+        let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
+        let quantity = self.evaluator.wish().quantity();
+        FreshValues {
+            surfaces: found.len() as u64,
+            wished_star: Some(mean(&|found| found.get(quantity))).filter(|mean| mean.mean.is_finite()),
+            static_friction_star: mean(&|found| found.largest_star),
+            first_peak_star: mean(&|found| found.first_peak_star),
+            kinetic_friction_star: kinetic.map(|values| Mean::of(&values)),
         }
     }
 }

@@ -3,9 +3,12 @@
 use serde::de::IntoDeserializer;
 use serde::de::value::Error as ValueError;
 use serde::{Deserialize, Serialize};
-use slipfront_base::number_format::{four_digits, with_half_width};
+use slipfront_base::number_format::{four_digits, si_prefix, with_half_width};
 use slipfront_case::case_file::names_of;
 use slipfront_run::summary::Summary;
+use slipfront_study::statistics::mean;
+
+use crate::judge::Mean;
 
 /// Distance from a value above which it is reported as missed, %.
 const MISSED_PERCENT: f64 = 0.5;
@@ -29,10 +32,77 @@ pub enum Wish {
     Least(Quantity),
     /// The largest value of a quantity.
     Largest(Quantity),
-    /// A value of a quantity, in units of mu_s.
-    Value(Quantity, f64),
+    /// A value of a quantity.
+    Value(Target),
     /// A whole curve: mu* at times t* of the drive, both in the order of time.
     Curve(Vec<[f64; 2]>),
+}
+
+/// A value that is wished for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    /// Quantity that is to have the value.
+    pub quantity: Quantity,
+    /// The value, in units of mu_s.
+    pub star: f64,
+    /// Largest distance from the value at which a part is good, in units of mu_s; none if any is.
+    pub tolerance_star: Option<f64>,
+    /// Unit of the wish.
+    pub unit: FrictionUnit,
+}
+
+/// Unit in which friction is wished for and told.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrictionUnit {
+    /// One mu_s in this unit.
+    pub mu_s: f64,
+    /// Name of the unit behind a number, such as ` mN`; nothing for a coefficient.
+    pub name: String,
+}
+
+impl FrictionUnit {
+    /// Coefficients of friction, where the mean static one is `mu_s`.
+    pub fn coefficient(mu_s: f64) -> Self {
+        Self {
+            mu_s,
+            name: String::new(),
+        }
+    }
+
+    /// Shares of mu_s.
+    pub fn share() -> Self {
+        Self {
+            mu_s: 1.0,
+            name: " mu_s".to_owned(),
+        }
+    }
+
+    /// Forces of about the size of `force` in N, where mu_s is the force `of_mu_s`.
+    pub fn force(force: f64, of_mu_s: f64) -> Self {
+        let (factor, prefix) = si_prefix(force);
+        Self {
+            mu_s: of_mu_s / factor,
+            name: format!(" {prefix}N"),
+        }
+    }
+
+    /// A number of mu_s in this unit.
+    pub(crate) fn told(&self, star: f64) -> String {
+        four_digits(star * self.mu_s) + &self.name
+    }
+
+    /// A scatter of numbers of mu_s in this unit, to its second digit.
+    pub(crate) fn told_scatter(&self, star: f64) -> String {
+        let scatter = star * self.mu_s;
+        let digits = (1.0 - libm::floor(libm::log10(scatter))).clamp(0.0, 12.0);
+        format!("{scatter:.0$}{1}", digits as usize, self.name)
+    }
+
+    /// A mean of numbers of mu_s in this unit, with its interval.
+    pub(crate) fn told_mean(&self, mean: &Mean) -> String {
+        let half_width = mean.half_width.map(|half| half * self.mu_s);
+        with_half_width(mean.mean * self.mu_s, half_width) + &self.name
+    }
 }
 
 /// Numbers of a run from which the loss of a design is found.
@@ -97,7 +167,8 @@ impl Wish {
     /// The quantity of the wish; for a curve its largest value.
     pub fn quantity(&self) -> Quantity {
         match self {
-            Self::Least(quantity) | Self::Largest(quantity) | Self::Value(quantity, _) => *quantity,
+            Self::Least(quantity) | Self::Largest(quantity) => *quantity,
+            Self::Value(target) => target.quantity,
             Self::Curve(_) => Quantity::StaticFriction,
         }
     }
@@ -135,7 +206,7 @@ impl Wish {
         let deviation = match self {
             Self::Least(_) => with.get(quantity) / reference,
             Self::Largest(_) => -with.get(quantity) / reference,
-            Self::Value(_, wanted) => with.get(quantity) / wanted - 1.0,
+            Self::Value(target) => with.get(quantity) / target.star - 1.0,
             Self::Curve(_) => with.misfit.unwrap_or(f64::NAN),
         };
         if deviation.is_finite() {
@@ -154,11 +225,58 @@ impl Wish {
         })
     }
 
-    /// The loss of a mean deviation, the less the better: its size, where the wish is a value.
-    pub(crate) fn loss(&self, deviation: f64) -> f64 {
+    /// The loss of deviations on several surfaces, the less the better: their mean; where the wish is a value
+    /// its size; with a tolerance the root of the mean of their squares.
+    ///
+    /// A part is good within a tolerance if bias and scatter together are small, which is what the mean of
+    /// squares holds, `bias^2 + deviation^2`. It is smooth, so that a search sees which of two drafts is
+    /// better although no part of either is within the tolerance, as the share of parts does not tell.
+    pub(crate) fn loss(&self, deviations: &[f64]) -> f64 {
         match self {
-            Self::Value(..) => deviation.abs(),
-            _ => deviation,
+            Self::Value(target) if target.tolerance_star.is_some() => {
+                mean(&deviations.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt()
+            }
+            Self::Value(_) => mean(deviations).abs(),
+            _ => mean(deviations),
+        }
+    }
+
+    /// Parts of the [loss](Self::loss) of deviations, one for each: their mean is the loss, and their scatter
+    /// is that which makes the loss uncertain. A root is linear in the squares around their mean.
+    pub(crate) fn parts_of_loss(&self, deviations: &[f64]) -> Vec<f64> {
+        let loss = self.loss(deviations);
+        match self {
+            Self::Value(target) if target.tolerance_star.is_some() => {
+                let part = |d: &f64| {
+                    if loss == 0.0 {
+                        0.0
+                    } else {
+                        0.5 * (loss + d * d / loss)
+                    }
+                };
+                deviations.iter().map(part).collect()
+            }
+            Self::Value(_) if mean(deviations) < 0.0 => deviations.iter().map(|d| -d).collect(),
+            _ => deviations.to_vec(),
+        }
+    }
+
+    /// Whether a deviation is within the tolerance of the wish; none without a tolerance.
+    pub(crate) fn is_within(&self, deviation: f64) -> Option<bool> {
+        match self {
+            Self::Value(target) => {
+                let tolerance = target.tolerance_star?;
+                Some((deviation * target.star).abs() <= tolerance)
+            }
+            _ => None,
+        }
+    }
+
+    /// The tolerance of the wish in its unit, as a text.
+    pub(crate) fn tolerance_told(&self) -> Option<String> {
+        match self {
+            Self::Value(target) => Some(target.unit.told(target.tolerance_star?)),
+            _ => None,
         }
     }
 
@@ -177,7 +295,8 @@ impl Wish {
         match self {
             Self::Least(_) => "reduction",
             Self::Largest(_) => "rise",
-            Self::Value(..) => "distance from the value",
+            Self::Value(target) if target.tolerance_star.is_some() => "RMS distance from the value",
+            Self::Value(_) => "distance from the value",
             Self::Curve(_) => "RMS distance from the curve",
         }
     }
@@ -207,11 +326,18 @@ impl Wish {
                     four_digits(loss)
                 )
             }
-            Self::Value(_, wanted) => format!(
-                "{of} of {} mu_s wished for: {found} mu_s found, {} % from it",
-                four_digits(*wanted),
-                four_digits(loss)
-            ),
+            Self::Value(target) => {
+                let root = if target.tolerance_star.is_some() {
+                    " in the root of the mean square"
+                } else {
+                    ""
+                };
+                format!(
+                    "{of} of {} wished for: {found} found, {} % from it{root}",
+                    target.unit.told(target.star),
+                    four_digits(loss)
+                )
+            }
             Self::Curve(_) => format!(
                 "curve wished for: {} from it, as a root of the mean square of mu*",
                 four_digits(loss)
@@ -222,7 +348,7 @@ impl Wish {
     /// An end of the headline for a design that misses its wish.
     pub(crate) fn missed(&self, loss: f64) -> &'static str {
         match self {
-            Self::Value(..) if loss > MISSED_PERCENT => {
+            Self::Value(target) if target.tolerance_star.is_none() && loss > MISSED_PERCENT => {
                 ". The value is out of reach of these limits, or of this search: give more runs, or wider limits"
             }
             _ => "",
@@ -242,6 +368,47 @@ impl Wish {
 mod tests {
     use super::*;
 
+    fn value(star: f64, tolerance_star: Option<f64>) -> Wish {
+        Wish::Value(Target {
+            quantity: Quantity::StaticFriction,
+            star,
+            tolerance_star,
+            unit: FrictionUnit::share(),
+        })
+    }
+
+    /// Of three parts 0.1 below, 0.1 above and 0.2 above a value of 2, whose deviations are half as large.
+    #[test]
+    fn a_tolerance_counts_parts_and_takes_squares() {
+        let deviations = [-0.05, 0.05, 0.1];
+        let tolerant = value(2.0, Some(0.15));
+        let squares: f64 = (0.0025 + 0.0025 + 0.01) / 3.0;
+        assert!((tolerant.loss(&deviations) - squares.sqrt()).abs() < 1e-15);
+        assert_eq!(value(2.0, None).loss(&deviations), mean(&deviations));
+        let parts = tolerant.parts_of_loss(&deviations);
+        assert!((mean(&parts) - squares.sqrt()).abs() < 1e-15);
+        // Of deviations that change, the root changes as the mean of the parts does.
+        let step = 1e-6;
+        let moved = tolerant.loss(&[-0.05, 0.05, 0.1 + step]) - tolerant.loss(&deviations);
+        let slope = 0.1 * 2.0 * step / 3.0 / (2.0 * squares.sqrt());
+        assert!((moved / slope - 1.0).abs() < 1e-4);
+        assert_eq!(
+            deviations.map(|d| tolerant.is_within(d)),
+            [Some(true), Some(true), Some(false)]
+        );
+        assert_eq!(value(2.0, None).is_within(0.0), None);
+        assert_eq!(tolerant.parts_of_loss(&[0.0, 0.0]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn friction_is_told_in_the_unit_of_the_wish() {
+        let force = FrictionUnit::force(0.012, 0.04);
+        assert_eq!(force.told(0.3), "12 mN");
+        assert_eq!(force.told_scatter(0.000_123), "0.0049 mN");
+        assert_eq!(FrictionUnit::share().told(0.3), "0.3 mu_s");
+        assert_eq!(FrictionUnit::coefficient(0.5).told(0.6), "0.3");
+    }
+
     #[test]
     fn losses_are_what_they_are_called() {
         let run = |largest_star: f64, kinetic_star: f64| Measured {
@@ -251,7 +418,7 @@ mod tests {
             misfit: Some(0.25),
         };
         let (with, without) = (run(0.75, 0.5), run(1.0, 0.25));
-        let told = |wish: Wish| wish.told(wish.loss(wish.deviation(&with, Some(&without)).unwrap()));
+        let told = |wish: Wish| wish.told(wish.loss(&[wish.deviation(&with, Some(&without)).unwrap()]));
         assert_eq!(told(Wish::Least(Quantity::StaticFriction)), 25.0);
         assert_eq!(told(Wish::Largest(Quantity::StaticFriction)), -25.0);
         assert_eq!(told(Wish::Largest(Quantity::KineticFriction)), 100.0);
@@ -259,8 +426,9 @@ mod tests {
             told(Wish::Least(Quantity::FrictionDrop)),
             100.0 * (1.0 - 0.25 / 0.75)
         );
-        assert_eq!(told(Wish::Value(Quantity::StaticFriction, 1.5)), 50.0);
-        assert_eq!(told(Wish::Value(Quantity::StaticFriction, 0.5)), 50.0);
+        assert_eq!(told(value(1.5, None)), 50.0);
+        assert_eq!(told(value(0.5, None)), 50.0);
+        assert_eq!(told(value(0.5, Some(0.1))), 50.0);
         assert_eq!(told(Wish::Curve(Vec::new())), 0.25);
         let short = Measured {
             kinetic_star: None,

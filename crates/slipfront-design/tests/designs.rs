@@ -113,6 +113,7 @@ fn design_files_are_true() {
         "start",
         "starts",
         "unknowns",
+        "tolerance",
     ] {
         assert!(text.contains(&format!("`{key}`")), "`{key}` is not explained");
     }
@@ -278,6 +279,113 @@ fn a_value_is_found_or_told_as_out_of_reach() {
         "{least} {verdict:?}"
     );
     assert!(verdict.design.loss < 0.005);
+}
+
+/// The share of parts within a tolerance is a count of parts by hand, in the unit of the wish, here a force;
+/// so are the mean and the scatter.
+#[test]
+fn parts_within_a_tolerance_are_counted() {
+    // mu_s is 0.5, and the load 100 kPa on (16 um)^2, 25.6 uN.
+    let base = BASE.replace("[design]", "friction.mu_static = 0.5\n[design]");
+    let tolerance = 0.04;
+    let design = |keys: &str| file_of(&base, keys).design().unwrap();
+    let keys = format!(
+        "wish = {{ value = '9 uN', of = 'static_friction' }}\ntolerance = '{tolerance} uN'\ncoverage = [0, 15]\nfeature_blocks = 2"
+    );
+    let in_mu_s = 25.6 * 0.5;
+    let searched = design(&keys);
+    let outcome = run(&searched, 60);
+    let verdict = &outcome.verdict;
+    // Distances of every part from a wish for a value alone, which have the sign of their mean for one part.
+    let alone = keys.replace(&format!("\ntolerance = '{tolerance} uN'"), "");
+    let distances =
+        design(&alone).losses_on_fresh(&[Arc::clone(&outcome.texture)], 16 + 64, &AtomicBool::new(false));
+    let distances = distances.unwrap().remove(0).split_off(16);
+    let within = distances
+        .iter()
+        .filter(|distance| **distance * 9.0 <= tolerance)
+        .count();
+    let found = verdict.design.within_tolerance.unwrap();
+    assert_eq!((found.within, found.parts), (within, 64));
+    assert!(
+        (1..61).contains(&within),
+        "{within}: a tolerance that tells nothing"
+    );
+    assert!(!found.passes());
+    let squares: f64 = distances.iter().map(|distance| distance * distance).sum();
+    assert!((verdict.design.loss - (squares / 64.0).sqrt()).abs() < 1e-12);
+    let wished = verdict.design.cases[0].wished_star.unwrap();
+    assert_eq!(wished, verdict.design.cases[0].static_friction_star);
+    // One number in three units.
+    let folder = tempfile::tempdir().unwrap();
+    let file = file_of(&base, &keys);
+    let mut opened = DesignFolder::open(folder.path(), &file, false).unwrap();
+    let told = opened
+        .find(&bounds(60, &AtomicBool::new(false)), &mut |_| {})
+        .unwrap();
+    let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    for expected in [
+        "static friction of 9 uN wished for: ".to_owned(),
+        format!(
+            "{within} of 64 parts lie within \u{b1} {tolerance} uN: the design fails, since at least 95 % must"
+        ),
+    ] {
+        assert!(words.contains(&expected), "{expected}\n{told}");
+    }
+    let of_changes = told.split("Under changes:").nth(1).unwrap();
+    assert!(
+        of_changes
+            .lines()
+            .nth(1)
+            .unwrap()
+            .contains("   within \u{b1} 0.04 uN   "),
+        "{told}"
+    );
+    let scatter = words
+        .split("parts scatter by ")
+        .nth(1)
+        .unwrap()
+        .split(" uN (1 s.d.)")
+        .next()
+        .unwrap();
+    let exact = wished.deviation.unwrap() * in_mu_s;
+    // To two digits.
+    assert!(
+        (scatter.parse::<f64>().unwrap() / exact - 1.0).abs() < 0.05,
+        "{scatter} {exact}"
+    );
+    let third = of_changes
+        .lines()
+        .find(|line| line.contains("a third of the speed"))
+        .unwrap();
+    assert!(third.contains(" of 8, fails   "), "{third}");
+}
+
+/// With a tolerance the loss has the scatter of parts beside their mean.
+#[test]
+fn a_tolerance_weighs_scatter() {
+    let keys = "wish = { value = 0.8, of = 'static_friction_star' }\ncoverage = [0, 15]\nfeature_blocks = 2";
+    let plain = file(keys).design().unwrap();
+    let tolerant = file(&format!("{keys}\ntolerance = 0.01")).design().unwrap();
+    let groove: Vec<bool> = (0..256).map(|block| (7..9).contains(&(block % 16))).collect();
+    let losses = |design: &Design, surfaces: u64| {
+        let losses = design.losses(
+            vec![groove.clone()],
+            surfaces,
+            false,
+            &mut RunCache::new(),
+            &AtomicBool::new(false),
+        );
+        losses.unwrap().remove(0).unwrap()
+    };
+    // Of one part both are its distance; of several, the mean and the scatter together.
+    assert_eq!(losses(&plain, 1), losses(&tolerant, 1));
+    let [mean, both] = [losses(&plain, 8), losses(&tolerant, 8)];
+    let parts: Vec<f64> = tolerant
+        .losses_on_fresh(&[groove.clone().into()], 2, &AtomicBool::new(false))
+        .unwrap()
+        .remove(0);
+    assert!(both > mean && parts[0] != parts[1], "{mean} {both} {parts:?}");
 }
 
 /// A disc of the base whose size is unknown, on surfaces that do not differ.
@@ -861,6 +969,18 @@ fn what_cannot_be_is_told_with_its_place() {
         (
             &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'drive.v_star' = [0.1, 0.2] }}"),
             "the unknown `drive.v_star` is no key of a texture",
+        ),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ntolerance = 0.01"),
+            "`tolerance` belongs to a wish for a value",
+        ),
+        (
+            "wish = { value = 0.3, of = 'static_friction' }\ncoverage = [0, 10]\ntolerance = '1 uN'",
+            "`tolerance` is in the unit of `value`",
+        ),
+        (
+            "wish = { value = 0.3, of = 'static_friction' }\ncoverage = [0, 10]\ntolerance = 0",
+            "`tolerance` must be a number of more than 0",
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'texture.0.lambda' = ['6 um', '2 um'] }}"),

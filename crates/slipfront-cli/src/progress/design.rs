@@ -64,6 +64,7 @@ mod tests {
             stage: DesignStage::Exploring,
             best: 31.25,
             best_texture: None,
+            best_shares: None,
             work: RunCost { here, left: 1e9 },
         };
         assert_eq!(
