@@ -377,7 +377,7 @@ mod tests {
         })
     }
 
-    /// Of three parts 0.1 below, 0.1 above and 0.2 above a value of 2, whose deviations are half as large.
+    /// Three parts lie 0.1 below, 0.1 above and 0.2 above a value of 2; their deviations are half as large.
     #[test]
     fn a_tolerance_counts_parts_and_takes_squares() {
         let deviations = [-0.05, 0.05, 0.1];
