@@ -88,6 +88,7 @@ fn slider() -> impl Strategy<Value = Slider> {
                 },
                 block_size,
                 thickness,
+                rigid: false,
                 body: Body::Sheet,
                 height: None,
                 poisson: None,

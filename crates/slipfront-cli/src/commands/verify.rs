@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
+use serde_json::{Value, json};
 use slipfront::Execution;
 use slipfront_base::number_format::count;
 use slipfront_base::text::truncated;
@@ -32,6 +33,7 @@ use crate::print::print;
 use crate::print_stderr::print_stderr;
 use crate::progress::run::RunProgress;
 use crate::ranks::CommandRanks;
+use crate::report::text_of;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
@@ -45,6 +47,7 @@ use crate::wrap;
   slipfront verify results/*
   slipfront verify --checksums results/design   compares files with their checksums alone
   slipfront verify --rerun results/baseline     runs its case again and compares every file
+  slipfront verify --json results/* | jq '.folders[] | select(.status != \"unchanged\").folder'
 
 Tables, pictures and masks of studies, convergences, designs, calibrations and of the paper are derived again from the runs that their
 folders record. What cannot be derived again is no success, unless --checksums asks for no more. Folders that hold pictures alone, as
@@ -66,6 +69,9 @@ pub(crate) struct VerifyCommand {
     /// Say only what is wrong
     #[arg(short, long)]
     quiet: bool,
+    /// Print what was found of each folder as JSON on stdout, and nothing else there
+    #[arg(long)]
+    json: bool,
 }
 
 impl VerifyCommand {
@@ -74,56 +80,82 @@ impl VerifyCommand {
         // A signal ends the work and not the process, so that nothing of it is left in the folder for
         // temporary files.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let (mut different, mut unusable, mut pictures, mut not_derived) = (0, 0, 0, 0);
+        let mut found = Vec::new();
         for folder in &self.folders {
-            if holds_pictures_alone(folder) {
-                pictures += 1;
-                if !self.quiet {
-                    let sentence = format!(
-                        "{} holds pictures alone, of which nothing is recorded",
-                        folder.display()
-                    );
-                    print(&wrap::note(&sentence))?;
-                }
-                continue;
-            }
-            let mut verdict = Verdict::default();
-            let looked_at = self.look_at(folder, &signals, &mut verdict);
+            let looked_at = self.look_at(folder, &signals)?;
             Failure::if_stopped(&signals)?;
-            different += usize::from(!verdict.differences.is_empty());
-            not_derived += usize::from(verdict.not_derived.is_some() && !self.checksums);
-            print(&self.report(folder, &verdict, looked_at.is_ok()))?;
-            match looked_at {
-                Ok(()) => {}
-                // The others are looked at all the same.
-                Err(Failure::Input(error)) => {
-                    unusable += 1;
-                    print_stderr(&format!("error: {error}"));
-                }
-                Err(failure) => return Err(failure),
+            if !self.json {
+                print(&self.report(folder, &looked_at))?;
             }
+            if let Some(error) = &looked_at.error {
+                print_stderr(&format!("error: {error}"));
+            }
+            found.push(looked_at);
         }
-        let of_all = format!("of {}", count(self.folders.len(), "folder"));
+        if self.json {
+            let folders = self.folders.iter().zip(&found);
+            let folders: Vec<_> = folders.map(|(folder, found)| found.to_json(folder)).collect();
+            print(&text_of(&json!({ "folders": folders })))?;
+        }
+        self.outcome(&found)
+    }
+
+    /// Fails unless all folders are as they were written.
+    fn outcome(&self, found: &[Finding]) -> Result<(), Failure> {
+        let n = |status: Status| found.iter().filter(|found| found.status == status).count();
+        let of_all = format!("of {}", count(found.len(), "folder"));
+        let different = n(Status::Different);
         let differ = if different == 1 { "differs" } else { "differ" };
-        match (unusable, different) {
-            (0, 0) if pictures == self.folders.len() => Err(Failure::input(anyhow::anyhow!(
+        match (n(Status::Unusable), different, n(Status::NotDerived)) {
+            (0, 0, _) if n(Status::Pictures) == found.len() => Err(Failure::input(anyhow::anyhow!(
                 "there is nothing to verify: name folders of runs or studies"
             ))),
-            (0, 0) if not_derived > 0 => Err(Failure::running(anyhow::anyhow!(
+            (0, 0, 0) => Ok(()),
+            (0, 0, not_derived) => Err(Failure::running(anyhow::anyhow!(
                 "{not_derived} {of_all} {} as written, and could not be derived again: --checksums asks for no more",
                 if not_derived == 1 { "is" } else { "are" }
             ))),
-            (0, 0) => Ok(()),
-            (0, _) => Err(Failure::running(anyhow::anyhow!(
+            (0, _, _) => Err(Failure::running(anyhow::anyhow!(
                 "{different} {of_all} {differ} from what was written"
             ))),
-            (_, _) => Err(Failure::input(anyhow::anyhow!(
+            (unusable, _, _) => Err(Failure::input(anyhow::anyhow!(
                 "{unusable} {of_all} cannot be verified, {different} {differ}"
             ))),
         }
     }
 
-    fn look_at(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
+    /// Verifies a folder. That it cannot be verified is a finding, so that the others are looked at all the
+    /// same.
+    fn look_at(&self, folder: &Path, signals: &Signals) -> Result<Finding, Failure> {
+        if holds_pictures_alone(folder) {
+            let verdict = Verdict {
+                what: "pictures alone, of which nothing is recorded".to_owned(),
+                ..Verdict::default()
+            };
+            return Ok(Finding::of(verdict, Status::Pictures));
+        }
+        let mut verdict = Verdict::default();
+        let error = match self.verify(folder, signals, &mut verdict) {
+            Ok(()) => None,
+            Err(Failure::Input(error)) => Some(error.to_string()),
+            Err(failure) => return Err(failure),
+        };
+        if self.checksums {
+            verdict.not_derived = None;
+        }
+        let status = match &verdict {
+            _ if error.is_some() => Status::Unusable,
+            Verdict { differences, .. } if !differences.is_empty() => Status::Different,
+            Verdict { not_derived, .. } if not_derived.is_some() => Status::NotDerived,
+            _ => Status::Unchanged,
+        };
+        Ok(Finding {
+            error,
+            ..Finding::of(verdict, status)
+        })
+    }
+
+    fn verify(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         if self.rerun && has_records(folder) {
             return Err(Failure::input(anyhow::anyhow!(
                 "{} is the folder of a study: --rerun repeats single runs, such as those in its folder runs/",
@@ -222,22 +254,81 @@ impl VerifyCommand {
         Ok(())
     }
 
-    fn report(&self, folder: &Path, verdict: &Verdict, complete: bool) -> String {
+    fn report(&self, folder: &Path, found: &Finding) -> String {
         let mut text = String::new();
-        for difference in &verdict.differences {
+        for difference in &found.verdict.differences {
             text += &format!("{difference}\n");
         }
         if self.quiet {
             return text;
         }
-        if complete && verdict.differences.is_empty() {
-            text += &format!("{}: {}\n", folder.display(), verdict.what);
+        let Verdict { what, notes, not_derived, .. } = &found.verdict;
+        match found.status {
+            Status::Pictures => text += &wrap::note(&format!("{} holds {what}", folder.display())),
+            Status::Unchanged | Status::NotDerived => text += &format!("{}: {what}\n", folder.display()),
+            Status::Different | Status::Unusable => {}
         }
-        let not_derived = verdict.not_derived.iter().filter(|_| !self.checksums);
-        for note in verdict.notes.iter().chain(not_derived) {
+        for note in notes.iter().chain(not_derived) {
             text += &wrap::note(note);
         }
         text
+    }
+}
+
+/// What verification found of a folder.
+struct Finding {
+    status: Status,
+    verdict: Verdict,
+    /// Reason for which the folder cannot be verified.
+    error: Option<String>,
+}
+
+impl Finding {
+    fn of(verdict: Verdict, status: Status) -> Self {
+        Self {
+            status,
+            verdict,
+            error: None,
+        }
+    }
+
+    fn to_json(&self, folder: &Path) -> Value {
+        json!({
+            "folder": folder.display().to_string(),
+            "status": self.status.name(),
+            "what": self.verdict.what,
+            "differences": self.verdict.differences,
+            "notes": self.verdict.notes,
+            "not_derived": self.verdict.not_derived,
+            "error": self.error,
+        })
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Status {
+    /// All is as it was written.
+    Unchanged,
+    /// All is as it was written, but could not be derived again from the recorded runs.
+    NotDerived,
+    /// Something is not as it was written.
+    Different,
+    /// The folder holds pictures alone, of which nothing is recorded.
+    Pictures,
+    /// The folder cannot be verified.
+    Unusable,
+}
+
+impl Status {
+    /// Name in JSON.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Unchanged => "unchanged",
+            Self::NotDerived => "not_derived",
+            Self::Different => "different",
+            Self::Pictures => "pictures",
+            Self::Unusable => "unusable",
+        }
     }
 }
 

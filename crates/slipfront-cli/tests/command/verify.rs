@@ -52,6 +52,29 @@ fn a_run_is_what_was_written() {
     assert!(before == workspace.files("."), "verifying has changed something");
 }
 
+/// A script finds the folders that are not as they were written, with the reasons of each.
+#[test]
+fn json_has_what_was_found_of_each_folder() {
+    let workspace = workspace_with_a_run();
+    workspace.succeed("run small.toml -o b");
+    workspace.write("b/series.csv", "other bytes");
+    workspace.succeed("plot a -o drawn");
+    let (status, said, errors) = verified(&workspace, "a b drawn nowhere --json");
+    assert_eq!(status, 2, "{errors}");
+    let found: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let of = |key: &str| -> Vec<String> {
+        let folders = found["folders"].as_array().unwrap();
+        folders.iter().map(|folder| folder[key].to_string()).collect()
+    };
+    assert_eq!(of("folder"), [r#""a""#, r#""b""#, r#""drawn""#, r#""nowhere""#]);
+    assert_eq!(
+        of("status"),
+        [r#""unchanged""#, r#""different""#, r#""pictures""#, r#""unusable""#]
+    );
+    assert!(of("differences")[1].contains("b/series.csv differs"), "{said}");
+    assert!(of("error")[3].contains("nowhere is no folder"), "{said}");
+}
+
 #[test]
 fn every_changed_byte_is_seen() {
     let workspace = workspace_with_a_run();
