@@ -49,8 +49,11 @@ pub struct LoadingSpeed {
     pub over_given: f64,
     /// Steps that are expected, see [`Case::expected_steps`].
     pub steps: ExpectedSteps,
-    /// Drag of the damping over kinetic friction without it.
+    /// Drag of the damping over kinetic friction without it, or over a tenth of static friction where that is
+    /// more.
     pub drag_share: f64,
+    /// Whether drag is compared with a tenth of static friction.
+    pub is_share_of_static: bool,
 }
 
 impl Case {
@@ -89,10 +92,12 @@ impl Case {
             && file.time.step != TimeStep::Paper
             && !self.model.drive.is_held();
         let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
+        let (kinetic, least) = (level - drag, 0.1 * self.model.surface.mean_static_force());
         is_free.then(|| LoadingSpeed {
             over_given: 1.0,
             steps: self.expected_steps(),
-            drag_share: drag / (level - drag),
+            drag_share: drag / kinetic.max(least),
+            is_share_of_static: kinetic < least,
         })
     }
 }
@@ -121,6 +126,7 @@ impl LoadingSpeed {
             over_given: factor * self.over_given,
             steps: self.steps.at_speed(factor),
             drag_share: factor * self.drag_share,
+            ..self
         }
     }
 }

@@ -262,7 +262,12 @@ impl VerifyCommand {
         if self.quiet {
             return text;
         }
-        let Verdict { what, notes, not_derived, .. } = &found.verdict;
+        let Verdict {
+            what,
+            notes,
+            not_derived,
+            ..
+        } = &found.verdict;
         match found.status {
             Status::Pictures => text += &wrap::note(&format!("{} holds {what}", folder.display())),
             Status::Unchanged | Status::NotDerived => text += &format!("{}: {what}\n", folder.display()),

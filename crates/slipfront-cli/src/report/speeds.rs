@@ -82,11 +82,16 @@ impl Speeds {
         let slow = &self.slow;
         let mut text = table(&header, &rows);
         text += &format!(
-            "slow loading      `{}`: {}; mu_s* within {} of slow loading in the mean of surfaces, drag {} of kinetic friction\n",
+            "slow loading      `{}`: {}; mu_s* within {} of slow loading in the mean of surfaces, drag {} of {}\n",
             self.setting(case, slow.over_given),
             duration(per_step.of_steps(&slow.steps)),
             two_digits(slow.static_bound()),
-            percent(slow.drag_share)
+            percent(slow.drag_share),
+            if slow.is_share_of_static {
+                "a tenth of static friction"
+            } else {
+                "kinetic friction"
+            }
         );
         if let Some((factor, steps)) = self.held {
             text += &format!(
@@ -138,7 +143,7 @@ impl Speeds {
                 "v_star": speed.over_given * case.groups.v_star,
                 "front_ratio": speed.steps.front_ratio,
                 "static_friction_star_bound": speed.static_bound(),
-                "drag_over_kinetic": speed.drag_share,
+                "drag_over_kinetic": (!speed.is_share_of_static).then_some(speed.drag_share),
                 "steps": speed.steps.steps[1],
                 "seconds": seconds(per_step.of_steps(&speed.steps)),
             })

@@ -69,7 +69,12 @@ fn json_has_what_was_found_of_each_folder() {
     assert_eq!(of("folder"), [r#""a""#, r#""b""#, r#""drawn""#, r#""nowhere""#]);
     assert_eq!(
         of("status"),
-        [r#""unchanged""#, r#""different""#, r#""pictures""#, r#""unusable""#]
+        [
+            r#""unchanged""#,
+            r#""different""#,
+            r#""pictures""#,
+            r#""unusable""#
+        ]
     );
     assert!(of("differences")[1].contains("b/series.csv differs"), "{said}");
     assert!(of("error")[3].contains("nowhere is no folder"), "{said}");

@@ -28,6 +28,12 @@ fn a_speed_has_the_numbers_of_its_formulas() {
     let soft = case(&["drive.stiffness_star=1e-4"]).loading_speed().unwrap();
     let slow = soft.times(soft.factor_to_slow());
     assert!(near(slow.drag_share, 0.005) && slow.static_bound() < 0.006);
+    // Without kinetic friction drag is compared with a tenth of static friction.
+    let without = case(&["friction.r_star=0", "friction.sigma_static_star=0"])
+        .loading_speed()
+        .unwrap();
+    assert!(without.is_share_of_static && !given.is_share_of_static);
+    assert!(near(without.drag_share, 0.75_f64.sqrt() * 0.1 * 0.03 / 0.1));
 }
 
 /// No other speed takes the place of one that is part of the physics.
