@@ -1,18 +1,18 @@
-"""Compares the time that `slipfront check` estimates for 100 runs with the time that they take.
+"""Compares the time that `slipfront check` estimates for 100 runs with the processor time that they take.
 
     python3 benches/estimates.py target/release/slipfront
 
 Sizes, speeds, laws and ends are drawn at random from a fixed seed, so that a run takes some seconds. Prints a
 line a run: seconds, the two bounds over them, and the case; at the end how many lower bounds are below half of
-the truth and how many upper ones above twice of it. Leave the machine to it: other work makes both longer.
+the truth and how many upper ones above twice of it. Other work on the machine does not count in either time.
 """
 
 import json
 import random
+import resource
 import subprocess
 import sys
 import tempfile
-import time
 
 RUNS = 100
 # Steps times blocks of a run: one to five seconds of one core.
@@ -53,10 +53,11 @@ def main() -> None:
             sets = [part for key in keys for part in ("--set", key)]
             check = subprocess.run([program, "check", "--json", *sets], capture_output=True, check=True)
             least, most = json.loads(check.stdout)["seconds"]
-            began = time.monotonic()
-            run = [program, "run", *sets, "-o", folder, "--force", "--quiet", "--no-pictures"]
-            subprocess.run(run, check=True)
-            truth = time.monotonic() - began
+            began = resource.getrusage(resource.RUSAGE_CHILDREN)
+            options = ["-o", folder, "--force", "--quiet", "--no-pictures", "--threads", "1"]
+            subprocess.run([program, "run", *sets, *options], check=True)
+            ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+            truth = ended.ru_utime - began.ru_utime + ended.ru_stime - began.ru_stime
             low += least < truth / 2
             high += most > 2 * truth
             print(f"{truth:7.2f} s   {least / truth:5.2f} to {most / truth:5.2f}   {name}", flush=True)

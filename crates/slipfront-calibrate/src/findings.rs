@@ -141,7 +141,7 @@ impl UnknownEstimate {
 }
 
 /// A value with its unit, if it has one.
-pub(crate) fn with_unit(value: f64, unit: Option<&str>) -> String {
+fn with_unit(value: f64, unit: Option<&str>) -> String {
     let number = slipfront_base::number_format::four_digits(value);
     match unit {
         Some(unit) => format!("{number} {unit}"),

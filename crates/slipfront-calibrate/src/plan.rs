@@ -13,13 +13,13 @@ use slipfront_study::work_memory::WorkMemory;
 
 use crate::calibration::{Calibration, UNDETERMINED};
 use crate::file::{CalibrationFile, SampledRecord, expect_memory};
-use crate::findings::with_unit;
 use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::runs::RunMaker;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
 use crate::summaries::MIN_VALUES;
 use crate::training::Training;
+use slipfront_study::Unknown;
 
 /// Number of runs of an experiment.
 const RUNS: usize = 200;
@@ -194,12 +194,8 @@ impl CalibrationFile {
                 });
             }
         }
-        let ends = planned
-            .unknowns
-            .iter()
-            .map(|unknown| [0.0, 1.0].map(|share| with_unit(unknown.at(share), unknown.unit())));
         Ok(ExperimentPlan {
-            ranges: ends.collect(),
+            ranges: planned.unknowns.iter().map(Unknown::range_in_words).collect(),
             unknowns: planned
                 .unknowns
                 .iter()

@@ -26,7 +26,7 @@ use slipfront_study::StudyError;
 #[derive(Debug)]
 pub struct Design {
     pub(crate) evaluator: Evaluator,
-    limits: Limits,
+    pub(crate) limits: Limits,
     /// Number from which the random drafts of the search begin.
     start: u64,
     /// Masks with which the search also begins, and their names.
@@ -136,12 +136,12 @@ impl Design {
                 shapes: None,
             })
             .collect();
-        let is_drawn = |named: &Contender| self.drawn.iter().any(|(name, _)| *name == named.name);
+        let names: Vec<String> = legal.iter().map(|named| named.name.clone()).collect();
+        let (of, of_work) = self.most_of_verdict(&names);
         let groove = legal.iter().filter(|named| named.name == GROOVE);
-        let drawn = legal.iter().filter(|named| is_drawn(named));
+        let drawn = legal.iter().filter(|named| self.is_drawn(&named.name));
         let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
         let mut stages = Stages::new(&self.evaluator, self.search_from(starts));
-        let (of, of_work) = Judge::most_runs(&self.evaluator, legal.len(), beside.len());
         let (made, here) = (Cell::new(0), Cell::new(0.0));
         let mut kept = |runs: &[MadeRun]| {
             made.set(made.get() + runs.len());
@@ -236,9 +236,22 @@ impl Design {
         Search::new(space, self.limits.feature, self.start, starts)
     }
 
+    /// Whether a pattern is one of the masks with which the search begins.
+    fn is_drawn(&self, name: &str) -> bool {
+        self.drawn.iter().any(|(drawn, _)| drawn == name)
+    }
+
+    /// Largest number of runs of the verdict beside legal patterns of these names, and their cost in steps
+    /// times blocks.
+    pub(crate) fn most_of_verdict(&self, patterns: &[String]) -> (usize, f64) {
+        let is_judged = |name: &&String| *name == GROOVE || self.is_drawn(name);
+        let judged = patterns.iter().filter(is_judged).count();
+        Judge::most_runs(&self.evaluator, patterns.len(), judged)
+    }
+
     /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer
     /// once `ends` returns true.
-    fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
+    pub(crate) fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let drawn = self.drawn.iter().filter_map(|(name, textured)| {
             let named = Named::drawn(grid, name, textured);

@@ -62,6 +62,11 @@ impl DesignFolder {
         &self.path
     }
 
+    /// Path of the numbers that were found.
+    pub fn numbers(&self) -> PathBuf {
+        self.path.join(VERDICT[0])
+    }
+
     fn report<'a>(&'a self, batch: &'a mut Batch) -> Report<'a> {
         Report {
             path: &self.path,
@@ -147,7 +152,7 @@ impl DesignFolder {
 
     /// Whether a search in the folder was finished: its results stand there.
     pub fn has_verdict(&self) -> bool {
-        self.path.join(VERDICT[0]).exists()
+        self.numbers().exists()
     }
 
     /// Searches and judges with the runs of the journal, which new runs join.

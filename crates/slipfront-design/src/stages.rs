@@ -183,7 +183,7 @@ impl<'a> Stages<'a> {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Proposal>, StudyError> {
         self.evaluator.check_reference(known, bounds.stop, keep)?;
-        let explored = explored(bounds);
+        let explored = explored(bounds.runs);
         while self.runs < explored && self.has_time(bounds, false) {
             let proposals = self.ask(batch(bounds), bounds)?;
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
@@ -318,11 +318,7 @@ impl<'a> Stages<'a> {
 
     /// Largest cost of the runs of the search that remain.
     fn work_left(&self, bounds: &Bounds) -> f64 {
-        let explored = explored(bounds);
-        let coarse = explored.saturating_sub(self.runs);
-        let fine = bounds.runs.saturating_sub(explored.max(self.runs));
-        coarse as f64 * self.evaluator.work(Fidelity::Coarse)
-            + fine as f64 * self.evaluator.work(Fidelity::Fine)
+        most_work(self.evaluator, bounds.runs, self.runs)
     }
 
     /// Surfaces and step of a stage.
@@ -346,7 +342,15 @@ fn batch(bounds: &Bounds) -> usize {
     GENERATION * (bounds.runs / RUNS_OF_START).clamp(1, MAX_STARTS)
 }
 
-/// Number of runs after which drafts are tried on several surfaces.
-fn explored(bounds: &Bounds) -> usize {
-    (EXPLORED * bounds.runs as f64) as usize
+/// Number of runs, of all `runs` of a search, after which drafts are tried on several surfaces.
+fn explored(runs: usize) -> usize {
+    (EXPLORED * runs as f64) as usize
+}
+
+/// Largest cost of a search of `runs` once `made` of them have been made, in steps times blocks.
+pub(crate) fn most_work(evaluator: &Evaluator, runs: usize, made: usize) -> f64 {
+    let explored = explored(runs);
+    let coarse = explored.saturating_sub(made);
+    let fine = runs.saturating_sub(explored.max(made));
+    coarse as f64 * evaluator.work(Fidelity::Coarse) + fine as f64 * evaluator.work(Fidelity::Fine)
 }

@@ -1,9 +1,11 @@
 //! Estimate of the cost of a run from some of its steps.
 
 use std::ops::{Add, Mul};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use serde::Serialize;
 use slipfront::{Execution, Simulation, State};
+use slipfront_base::machine::thread_time;
 use slipfront_case::case::{Case, ExpectedSteps};
 
 /// Measurements of each kind in an estimate.
@@ -13,14 +15,22 @@ const MEASUREMENT: Duration = Duration::from_millis(5);
 /// Duration of the measurements of a kind from which on no other begins.
 const ENOUGH: Duration = Duration::from_millis(300);
 
-/// Bounds of the time that a computation takes, in s, from several short measurements: other work on the
-/// machine makes it longer, and the range wider.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Bounds of the time that a computation takes on a machine without other work, in s, from several short
+/// measurements. In JSON it is `[least, most]`,
+/// where no upper bound is null.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(into = "[f64; 2]")]
 pub struct TimeRange {
     /// The lower bound.
     pub least: f64,
-    /// The upper bound.
+    /// The upper bound; infinite if a held drive may stand for any number of steps.
     pub most: f64,
+}
+
+impl From<TimeRange> for [f64; 2] {
+    fn from(time: TimeRange) -> Self {
+        [time.least, time.most]
+    }
 }
 
 impl Add for TimeRange {
@@ -68,7 +78,11 @@ impl StepTime {
         let mean = |at_rest: f64, sliding: f64, share: f64| at_rest + share * (sliding - at_rest).max(0.0);
         TimeRange {
             least: fewest * mean(self.at_rest.least, self.sliding.least, least_share),
-            most: most * mean(self.at_rest.most, self.sliding.most, largest_share),
+            most: if expected.stands {
+                f64::INFINITY
+            } else {
+                most * mean(self.at_rest.most, self.sliding.most, largest_share)
+            },
         }
     }
 }
@@ -90,9 +104,9 @@ fn measured(case: &Case, state: Option<State>) -> TimeRange {
     let mut simulation = Simulation::new(case.model.clone(), case.time_plan.dt_star, state, execution);
     // The first step brings the lattice into the cache.
     simulation.step();
-    let began = Instant::now();
+    let began = thread_time();
     let mut measured = Vec::new();
-    while measured.is_empty() || (measured.len() < MEASUREMENTS && began.elapsed() < ENOUGH) {
+    while measured.is_empty() || (measured.len() < MEASUREMENTS && thread_time() - began < ENOUGH) {
         measured.push(seconds_per_step(&mut simulation));
     }
     TimeRange {
@@ -103,10 +117,14 @@ fn measured(case: &Case, state: Option<State>) -> TimeRange {
 
 /// Seconds per step of one measurement.
 fn seconds_per_step(simulation: &mut Simulation) -> f64 {
-    let (began, mut steps) = (Instant::now(), 0);
-    while steps == 0 || began.elapsed() < MEASUREMENT {
+    let (began, mut steps) = (thread_time(), 0);
+    let passed = loop {
         simulation.step();
         steps += 1;
-    }
-    began.elapsed().as_secs_f64() / f64::from(steps)
+        let passed = thread_time() - began;
+        if passed >= MEASUREMENT {
+            break passed;
+        }
+    };
+    passed.as_secs_f64() / f64::from(steps)
 }

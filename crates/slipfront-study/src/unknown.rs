@@ -1,6 +1,7 @@
 //! Unknowns of a calibration and of a design: numeric keys, each with a range of values.
 
 use serde::Deserialize;
+use slipfront_base::number_format::four_digits;
 use slipfront_case::case_file::Override;
 use toml::Value;
 
@@ -177,6 +178,14 @@ impl Unknown {
     /// The value at a share of the range as a file has it.
     pub fn written(&self, share: f64) -> Value {
         self.with_unit(self.at(share))
+    }
+
+    /// Ends of the range with their unit, for a sentence.
+    pub fn range_in_words(&self) -> [String; 2] {
+        [self.from, self.to].map(|end| match &self.unit {
+            Some(unit) => format!("{} {unit}", four_digits(end)),
+            None => four_digits(end),
+        })
     }
 
     /// A value of the key as a file has it.

@@ -1,5 +1,7 @@
 //! Free memory and disk space of this machine, and its identity.
 
+use std::time::Duration;
+
 #[cfg(feature = "disk")]
 mod of_system;
 #[cfg(not(feature = "disk"))]
@@ -16,6 +18,23 @@ pub fn machine_number() -> i64 {
     let name = sysinfo::System::host_name().unwrap_or_default();
     let hash = blake3::hash(name.as_bytes());
     i64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
+}
+
+/// Time that a processor has spent on this thread, so that other work on the machine does not count.
+#[cfg(all(unix, feature = "disk"))]
+pub fn thread_time() -> Duration {
+    use rustix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
+}
+
+/// Time since the first call, where the system gives none of a thread: other work on the machine counts.
+#[cfg(not(all(unix, feature = "disk")))]
+pub fn thread_time() -> Duration {
+    use std::sync::LazyLock;
+    use std::time::Instant;
+    static BEGAN: LazyLock<Instant> = LazyLock::new(Instant::now);
+    BEGAN.elapsed()
 }
 
 /// Memory that this process may still take, in bytes: the memory that the machine can give without swapping,

@@ -265,16 +265,18 @@ impl Case {
     pub fn expected_steps(&self) -> ExpectedSteps {
         let plan = &self.time_plan;
         let last = plan.last_step as f64;
-        let front_ratio = self.front_ratio();
-        if self.file.time.stop != StopReason::Onset || self.model.drive.is_held() {
-            return ExpectedSteps {
-                steps: [last; 2],
-                front_ratio,
-            };
+        let stands = self.model.drive.is_held();
+        let steps = if self.file.time.stop != StopReason::Onset || stands {
+            [last; 2]
+        } else {
+            let [early, late] = self.expected.onset_star;
+            [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last))
+        };
+        ExpectedSteps {
+            steps,
+            front_ratio: self.front_ratio(),
+            stands,
         }
-        let [early, late] = self.expected.onset_star;
-        let steps = [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last));
-        ExpectedSteps { steps, front_ratio }
     }
 
     /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.

@@ -17,6 +17,8 @@ pub struct ExpectedSteps {
     pub steps: [f64; 2],
     /// V* N, the time in which a slip front crosses the slider over that of loading.
     pub front_ratio: f64,
+    /// Whether a held drive stands for more steps, whose number is not known before.
+    pub stands: bool,
 }
 
 impl ExpectedSteps {
@@ -38,6 +40,7 @@ impl ExpectedSteps {
         Self {
             steps: self.steps.map(|steps| (steps / factor).ceil()),
             front_ratio: factor * self.front_ratio,
+            ..self
         }
     }
 }

@@ -9,9 +9,10 @@ use slipfront_design::{Bounds, DesignFile, DesignFolder};
 use slipfront_study::StudyError;
 
 use crate::failure::Failure;
-use crate::print::print_message;
+use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
 use crate::progress::design::DesignProgress;
+use crate::report::{self, text_of};
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
@@ -23,6 +24,7 @@ use crate::threads::{count_from_one, set_threads};
   slipfront design cases/designs/least_friction.toml
   slipfront design cases/designs/least_friction.toml --runs 2000 -o results/quick
   slipfront design cases/designs/static_friction.toml --time 60s
+  slipfront design cases/designs/dimples.toml --dry-run
 
 Stopped in any way, the same command goes on where it was. The folder holds the mask as .npy, .png, .svg, .dxf and .gsf, a case that
 reads it, and the verdict beside named patterns.")]
@@ -47,9 +49,15 @@ pub(crate) struct DesignCommand {
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    /// Print what is searched for, the largest number of runs and their time, and run nothing
+    #[arg(long)]
+    dry_run: bool,
     /// Show neither progress nor the verdict
     #[arg(short, long)]
     quiet: bool,
+    /// Print the verdict, or with --dry-run the plan, as JSON on stdout, and nothing else there
+    #[arg(long)]
+    json: bool,
 }
 
 impl DesignCommand {
@@ -60,6 +68,9 @@ impl DesignCommand {
         // A design that is invalid, or has no memory, leaves no folder.
         file.check(runs, threads, self.time.is_some())
             .map_err(Failure::input)?;
+        if self.dry_run {
+            return self.plan(&file, runs, threads);
+        }
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
@@ -73,7 +84,7 @@ impl DesignCommand {
             stop: &signals.stop,
             cut: None,
         };
-        if !self.quiet {
+        if !self.quiet && !self.json {
             print_notes(folder.notes());
         }
         let mut progress = DesignProgress::new(self.quiet);
@@ -101,9 +112,20 @@ impl DesignCommand {
             StudyError::NoDesign => Failure::input(error),
             error => Failure::of_results(&signals, error),
         })?;
-        if !self.quiet {
+        if self.json {
+            print_file(&folder.numbers())?;
+        } else if !self.quiet {
             print_message(&format!("{text}\n{}\n", folder.path().display()));
         }
         folder.expect_verdict().map_err(Failure::running)
+    }
+
+    /// Prints what is searched for, and what it costs.
+    fn plan(&self, file: &DesignFile, runs: usize, threads: usize) -> Result<(), Failure> {
+        let plan = file.plan(runs, threads).map_err(Failure::input)?;
+        if self.json {
+            return print(&text_of(&serde_json::to_value(&plan).map_err(Failure::running)?));
+        }
+        print(&report::design(&plan, threads))
     }
 }

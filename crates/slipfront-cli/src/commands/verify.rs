@@ -280,7 +280,7 @@ impl VerifyCommand {
     }
 }
 
-/// What verification found of a folder.
+/// The result of verifying a folder.
 struct Finding {
     status: Status,
     verdict: Verdict,

@@ -121,7 +121,7 @@ fn scales(case: &Case) -> String {
 /// Remark on the cost of a drive that is held, which leaves out the unknown time in which it stands.
 pub(super) fn standing(is_held: bool) -> &'static str {
     if is_held {
-        " at least (without those in which the drive stands)"
+        " and those in which the drive stands"
     } else {
         ""
     }

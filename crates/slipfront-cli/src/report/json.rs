@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use slipfront_base::machine::available_memory;
 use slipfront_case::case::Case;
-use slipfront_run::estimate_cost::{StepTime, TimeRange};
+use slipfront_run::estimate_cost::StepTime;
 
 use super::cost::warnings;
 use super::speeds::Speeds;
@@ -11,11 +11,6 @@ use super::speeds::Speeds;
 /// The text of a report as it is printed.
 pub(crate) fn text_of(report: &Value) -> String {
     format!("{report:#}\n")
-}
-
-/// A time for programs: the least and the most seconds.
-pub(super) fn seconds(time: TimeRange) -> [f64; 2] {
-    [time.least, time.most]
 }
 
 /// The physics and the cost of a case, with the names of `summary.json` where that has the same number;
@@ -62,9 +57,9 @@ pub(crate) fn check(case: &Case, per_step: &StepTime) -> Value {
         "displacement_unit_m": case.scales.displacement(),
         "stress_unit_pa": case.scales.stress(),
         "block_steps": case.block_steps(),
-        "seconds": seconds(per_step.of_steps(&case.expected_steps())),
-        "seconds_per_step_at_rest": seconds(per_step.at_rest),
-        "seconds_per_step_sliding": seconds(per_step.sliding),
+        "seconds": per_step.of_steps(&case.expected_steps()),
+        "seconds_per_step_at_rest": per_step.at_rest,
+        "seconds_per_step_sliding": per_step.sliding,
         "speeds": Speeds::of(case).map(|speeds| speeds.json(case, per_step)),
         "memory_bytes": bytes(budget.memory()),
         "memory_available_bytes": available_memory().map(bytes),

@@ -1,8 +1,9 @@
-//! Reports of the commands: the physics of a case as a tree, its cost, the summary of a run, the plan and the
-//! answer of a study.
+//! Reports of the commands: the physics of a case as a tree, its cost, the summary of a run, the plan of a
+//! design, the plan and the answer of a study.
 
 mod anisotropy;
 mod cost;
+mod design;
 mod json;
 mod lengths;
 mod physics;
@@ -12,6 +13,7 @@ mod summary;
 mod times;
 
 pub(crate) use cost::cost;
+pub(crate) use design::design;
 pub(crate) use json::{check, text_of};
 pub(crate) use lengths::lengths;
 pub use physics::physics;

@@ -8,7 +8,6 @@ use slipfront_case::case_file::{Attached, AttachedEdge, AutoOr, DriveSpeed, RunT
 use slipfront_run::estimate_cost::StepTime;
 use slipfront_study::text_table::table;
 
-use super::json::seconds;
 use super::times::duration;
 
 /// Speeds of the table, over that which is slow enough.
@@ -145,7 +144,7 @@ impl Speeds {
                 "static_friction_star_bound": speed.static_bound(),
                 "drag_over_kinetic": (!speed.is_share_of_static).then_some(speed.drag_share),
                 "steps": speed.steps.steps[1],
-                "seconds": seconds(per_step.of_steps(&speed.steps)),
+                "seconds": per_step.of_steps(&speed.steps),
             })
         };
         let all: Vec<Value> = self.all().iter().map(speed).collect();

@@ -7,6 +7,12 @@ use slipfront_run::estimate_cost::TimeRange;
 
 /// Duration of a computation.
 pub(super) fn duration(time: TimeRange) -> String {
+    if time.most.is_infinite() {
+        return match time.least {
+            least if least < 1.0 => "at least a fraction of a second".to_owned(),
+            least => format!("at least {}", rounded(least)),
+        };
+    }
     if time.most < 1.0 {
         return "less than a second".to_owned();
     }

@@ -183,3 +183,45 @@ fn lines_without_numbers_are_no_wish() {
     );
     assert!(!workspace.exists("found"));
 }
+
+/// The plan names what is searched for and its cost, and writes nothing; the verdict is printed as its file.
+#[test]
+fn a_design_is_planned_and_read_by_programs() {
+    let workspace = Workspace::new();
+    let numbers = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
+        texture = [{ shape = 'cavity', lambda = '2 um', pitch = '8 um' }]\n\
+        [design]\nwish = { least = 'static_friction' }\nruns = 60\ncoverage = [0, 40]\n\
+        unknowns = { 'texture.0.lambda' = ['1 um', '3 um'] }\n";
+    workspace.write("numbers.toml", numbers);
+    let said = unwrapped(&workspace.succeed("design numbers.toml --dry-run --threads 1"));
+    for words in [
+        "texture.0.lambda: 1 um to 3 um",
+        "shapes on 16 x 16 blocks that cover 0 to 40 % of them, in 1 case, beside ",
+        "60 runs of the search, at most ",
+        " of the verdict",
+        "block-steps, ",
+        " on 1 thread of this machine",
+    ] {
+        assert!(said.contains(words), "{words:?} is missing:\n{said}");
+    }
+    let plan: Value =
+        serde_json::from_str(&workspace.succeed("design numbers.toml --dry-run --json")).unwrap();
+    assert_eq!(workspace.files(".").len(), 1, "a plan has written something");
+    let [least, most] = [0, 1].map(|end| plan["seconds"][end].as_f64().unwrap());
+    assert!(0.0 < least && least <= most, "{plan}");
+    let printed = workspace.succeed("design numbers.toml --json -o found");
+    let printed: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(printed, verdict(&workspace, "found"));
+    // The runs are as many as the plan says: a generation of the search may go beyond.
+    let made = workspace.read_text("found/design.jsonl").lines().count() as f64;
+    let planned = (plan["search_runs"].as_f64().unwrap()) + plan["verdict_runs"].as_f64().unwrap();
+    assert!(made < 1.1 * planned, "{made} runs, {planned} planned");
+    // How long a held drive stands is not known.
+    let held = numbers.replace("drive.v_star = 0.1", "drive = { v_star = 0.1, loading = 'held' }");
+    workspace.write("held.toml", held);
+    let said = unwrapped(&workspace.succeed("design held.toml --dry-run"));
+    assert!(
+        said.contains("block-steps and those in which the drive stands, at least a fraction of a second"),
+        "{said}"
+    );
+}

@@ -243,7 +243,7 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     }
     // How long a held drive stands is not known.
     let said = unwrapped(&workspace.succeed("check small.toml --set drive.loading=held"));
-    let least = "block-steps at least (without those in which the drive stands), ";
+    let least = "block-steps and those in which the drive stands, at least ";
     assert!(said.contains(least), "{said}");
     // I^2 with a = 3, and the product of I with a = 3/6 and 3/5 along the axes.
     let said = unwrapped(&workspace.succeed("check small.toml --set friction.correlation_length=3um"));

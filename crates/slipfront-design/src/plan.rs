@@ -1,0 +1,96 @@
+//! Plans of designs: the search and its cost, before any run is made.
+
+use serde::Serialize;
+use slipfront_case::case_file::CaseError;
+use slipfront_run::estimate_cost::{StepTime, TimeRange};
+use slipfront_study::StudyError;
+
+use crate::design::Design;
+use crate::evaluate::Evaluator;
+use crate::file::DesignFile;
+use crate::stages::most_work;
+use crate::subject::Fidelity;
+
+/// The cost of a design and of the designs of its front.
+#[derive(Clone, Debug, Serialize)]
+pub struct DesignPlan {
+    /// Name of the design.
+    pub name: String,
+    /// Blocks along x and along y.
+    pub blocks: [usize; 2],
+    /// Keys of shapes whose numbers are searched for, with the ends of their ranges; none if masks are.
+    pub unknowns: Vec<(String, [String; 2])>,
+    /// Allowed share of textured blocks, %.
+    pub coverage_percent: [f64; 2],
+    /// Names of the legal patterns with which the design is compared.
+    pub patterns: Vec<String>,
+    /// Cases in which every texture is tried.
+    pub cases: usize,
+    /// Number of designs: one, and the others of the front.
+    pub designs: usize,
+    /// Runs of each search.
+    pub search_runs: usize,
+    /// Largest number of runs of each verdict.
+    pub verdict_runs: usize,
+    /// Largest cost of all runs, in steps times blocks, without steps in which a held drive stands.
+    pub block_steps: f64,
+    /// Time of all runs, in s.
+    #[serde(rename = "seconds")]
+    pub time: TimeRange,
+}
+
+impl DesignFile {
+    /// The plan of the design with a search of so many runs, on `threads` threads of this machine.
+    ///
+    /// # Errors
+    /// As [`design`](Self::design).
+    pub fn plan(&self, runs: usize, threads: usize) -> Result<DesignPlan, StudyError> {
+        let design = self.design()?;
+        let (starts, _) = design.starts(&|| false);
+        let patterns: Vec<String> = starts.into_iter().map(|named| named.name).collect();
+        let (verdict_runs, verdict_work) = design.most_of_verdict(&patterns);
+        let search_work = most_work(&design.evaluator, runs, 0);
+        let designs = 1 + self.keys.front.len();
+        let block_steps = designs as f64 * (search_work + verdict_work);
+        Ok(DesignPlan {
+            name: self.name().to_owned(),
+            blocks: design.size(),
+            unknowns: design.unknowns(),
+            coverage_percent: design.limits.coverage,
+            patterns,
+            cases: design.evaluator.subjects.len(),
+            designs,
+            search_runs: runs,
+            verdict_runs,
+            block_steps,
+            time: per_block_step(&design.evaluator)? * (block_steps / threads as f64),
+        })
+    }
+}
+
+impl Design {
+    /// Keys of shapes whose numbers are searched for, with the ends of their ranges.
+    fn unknowns(&self) -> Vec<(String, [String; 2])> {
+        let unknowns = self.shapes.iter().flat_map(|shapes| &shapes.unknowns);
+        unknowns
+            .map(|unknown| (unknown.key().to_owned(), unknown.range_in_words()))
+            .collect()
+    }
+}
+
+/// Time of a block-step in s: the mean over the cases.
+fn per_block_step(evaluator: &Evaluator) -> Result<TimeRange, CaseError> {
+    let mut sum = TimeRange::default();
+    for subject in &evaluator.subjects {
+        let case = subject.case(None, 0, Fidelity::Fine)?;
+        let steps = case.expected_steps();
+        let time = StepTime::of(&case).of_steps(&steps);
+        let blocks = case.model.n_blocks() as f64;
+        sum = sum
+            + TimeRange {
+                least: time.least / (steps.steps[0] * blocks),
+                most: time.most / (steps.steps[1] * blocks),
+            };
+    }
+    Ok(sum * (1.0 / evaluator.subjects.len() as f64))
+}
