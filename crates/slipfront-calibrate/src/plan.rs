@@ -7,9 +7,9 @@ use serde::Serialize;
 use slipfront_base::text::{COLUMNS, wrapped};
 use slipfront_case::case::PROGRAM;
 use slipfront_case::case_file::{CaseError, DriveSpeed, Override};
-use slipfront_study::StudyError;
 use slipfront_study::text_table::table;
 use slipfront_study::work_memory::WorkMemory;
+use slipfront_study::{StudyError, Unknown};
 
 use crate::calibration::{Calibration, UNDETERMINED};
 use crate::file::{CalibrationFile, SampledRecord, expect_memory};
@@ -19,7 +19,6 @@ use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
 use crate::summaries::MIN_VALUES;
 use crate::training::Training;
-use slipfront_study::Unknown;
 
 /// Number of runs of an experiment.
 const RUNS: usize = 200;
@@ -122,7 +121,8 @@ impl CalibrationFile {
     /// When `until` has another unit than records of the file, or there are too few values.
     pub fn planned(&self, until: &str, values: usize) -> Result<Vec<SamplePoints>, StudyError> {
         let along = self.keys.along();
-        let refuse = |sentence: String| self.project.error("x", sentence);
+        let refuse =
+            |sentence: String| CaseError::invalid(None, format!("the end of the planned record: {sentence}"));
         let end = along.parse(until).map_err(refuse)?;
         let grid = SamplePoints::planned(along, end, values).ok_or_else(|| {
             refuse(format!(

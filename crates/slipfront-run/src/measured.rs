@@ -193,6 +193,9 @@ impl Measure {
         let (number, unit) = text.split_once(' ').unwrap_or_else(|| text.split_at(end));
         let number = number.parse::<f64>().ok().filter(|number| number.is_finite());
         match (number, self.factor(unit.trim())) {
+            (Some(_), None) if unit.trim().is_empty() => {
+                Err(format!("{text:?} has no unit: write it as \"2 {}\"", self.unit()))
+            }
             (Some(number), Some(factor)) => Ok(number * factor),
             (Some(_), None) => Err(self.no_such_unit(unit.trim())),
             (None, _) => Err(format!(

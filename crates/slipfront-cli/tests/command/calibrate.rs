@@ -72,6 +72,11 @@ fn a_planned_record_says_what_it_would_show() {
     assert_eq!(workspace.files(".").len(), 1);
     for (line, status, sentence) in [
         ("--dry-run --until 40nm", 2, "a time is wanted"),
+        (
+            "--dry-run --until 40",
+            2,
+            "the end of the planned record: \"40\" has no unit",
+        ),
         ("--dry-run --until 40ns --values 39", 2, "40 at the least"),
         ("--until 40ns", 2, "--dry-run"),
     ] {
