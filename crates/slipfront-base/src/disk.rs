@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use tempfile::{NamedTempFile, TempPath};
 
-pub use crate::folders::{folder_of, sync_folder};
+pub use crate::folders::{folder_name, folder_of, sync_folder};
 use crate::unfinished;
 
 /// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed

@@ -10,6 +10,12 @@ pub fn folder_of(path: &Path) -> &Path {
     parent.unwrap_or(Path::new("."))
 }
 
+/// Name of a folder: of one such as `.` that which the system knows. The root of a file system has none.
+pub fn folder_name(folder: &Path) -> Option<String> {
+    let known = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    Some(known.file_name()?.to_string_lossy().into_owned())
+}
+
 /// Syncs a folder, so that files renamed in it keep their names after a power failure.
 pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     // Only Unix opens folders as files.

@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront_base::disk::{folder_name, folder_of};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseFile, read_text_from};
+use slipfront_run::names::{CASE, MANIFEST, UNFINISHED};
+use slipfront_study::project_folder::CHECKSUMS;
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
@@ -46,9 +49,11 @@ impl CaseArgs {
             None => (String::new(), BASELINE, BASELINE),
             Some(path) if path == Path::new("-") => (read_stdin(ranks)?, STDIN, "stdin"),
             Some(path) => {
-                return make_case(ranks, signals, quiet, |watch, ranks| {
+                let case = make_case(ranks, signals, quiet, |watch, ranks| {
                     Case::load(path, &overrides, watch, ranks)
-                });
+                })?;
+                let name = name_in_results(path).unwrap_or_else(|| case.name.clone());
+                return Ok(Case { name, ..case });
             }
         };
         make_case(ranks, signals, quiet, |watch, ranks| {
@@ -56,6 +61,16 @@ impl CaseArgs {
             Case::to_run(file, name, Path::new(""), watch, ranks)
         })
     }
+}
+
+/// Name of the results folder that keeps this case: each of them calls its copy `case.toml`.
+fn name_in_results(case: &Path) -> Option<String> {
+    let folder = folder_of(case);
+    let is_results = || {
+        let marks = [MANIFEST, UNFINISHED, CHECKSUMS];
+        marks.iter().any(|mark| folder.join(mark).exists())
+    };
+    (case.ends_with(CASE) && is_results()).then(|| folder_name(folder))?
 }
 
 /// Reads the text of a case from standard input, which the processes that share a lattice do not share.

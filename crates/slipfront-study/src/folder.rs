@@ -177,11 +177,7 @@ pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without
     // end.
     open_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
-    let mut study = StudyFile::load(&path)?;
-    if let Some(name) = folder.file_name() {
-        study.name = name.to_string_lossy().into_owned();
-    }
-    Ok(study)
+    StudyFile::load(&path)
 }
 
 /// Refuses folders whose studies differ: names the first that differs from the first of all.

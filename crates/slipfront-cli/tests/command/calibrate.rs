@@ -57,6 +57,11 @@ fn a_calibration_is_told_and_found_again() {
     let printed = workspace.succeed("calibrate fit.toml record.csv -o twice --json");
     assert!(workspace.files("twice") == before);
     assert_eq!(printed.trim_end(), workspace.read_text("twice/calibration.json"));
+    // The copies in the folder are a calibration of its name.
+    std::fs::create_dir(workspace.path("results")).unwrap();
+    std::fs::rename(workspace.path("twice"), workspace.path("results/twice")).unwrap();
+    workspace.succeed("calibrate results/twice/calibration.toml results/twice/record-1.csv --quiet");
+    assert!(workspace.files("results/twice") == before && !workspace.exists("results/calibration"));
 }
 
 /// Records that are planned need none that was measured, and leave nothing.

@@ -50,6 +50,9 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
     let printed = workspace.succeed("converge sheet.toml -o meshes --json");
     assert!(workspace.files("meshes") == before);
     assert_eq!(serde_json::from_str::<Value>(&printed).unwrap(), found);
+    // A case of results has the name of their folder.
+    workspace.succeed("converge run/case.toml --replicates 1 --quiet");
+    assert!(workspace.exists("results/run-meshes/convergence.json"));
     // The plan names every mesh, and runs nothing.
     let plan = workspace.succeed("converge sheet.toml -o plan --dry-run");
     for words in ["100 um   [10, 10]", "25 um   [40, 40]", "at most 6 runs"] {

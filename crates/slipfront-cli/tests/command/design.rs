@@ -80,6 +80,11 @@ fn a_design_is_a_texture_that_other_commands_read() {
     let before = workspace.files("twice");
     workspace.succeed("design wish.toml -o twice");
     assert!(workspace.files("twice") == before);
+    // The copy in the folder is a design of its name.
+    std::fs::create_dir(workspace.path("results")).unwrap();
+    std::fs::rename(workspace.path("twice"), workspace.path("results/twice")).unwrap();
+    workspace.succeed("design results/twice/design.toml --quiet");
+    assert!(workspace.files("results/twice") == before && !workspace.exists("results/design"));
 }
 
 /// A search without time for runs reports the best named pattern as one.

@@ -1,7 +1,7 @@
 //! Help, version, completions, and the output of `check` and `run`.
 
 use crate::fixtures::{SMALL, unwrapped};
-use crate::support::process::stderr;
+use crate::support::process::{stderr, stdout};
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -547,6 +547,30 @@ fn the_next_free_folder_is_taken() {
     std::fs::remove_file(workspace.path("results/small/manifest.json")).unwrap();
     let said = workspace.fail("run small.toml", 2);
     assert!(said.contains("results/small"), "{said}");
+}
+
+/// A case that is run again from its results has the name of their folder, wherever that is.
+#[test]
+fn a_recorded_case_keeps_the_name_of_its_folder() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o results/circle");
+    let again = workspace.output("run results/circle/case.toml");
+    let note = "the folder results/circle is not empty: results go to results/circle-2";
+    assert!(stderr(&again).contains(note), "{}", stderr(&again));
+    assert!(stdout(&again).starts_with("circle\n"), "{}", stdout(&again));
+    workspace.assert_same_run("results/circle", "results/circle-2");
+    let refused = workspace.fail("run results/circle/case.toml --force", 2);
+    assert!(
+        refused.contains("would replace results/circle/case.toml"),
+        "{refused}"
+    );
+    std::fs::rename(workspace.path("results"), workspace.path("kept")).unwrap();
+    workspace.succeed("run kept/circle/case.toml --quiet");
+    workspace.assert_same_run("kept/circle", "results/circle");
+    // A file of the user's has its own name.
+    workspace.write("mine/case.toml", workspace.read("small.toml"));
+    workspace.succeed("run mine/case.toml --quiet");
+    assert!(workspace.exists("results/case/manifest.json"));
 }
 
 /// Lines of notes end between words, within the width of a terminal.

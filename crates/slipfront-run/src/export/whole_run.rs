@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_base::disk::{folder_of, make_folders, open_regular, write_atomic_with};
+use slipfront_base::disk::{folder_name, folder_of, make_folders, open_regular, write_atomic_with};
 use slipfront_case::case_file::CaseFile;
 
 use super::error::ExportError;
@@ -44,16 +44,9 @@ impl WholeRun {
             let (path, why) = (folder.join(MANIFEST), error.to_string());
             VerifyError::from(ManifestError::Unreadable { path, why })
         })?;
-        // A folder named `.` has the name that the system knows.
-        let path = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
         Ok(Self {
             folder: folder.to_owned(),
-            name,
+            name: folder_name(folder).unwrap_or_default(),
             case,
             manifest,
             manifest_file,

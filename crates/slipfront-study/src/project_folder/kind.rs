@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slipfront_base::disk::{is_empty, make_folders};
+use slipfront_base::disk::{folder_name, folder_of, is_empty, make_folders};
 use slipfront_case::case_file::read_text;
 use slipfront_run::folder_error::FolderError;
 
@@ -29,8 +29,9 @@ impl ProjectKind {
         folder.join(self.file).exists() && folder.join(self.journal).exists()
     }
 
-    /// Loads a file of this kind by `parse`, which takes its text, its path, its name without the ending, and
-    /// its folder.
+    /// Loads a file of this kind by `parse`, which takes its text, its path, the name of the project, and the
+    /// folder of the file. The project has the name of the file without the ending, or, where the file is the
+    /// one that a results folder keeps, the name of this folder.
     ///
     /// # Errors
     /// When the file cannot be read, or `parse` refuses its text.
@@ -40,8 +41,10 @@ impl ProjectKind {
         parse: impl FnOnce(&str, &str, &str, &Path) -> Result<T, StudyError>,
     ) -> Result<T, StudyError> {
         let text = read_text(path)?;
-        let stem = path.file_stem();
-        let name = stem.map_or_else(|| self.name.into(), |stem| stem.to_string_lossy());
+        let is_kept = path.ends_with(self.file) && self.is_in(folder_of(path));
+        let kept = is_kept.then(|| folder_name(folder_of(path))).flatten();
+        let stem = || Some(path.file_stem()?.to_string_lossy().into_owned());
+        let name = kept.or_else(stem).unwrap_or_else(|| self.name.to_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
         parse(&text, &path.display().to_string(), &name, folder)
     }

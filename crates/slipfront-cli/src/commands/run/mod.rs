@@ -44,8 +44,8 @@ and resumed, however often, writes the same bytes as one that was not.";
 pub(crate) struct RunCommand {
     #[command(flatten)]
     case: CaseArgs,
-    /// Folder for the results [default: results/ and the name of the case, with the next free number where
-    /// that is taken]
+    /// Folder for the results [default: results/ and the name of the case, which for the case.toml of a
+    /// results folder is the name of this folder; with the next free number where that is taken]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace the files of an earlier run in that folder, and nothing else
@@ -98,7 +98,11 @@ impl RunCommand {
             let mut number = 1;
             loop {
                 match claim(number) {
-                    Err(FolderRefusal::Taken(_)) if takes_next && number < MOST_FOLDERS => number += 1,
+                    Err(FolderRefusal::Taken(_) | FolderRefusal::HoldsInput(_))
+                        if takes_next && number < MOST_FOLDERS =>
+                    {
+                        number += 1;
+                    }
                     Err(refusal) => return Err(refusal.failure(&out)),
                     Ok(claimed) => return Ok((claimed, number)),
                 }
@@ -177,7 +181,7 @@ fn claim_folder(
     saves: bool,
 ) -> Result<ClaimedFolder, FolderRefusal> {
     let input = |error: FolderError| FolderRefusal::Other(Failure::input(error));
-    refuse_to_replace(case_path, case, out).map_err(FolderRefusal::Other)?;
+    refuse_to_replace(case_path, case, out).map_err(FolderRefusal::HoldsInput)?;
     let folder = OpenedFolder::open(out).map_err(input)?;
     let replaced = if force {
         folder.inspection.managed_bytes().map_err(input)?
@@ -216,6 +220,8 @@ enum FolderRefusal {
     Taken(FolderError),
     /// A run that was stopped is in it.
     Interrupted(FolderError),
+    /// The case to be run, or a file that it reads, is in it.
+    HoldsInput(Failure),
     Other(Failure),
 }
 
@@ -223,7 +229,7 @@ impl FolderRefusal {
     /// The refusal; where a folder is taken, with the name of one that is free.
     fn failure(self, out: &Path) -> Failure {
         let error = match self {
-            Self::Other(failure) => return failure,
+            Self::Other(failure) | Self::HoldsInput(failure) => return failure,
             Self::Taken(error) | Self::Interrupted(error) => error,
         };
         let mut others = (2..MOST_FOLDERS).map(|number| numbered(out, number));

@@ -84,8 +84,9 @@ impl StudyRun {
             return print(&dry_run(&plan, threads)?);
         }
         plan.check_memory(threads).map_err(Failure::input)?;
+        let is_changed_unsaid = self.out.is_none() && !self.overrides.is_empty();
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
-        refuse_to_replace(&path, &file, &out)?;
+        refuse_to_replace(&path, file.has_base_file() || is_changed_unsaid, &out)?;
         // A signal leaves nothing of what is copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
@@ -108,10 +109,10 @@ impl StudyRun {
     }
 }
 
-/// Refuses the folder of the study file itself if that names its base by a path: the results contain the
-/// study with its base written out, which would replace the file.
-fn refuse_to_replace(path: &Path, file: &StudyFile, out: &Path) -> Result<(), Failure> {
-    if !file.has_base_file() || !is_same(path, &out.join("study.toml")) {
+/// Refuses the folder of the study file itself if the study as it is run `differs` from it: with its base
+/// written out where the file names it by a path, and with the keys of `--set`, it would replace the file.
+fn refuse_to_replace(path: &Path, differs: bool, out: &Path) -> Result<(), Failure> {
+    if !differs || !is_same(path, &out.join("study.toml")) {
         return Ok(());
     }
     let sentence = format!(

@@ -136,6 +136,25 @@ fn a_changed_study_leaves_no_tables_of_what_it_was() {
     workspace.study("out").assert_same(&workspace.study("fresh"));
 }
 
+/// The study of a results folder has the name of this folder, and goes on there.
+#[test]
+fn a_recorded_study_goes_on_in_its_folder() {
+    let workspace = Workspace::with_study(SMALL);
+    workspace.study("results/out");
+    let before = workspace.files("results");
+    workspace.succeed("study results/out/study.toml");
+    assert!(workspace.files("results") == before);
+    // What is recorded there is not replaced unasked.
+    let changed = "study results/out/study.toml --quiet --set friction.mu_static=0.7";
+    let refused = workspace.fail(changed, 2);
+    assert!(
+        refused.contains("would replace results/out/study.toml"),
+        "{refused}"
+    );
+    assert!(workspace.files("results") == before);
+    workspace.succeed(&format!("{changed} -o results/other"));
+}
+
 /// The results folder holds the study with its base inside, which is no place for the only file that names
 /// the base.
 #[test]
