@@ -1,4 +1,4 @@
-//! Complete runs for a data repository, and their citations.
+//! Complete results for a data repository, and their citations.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -6,13 +6,16 @@ use std::sync::atomic::AtomicBool;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use slipfront_run::export::{Attribution, Author, ExportError, Licence, WholeRun, bibtex, cff, write_crate};
+use slipfront_calibrate::CALIBRATIONS;
+use slipfront_design::DESIGNS;
+use slipfront_run::export::{Attribution, Author, ExportError, Exported, Licence, bibtex, cff, write_crate};
+use slipfront_study::{ExportFolderError, exported};
 
 use crate::errors::{folder_error, in_words_of_python};
 use crate::process::detached;
 
-/// Describes runs as a Process Run Crate, and returns the path of the description with sentences about what
-/// the crate lacks.
+/// Describes results as a Process Run Crate, and returns the path of the description with sentences about
+/// what the crate lacks.
 #[pyfunction]
 pub(crate) fn ro_crate(
     py: Python<'_>,
@@ -25,13 +28,13 @@ pub(crate) fn ro_crate(
     let by = attribution(author, licence)?;
     let never = AtomicBool::new(false);
     let written = detached(py, || {
-        write_crate(&read(&folders)?, out.as_deref(), &by, force, &never)
+        Ok(write_crate(&read(&folders)?, out.as_deref(), &by, force, &never)?)
     })?;
     let notes = by.notes().into_iter().map(in_words_of_python).collect();
     Ok((written.map_err(export_error)?, notes))
 }
 
-/// Citations of runs: entries of BibTeX, or a citation file (CFF).
+/// Citations of results: entries of BibTeX, or a citation file (CFF).
 #[pyfunction]
 pub(crate) fn citation(
     py: Python<'_>,
@@ -41,16 +44,17 @@ pub(crate) fn citation(
     licence: Option<&str>,
 ) -> PyResult<String> {
     let by = attribution(author, licence)?;
-    let runs = detached(py, || read(&folders))?.map_err(export_error)?;
+    let results = detached(py, || read(&folders))?.map_err(export_error)?;
     if is_cff {
-        cff(&runs, &by).map_err(export_error)
+        cff(&results, &by).map_err(|error| export_error(error.into()))
     } else {
-        Ok(bibtex(&runs, &by))
+        Ok(bibtex(&results, &by))
     }
 }
 
-fn read(folders: &[PathBuf]) -> Result<Vec<WholeRun>, ExportError> {
-    folders.iter().map(|folder| WholeRun::read(folder)).collect()
+fn read(folders: &[PathBuf]) -> Result<Vec<Exported>, ExportFolderError> {
+    let read = |folder: &PathBuf| exported(folder, &[DESIGNS, CALIBRATIONS]);
+    folders.iter().map(read).collect()
 }
 
 fn attribution(author: Option<&str>, licence: Option<&str>) -> PyResult<Attribution> {
@@ -68,8 +72,9 @@ fn parsed<T: FromStr<Err = String>>(argument: &str, text: Option<&str>) -> PyRes
 }
 
 /// An argument that is missing, or a folder that cannot be exported.
-fn export_error(error: ExportError) -> PyErr {
-    if matches!(error, ExportError::NeedsAuthor | ExportError::NeedsFolder) {
+fn export_error(error: ExportFolderError) -> PyErr {
+    use ExportError::{NeedsAuthor, NeedsFolder};
+    if matches!(error, ExportFolderError::Results(NeedsAuthor | NeedsFolder)) {
         PyValueError::new_err(in_words_of_python(error))
     } else {
         folder_error(error)

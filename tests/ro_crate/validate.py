@@ -26,7 +26,9 @@ VALIDATOR = pathlib.Path(sys.executable).with_name("rocrate-validator")
 NO_ADDRESS = "slipfront has no address to name"
 NOT_TOLD = "the user did not tell it, and it is not made up"
 NOT_ASKED = "nobody asks the user for it"
+NOT_RECORDED = "a study records no times of the runs whose folders it does not keep"
 EXPECTED = {
+    "The Action SHOULD have an endTime in ISO 8601 format": NOT_RECORDED,
     "The Application SHOULD have a url": NO_ADDRESS,
     "The SoftwareApplication id SHOULD be an absolute URI": NO_ADDRESS,
     "The organization SHOULD have a URL.": NO_ADDRESS,

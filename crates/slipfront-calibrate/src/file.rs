@@ -34,7 +34,23 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
     table: "calibrate",
     file: "calibration.toml",
     journal: RUN_JOURNAL,
+    given: &[(RECORD, "A measured record")],
+    found: &[
+        ("band-", "A record, and the band of the calibrated model"),
+        (
+            "calibration.",
+            "The unknown keys with their intervals, and how far to trust them",
+        ),
+        ("case.toml", "The case with the median of every unknown key"),
+        (
+            "posterior.csv",
+            "Points that are drawn from the joint estimate of the unknown keys",
+        ),
+    ],
 };
+
+/// Beginning of the names of copies of records.
+pub(crate) const RECORD: &str = "record-";
 
 /// Table of the file that describes the measuring chain.
 const INSTRUMENT: &str = "instrument";

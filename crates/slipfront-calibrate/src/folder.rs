@@ -14,7 +14,7 @@ use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
 use crate::calibration::{Calibration, Estimate};
 use crate::clipping::Clipped;
 use crate::closest::closest;
-use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, SampledRecord};
+use crate::file::{CALIBRATION, CalibrationFile, CalibrationKeys, RECORD, SampledRecord};
 use crate::findings::{
     CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
 };
@@ -31,9 +31,6 @@ use slipfront_study::project_folder::{
     Checksums, Derivation, Given, Others, ResultFiles, notes_of_use, read_numbers,
 };
 use slipfront_study::{StudyError, TrainingError};
-
-/// Beginning of the names of copies of records.
-const RECORD: &str = "record-";
 
 /// Number of runs at another time step.
 const AT_OTHER_STEP: usize = 40;

@@ -33,6 +33,25 @@ pub(crate) static DESIGN: ProjectKind = ProjectKind {
     table: "design",
     file: "design.toml",
     journal: "design.jsonl",
+    given: &[],
+    found: &[
+        ("case", "A case that has the texture"),
+        (
+            "design.",
+            "The verdict on the texture, and the textures that it was held against",
+        ),
+        ("evaluations.csv", "A row for every draft that was tried"),
+        (
+            "first_slips.",
+            "Picture: where the blocks slip first, with the texture and with others",
+        ),
+        (
+            "friction.",
+            "Picture: friction against time, with the texture and with others",
+        ),
+        ("front.", "The best textures at some coverages"),
+        ("mask.", "The texture that was found"),
+    ],
 };
 
 /// Largest number of runs of a search.

@@ -17,8 +17,7 @@ pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
         source,
     };
     let mut copy = RunFolder::prepare(to, true, &[])?;
-    let mut names = Vec::new();
-    collect_names(from, "", &mut names).map_err(failed)?;
+    let mut names = file_names(from).map_err(failed)?;
     // What is neither stands first; the rest of the order does not matter.
     names.sort_by_key(|name| [CASE, MANIFEST].iter().position(|last| name == last));
     for name in &names {
@@ -41,7 +40,13 @@ pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     Ok(())
 }
 
-/// Collects every file below a folder, without those of unfinished work, by its path from there.
+/// Every file below a folder, without those of unfinished work, by its path from there.
+pub fn file_names(folder: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    collect_names(folder, "", &mut names)?;
+    Ok(names)
+}
+
 fn collect_names(folder: &Path, prefix: &str, names: &mut Vec<String>) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder.join(prefix))? {
         let entry = entry?;

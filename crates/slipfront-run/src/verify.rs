@@ -8,14 +8,17 @@ use std::sync::atomic::AtomicBool;
 use thiserror::Error;
 
 use crate::folder_error::FolderError;
-use crate::manifest::{Manifest, ManifestError, ManifestFile};
+use crate::manifest::{ManifestError, ManifestFile};
 use crate::names::{CASE, MANIFEST, RO_CRATE, UNFINISHED};
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
-use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
+use slipfront_base::disk::read_limited;
 use slipfront_base::number_format::count;
 use slipfront_base::text::{single_line, truncated};
 use slipfront_base::unfinished::is_unfinished;
+
+/// Largest number of bytes of a description that is read: that of thousands of runs with their keys.
+const DESCRIPTION_MAX_BYTES: u64 = 256 << 20;
 
 /// Result of verifying a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,25 +106,29 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
         UNFINISHED => has_unfinished,
         name => is_unfinished(name),
     };
-    let is_described = is_described(&run.path, manifest);
-    let described = is_described.map(|_| RO_CRATE);
+    let (described, outdated) = description_in(&run.path, &manifest.checksum);
     let listed = listed.chain([MANIFEST]).chain(described).collect();
     verdict.notes = unlisted_files(&run.path, &listed, is_left);
-    if is_described == Some(false) {
-        verdict.notes.push(single_line(&format!(
-            "{} describes other results than the folder holds: `slipfront export --ro-crate --force` writes it anew",
-            run.path.join(RO_CRATE).display()
-        )));
-    }
+    verdict.notes.extend(outdated);
     Ok(verdict)
 }
 
-/// Whether the description in a folder, which names the checksum of a manifest, is of the run with this
-/// manifest; none if there is no description that can be read.
-fn is_described(folder: &Path, manifest: &Manifest) -> Option<bool> {
-    let text = read_limited(&folder.join(RO_CRATE), TEXT_MAX_BYTES).ok()?;
-    let checksum = manifest.checksum.as_bytes();
-    Some(text.windows(checksum.len()).any(|bytes| bytes == checksum))
+/// The name of the description of a folder for data repositories, if there is one that can be read, and a
+/// note if it is not of the results whose list of checksums has this seal: a description names the seal.
+pub fn description_in(folder: &Path, seal: &str) -> (Option<&'static str>, Option<String>) {
+    let path = folder.join(RO_CRATE);
+    let Ok(text) = read_limited(&path, DESCRIPTION_MAX_BYTES) else {
+        return (None, None);
+    };
+    let seal = seal.as_bytes();
+    let is_current = seal.is_empty() || text.windows(seal.len()).any(|bytes| bytes == seal);
+    let outdated = || {
+        single_line(&format!(
+            "{} describes other results than the folder holds: `slipfront export --ro-crate --force` writes it anew",
+            path.display()
+        ))
+    };
+    (Some(RO_CRATE), (!is_current).then(outdated))
 }
 
 /// Inspects the folder of a run, which must be a folder that can be listed.

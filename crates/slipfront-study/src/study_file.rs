@@ -16,7 +16,7 @@ use slipfront_case::case_file::{
     syntax_error, unknown_case_table, unknown_key, whole,
 };
 use slipfront_case::key_rows;
-use slipfront_run::names::RUN_JOURNAL;
+use slipfront_run::names::{RUN_JOURNAL, TABLES};
 
 /// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml`
 /// repeats the study.
@@ -25,6 +25,23 @@ pub(crate) static STUDIES: ProjectKind = ProjectKind {
     table: "study",
     file: "study.toml",
     journal: RUN_JOURNAL,
+    given: &[],
+    found: &[
+        (
+            TABLES[0],
+            "A row for every run: its levels, seed, outcome and numbers",
+        ),
+        (TABLES[1], "The statistics of every quantity at every point"),
+        (TABLES[2], "Friction over the directions of the drive"),
+        ("convergence.", "Every number with the error of the mesh"),
+        (
+            "friction_polar.",
+            "Picture: friction over the directions of the drive",
+        ),
+        ("static_friction_star", "Picture: static friction over the axes"),
+        ("kinetic_friction_star", "Picture: kinetic friction over the axes"),
+        (REDUCTION, "Picture: reduction of static friction over the axes"),
+    ],
 };
 
 /// A study file.

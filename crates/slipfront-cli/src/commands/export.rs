@@ -1,55 +1,59 @@
-//! Command `slipfront export`: complete runs for a data repository, and their citations.
+//! Command `slipfront export`: complete results for a data repository, and their citations.
 
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_run::export::{Attribution, Author, ExportError, Licence, WholeRun, bibtex, cff, write_crate};
+use slipfront_calibrate::CALIBRATIONS;
+use slipfront_design::DESIGNS;
+use slipfront_run::export::{Attribution, Author, ExportError, Licence, bibtex, cff, write_crate};
+use slipfront_study::{ExportFolderError, exported};
 
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::signals::Signals;
 use crate::wrap;
 
-/// Export runs to a data repository, or print their citations
+/// Export results to a data repository, or print their citations
 ///
-/// The description of the runs is an RO-Crate
+/// The description of runs, studies, convergences, designs and calibrations is an RO-Crate
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront export results/circle --ro-crate --author \"NAME\" --licence CC-BY-4.0
-  slipfront export results/first/runs/* --ro-crate -o first-as-crate     several runs as one crate
+  slipfront export results/first --ro-crate        a study: its file, tables, pictures and runs
+  slipfront export results/circle results/first --ro-crate -o both    several folders as one crate
   slipfront export results/circle --bibtex > circle.bib
   slipfront export results/circle --cff --author \"NAME\" > CITATION.cff
 
-Only runs that `slipfront verify` finds as they were written are exported.")]
+Only complete folders that `slipfront verify --checksums` finds as they were written are exported.")]
 pub(crate) struct ExportCommand {
-    /// Folders of complete runs
+    /// Folders of complete results: of runs, studies, convergences, designs and calibrations
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     #[command(flatten)]
     form: Form,
-    /// Who made the runs: a name, or "NAME <https://orcid.org/0000-0000-0000-0000>"
+    /// Who made the results: a name, or "NAME <https://orcid.org/0000-0000-0000-0000>"
     #[arg(long, value_name = "NAME")]
     author: Option<Author>,
     /// Licence of the results: an identifier of SPDX such as CC-BY-4.0, or an address
     #[arg(long, value_name = "ID")]
     licence: Option<Licence>,
-    /// A new folder for the crate, to which the runs are copied [default: the folder of the run itself, of
-    /// one run]
+    /// A new folder for the crate, to which the folders are copied [default: the folder of the results
+    /// itself, if it is one]
     #[arg(short, long, value_name = "DIR", conflicts_with_all = ["bibtex", "cff"])]
     out: Option<PathBuf>,
-    /// Replace a description that stands in the folder of the run
+    /// Replace a description that stands in the folder of the results
     #[arg(long, conflicts_with_all = ["out", "bibtex", "cff"])]
     force: bool,
 }
 
-/// Form in which the runs are exported.
+/// Form in which results are exported.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Form {
     /// Write ro-crate-metadata.json, with which the folder is a Process Run Crate
     #[arg(long)]
     ro_crate: bool,
-    /// Print entries of BibTeX: each run, slipfront and the article of its model
+    /// Print entries of BibTeX: each folder of results, slipfront and the article of its model
     #[arg(long)]
     bibtex: bool,
     /// Print a citation file, CITATION.cff; it needs --author
@@ -63,16 +67,21 @@ impl ExportCommand {
             author: self.author,
             licence: self.licence,
         };
-        let runs = self.folders.iter().map(|folder| WholeRun::read(folder));
-        let runs = runs.collect::<Result<Vec<_>, _>>().map_err(failure)?;
+        let results = self.folders.iter().map(|folder| {
+            exported(folder, &[DESIGNS, CALIBRATIONS]).map_err(|error| match error {
+                ExportFolderError::Results(error) => failure(error),
+                error => Failure::input(error),
+            })
+        });
+        let results = results.collect::<Result<Vec<_>, _>>()?;
         if self.form.bibtex {
-            return print(&bibtex(&runs, &by));
+            return print(&bibtex(&results, &by));
         }
         if self.form.cff {
-            return print(&cff(&runs, &by).map_err(failure)?);
+            return print(&cff(&results, &by).map_err(failure)?);
         }
         let signals = Signals::catch().map_err(Failure::running)?;
-        let path = write_crate(&runs, self.out.as_deref(), &by, self.force, &signals.stop);
+        let path = write_crate(&results, self.out.as_deref(), &by, self.force, &signals.stop);
         let path = path.map_err(|error| match error {
             ExportError::Interrupted => Failure::stopped(&signals, error),
             error => failure(error),

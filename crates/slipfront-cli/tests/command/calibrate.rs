@@ -8,7 +8,7 @@ const FIT: &str = "[base]\nslider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.step
     unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
 
 /// A folder with a calibration file, and the series of a run as a record.
-fn workspace() -> Workspace {
+pub(crate) fn workspace() -> Workspace {
     let workspace = Workspace::new();
     workspace.write("fit.toml", FIT);
     workspace.write(

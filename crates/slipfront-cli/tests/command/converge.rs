@@ -7,7 +7,7 @@ use crate::support::process::stdout;
 use crate::support::workspace::Workspace;
 
 /// All lengths are those of the material; small enough for a test.
-const SHEET: &str = "[slider]\nblocks = [20, 20]\nblock_size = '50 um'\nthickness = '20 um'\n\
+pub(crate) const SHEET: &str = "[slider]\nblocks = [20, 20]\nblock_size = '50 um'\nthickness = '20 um'\n\
     [drive]\nv_star = 0.02\nstiffness_per_area = '1875 MPa/um'\n\
     [friction]\nsigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = { length_star = 0.4 }\n\
     [time]\nstop = 'after_onset'\n\

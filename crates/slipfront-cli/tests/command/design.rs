@@ -6,7 +6,7 @@ use crate::fixtures::unwrapped;
 use crate::support::process::{send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
 
-const WISH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
+pub(crate) const WISH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
     [design]\nwish = { least = 'static_friction' }\ncoverage = [0, 15]\nfeature_blocks = 2\ngap_blocks = 2\nruns = 120\n";
 
 fn verdict(workspace: &Workspace, folder: &str) -> Value {

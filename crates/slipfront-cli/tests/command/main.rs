@@ -18,6 +18,7 @@ mod converge;
 mod design;
 mod docs;
 mod export;
+mod export_studies;
 mod fixtures;
 mod folder;
 mod input;

@@ -1,12 +1,12 @@
-//! Citations of runs, of slipfront and of the article whose model it implements, as BibTeX and as a citation
-//! file (CFF 1.2.0).
+//! Citations of results, of slipfront and of the article whose model it implements, as BibTeX and as a
+//! citation file (CFF 1.2.0).
 
 use jiff::Timestamp;
 use serde_json::json;
 
 use super::attribution::Attribution;
 use super::error::ExportError;
-use super::whole_run::WholeRun;
+use super::exported::Exported;
 
 /// Description of slipfront.
 pub(super) const MODEL: &str = "a two-dimensional lattice spring-block model of the transition from static to kinetic friction of \
@@ -22,24 +22,25 @@ pub(super) const ARTICLE_YEAR: u16 = 2023;
 /// Remark in place of the names of the article's authors.
 const ARTICLE_NOTE: &str = "The model. The authors' names stand on the publisher's page of this DOI.";
 
-/// Entries of BibTeX: one for each run, one for slipfront and one for the article. Without an author the
-/// entries of runs have none.
-pub fn bibtex(runs: &[WholeRun], by: &Attribution) -> String {
+/// Entries of BibTeX: one for each folder of results, one for slipfront and one for the article. Without an
+/// author the entries of results have none.
+pub fn bibtex(folders: &[Exported], by: &Attribution) -> String {
     let mut text = String::new();
-    for run in runs {
-        let manifest = &run.manifest;
+    for results in folders {
         let mut fields = vec![
             (
                 "title",
-                format!("{{Friction computed with slipfront: {}}}", tex(&run.name)),
+                format!("{{Friction computed with slipfront: {}}}", tex(&results.title())),
             ),
             (
                 "note",
                 tex(&format!(
-                    "Made with {}. BLAKE3 hash of case.toml: {}; seal of manifest.json: {}",
-                    manifest.program(),
-                    manifest.case_blake3,
-                    manifest.checksum
+                    "Made with {}. BLAKE3 hash of {}: {}; seal of {}: {}",
+                    results.program.in_words(),
+                    results.file,
+                    results.hash(),
+                    results.list,
+                    results.seal
                 )),
             ),
         ];
@@ -48,12 +49,12 @@ pub fn bibtex(runs: &[WholeRun], by: &Attribution) -> String {
                 .iter()
                 .map(|author| ("author", format!("{{{}}}", tex(&author.name)))),
         );
-        if let Ok(finished) = manifest.finished.parse::<Timestamp>() {
+        if let Ok(finished) = results.finished.parse::<Timestamp>() {
             fields.push(("year", finished.strftime("%Y").to_string()));
         }
         fields.extend(by.licence.iter().map(|licence| ("copyright", tex(&licence.name))));
-        let seal = manifest.checksum.get(..16).unwrap_or_default();
-        text += &entry("misc", &format!("slipfront-run-{seal}"), &fields);
+        let seal = results.seal.get(..16).unwrap_or_default();
+        text += &entry("misc", &format!("slipfront-{}-{seal}", results.kind), &fields);
     }
     text += &entry(
         "software",
@@ -61,7 +62,7 @@ pub fn bibtex(runs: &[WholeRun], by: &Attribution) -> String {
         &[
             ("title", "{slipfront}".to_owned()),
             ("author", format!("{{{DEVELOPERS}}}")),
-            ("version", tex(&versions(runs))),
+            ("version", tex(&versions(folders))),
             ("note", MODEL.to_owned()),
         ],
     );
@@ -85,9 +86,10 @@ fn entry(kind: &str, key: &str, fields: &[(&str, String)]) -> String {
     format!("@{kind}{{{key},\n{}}}\n", lines.collect::<String>())
 }
 
-/// Versions of slipfront that made the runs.
-fn versions(runs: &[WholeRun]) -> String {
-    let mut versions: Vec<&str> = runs.iter().map(|run| run.manifest.version.as_str()).collect();
+/// Versions of slipfront that made the results.
+fn versions(folders: &[Exported]) -> String {
+    let actions = folders.iter().flat_map(|results| &results.actions);
+    let mut versions: Vec<&str> = actions.map(|action| action.program.version.as_str()).collect();
     versions.sort_unstable();
     versions.dedup();
     versions.join(", ")
@@ -125,17 +127,20 @@ fn quoted(text: &str) -> String {
     json!(text).to_string().chars().map(sign).collect()
 }
 
-/// A citation file (CFF 1.2.0) of runs, as `CITATION.cff` beside them.
+/// A citation file (CFF 1.2.0) of results, as `CITATION.cff` beside them.
 ///
 /// # Errors
 /// [`ExportError::NeedsAuthor`]: the format demands one.
-pub fn cff(runs: &[WholeRun], by: &Attribution) -> Result<String, ExportError> {
+pub fn cff(folders: &[Exported], by: &Attribution) -> Result<String, ExportError> {
     let author = by.author.as_ref().ok_or(ExportError::NeedsAuthor)?;
-    let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+    let titles: Vec<String> = folders.iter().map(Exported::title).collect();
     let mut text = format!(
         "cff-version: 1.2.0\nmessage: \"If you use these results, please cite them, slipfront and the article of its model.\"\n\
          type: dataset\ntitle: {}\nauthors:\n  - name: {}\n",
-        quoted(&format!("Friction computed with slipfront: {}", names.join(", "))),
+        quoted(&format!(
+            "Friction computed with slipfront: {}",
+            titles.join(", ")
+        )),
         quoted(&author.name)
     );
     if let Some(orcid) = &author.orcid {
@@ -150,16 +155,17 @@ pub fn cff(runs: &[WholeRun], by: &Attribution) -> Result<String, ExportError> {
         text += &format!("{key}: {}\n", quoted(&licence.name));
     }
     text += "identifiers:\n";
-    for run in runs {
+    for results in folders {
+        let Exported { list, kind, name, .. } = results;
         text += &format!(
             "  - type: other\n    value: {}\n    description: {}\n",
-            quoted(&run.identifier()),
-            quoted(&format!("Seal of manifest.json of the run {}", run.name))
+            quoted(&results.identifier()),
+            quoted(&format!("Seal of {list} of the {kind} {name}"))
         );
     }
     text += &format!(
         "references:\n  - type: software\n    title: slipfront\n    version: {}\n    authors:\n      - name: {}\n",
-        quoted(&versions(runs)),
+        quoted(&versions(folders)),
         quoted(DEVELOPERS)
     );
     text += &format!(

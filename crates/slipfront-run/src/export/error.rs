@@ -1,4 +1,4 @@
-//! Reasons for which a run is not exported.
+//! Reasons for which results are not exported.
 
 use std::path::PathBuf;
 
@@ -6,14 +6,14 @@ use thiserror::Error;
 
 use crate::verify::VerifyError;
 
-/// Reason for which a run is not exported.
+/// Reason for which results are not exported.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ExportError {
     #[error(transparent)]
     Run(#[from] VerifyError),
     #[error(
-        "{difference}: only results that are as they were written are exported; run the case again to another folder"
+        "{difference}: only results that are as they were written are exported; make them again in another folder"
     )]
     Changed { difference: String },
     #[error("{path} exists: replace it with --force, or write the crate to a new folder with --out")]
@@ -26,14 +26,25 @@ pub enum ExportError {
     WorkedIn { path: PathBuf },
     #[error("stopped by a signal: nothing is written")]
     Interrupted,
-    #[error(
-        "two of the runs stand in folders of the name {name}, as which both would be copied: rename one of them"
-    )]
+    #[error("two of the folders have the name {name}, as which both would be copied: rename one of them")]
     SameName { name: String },
-    #[error("several runs make one crate in a folder of its own: name it with --out")]
+    #[error("several folders make one crate in a folder of its own: name it with --out")]
     NeedsFolder,
     #[error("a citation file needs an author: add --author \"NAME\"")]
     NeedsAuthor,
     #[error("cannot write {path}: {source}; choose another folder with --out")]
     Write { path: PathBuf, source: std::io::Error },
+}
+
+impl ExportError {
+    /// Refuses results with differences from what was written, and names the first.
+    ///
+    /// # Errors
+    /// [`ExportError::Changed`] with the first difference.
+    pub fn expect_none(differences: Vec<String>) -> Result<(), Self> {
+        match differences.into_iter().next() {
+            Some(difference) => Err(Self::Changed { difference }),
+            None => Ok(()),
+        }
+    }
 }

@@ -1,15 +1,17 @@
-//! Complete runs for other programs: as a Process Run Crate (RO-Crate) for data repositories, and as
+//! Complete results for other programs: as a Process Run Crate (RO-Crate) for data repositories, and as
 //! citations.
 //!
-//! A run does not know its author and licence. What the user does not give is reported as missing, and never
+//! A run is described here; a folder of many runs describes itself as [`Exported`]. Results do not know their
+//! author and licence. What the user does not give is reported as missing, and never
 //! made up.
 
 mod attribution;
 mod citation;
 mod error;
+mod exported;
+mod meaning;
 mod parameters;
 mod ro_crate;
-mod whole_run;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -21,55 +23,56 @@ use slipfront_base::unfinished::UnfinishedFolder;
 pub use self::attribution::{Attribution, Author, Licence};
 pub use self::citation::{bibtex, cff};
 pub use self::error::ExportError;
-pub use self::whole_run::WholeRun;
+pub use self::exported::{Action, Exported, ExportedFile, MadeBy};
+pub use self::parameters::Parameter;
 use crate::clock;
 use crate::names::RO_CRATE;
 
-/// Describes runs as a Process Run Crate and returns the path of `ro-crate-metadata.json`: copies of them in
-/// the new folder `out`, or without `out` one run in its own folder, where `force` replaces an earlier
-/// description.
+/// Describes results as a Process Run Crate and returns the path of `ro-crate-metadata.json`: copies of their
+/// folders in the new folder `out`, or without `out` one folder where it is, in which `force` replaces an
+/// earlier description.
 ///
 /// # Errors
-/// [`ExportError::NeedsFolder`] for several runs without `out`; [`ExportError::Interrupted`] after a stop;
-/// when a file or folder stands where one is to be made, when two runs have one name, and when the system
+/// [`ExportError::NeedsFolder`] for several folders without `out`; [`ExportError::Interrupted`] after a stop;
+/// when a file or folder stands where one is to be made, when two folders have one name, and when the system
 /// refuses to read or write.
 pub fn write_crate(
-    runs: &[WholeRun],
+    folders: &[Exported],
     out: Option<&Path>,
     by: &Attribution,
     force: bool,
     stop: &AtomicBool,
 ) -> Result<PathBuf, ExportError> {
-    match (out, runs) {
-        (Some(out), runs) => crate_of_copies(runs, out, by, stop),
-        (None, [run]) => describe_in_place(run, by, force),
+    match (out, folders) {
+        (Some(out), folders) => crate_of_copies(folders, out, by, stop),
+        (None, [results]) => describe_in_place(results, by, force),
         (None, _) => Err(ExportError::NeedsFolder),
     }
 }
 
-/// Describes a run in its own folder, in `ro-crate-metadata.json`, and returns the path of this file. It is
-/// not one of the run's files.
-fn describe_in_place(run: &WholeRun, by: &Attribution, force: bool) -> Result<PathBuf, ExportError> {
-    let path = run.folder.join(RO_CRATE);
+/// Describes results in their own folder, in `ro-crate-metadata.json`, and returns the path of this file. It
+/// is not one of the results.
+fn describe_in_place(results: &Exported, by: &Attribution, force: bool) -> Result<PathBuf, ExportError> {
+    let path = results.folder.join(RO_CRATE);
     // A broken link is a file of the user as well.
     if path.symlink_metadata().is_ok() && !force {
         return Err(ExportError::Exists { path });
     }
-    let bytes = ro_crate::metadata(&[(run, String::new())], by, clock::now());
+    let bytes = ro_crate::metadata(&[(results, String::new())], by, clock::now());
     write_durably(&path, &bytes)?;
     Ok(path)
 }
 
-/// Copies runs to a new folder, each to a folder of its name, describes them there in
+/// Copies folders of results to a new folder, each under its name, describes them there in
 /// `ro-crate-metadata.json`, and returns the path of this file. The folder has its name when all of it is
 /// there.
 fn crate_of_copies(
-    runs: &[WholeRun],
+    folders: &[Exported],
     out: &Path,
     by: &Attribution,
     stop: &AtomicBool,
 ) -> Result<PathBuf, ExportError> {
-    let mut names: Vec<&String> = runs.iter().map(|run| &run.name).collect();
+    let mut names: Vec<&String> = folders.iter().map(|results| &results.name).collect();
     names.sort_unstable();
     if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(ExportError::SameName {
@@ -90,10 +93,13 @@ fn crate_of_copies(
     }
     make_folders(folder_of(&place)).map_err(failed)?;
     let hidden = UnfinishedFolder::beside(&place).map_err(failed)?;
-    for run in runs {
-        run.copy(&hidden.path().join(&run.name), stop)?;
+    for results in folders {
+        results.copy(&hidden.path().join(&results.name), stop)?;
     }
-    let placed: Vec<_> = runs.iter().map(|run| (run, format!("{}/", run.name))).collect();
+    let placed = folders
+        .iter()
+        .map(|results| (results, format!("{}/", results.name)));
+    let placed: Vec<_> = placed.collect();
     let description = ro_crate::metadata(&placed, by, clock::now());
     write_durably(&hidden.path().join(RO_CRATE), &description)?;
     hidden.persist(&place).map_err(failed)?;

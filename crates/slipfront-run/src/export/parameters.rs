@@ -22,7 +22,8 @@ const UNITS: [(&str, Option<&str>); 9] = [
 const NUMBERS: [(&str, &str, &str); 3] = [("", "1", "C62"), ("\u{b0}", "\u{b0}", "DD"), ("%", "%", "P1")];
 
 /// A key of a case with its value.
-pub(super) struct Parameter {
+#[derive(Debug)]
+pub struct Parameter {
     /// Key with its table, such as `drive.v_star`.
     pub(super) key: String,
     /// A number, in SI units where it has a unit, or the value as the case has it.
@@ -35,22 +36,25 @@ pub(super) struct Parameter {
 pub(super) fn parameters(case: &CaseFile) -> Vec<Parameter> {
     let values = case.values().into_iter();
     values
-        .map(|(key, text)| parameter(key.trim_matches('`'), &text))
+        .map(|(key, text)| Parameter::of(key.trim_matches('`'), &text))
         .collect()
 }
 
-fn parameter(key: &str, text: &str) -> Parameter {
-    let key = key.to_owned();
-    // The text is TOML; numbers, switches and strings without escapes are JSON as well.
-    let value = serde_json::from_str(text).unwrap_or_else(|_| json!(text));
-    if let Some((in_si, unit)) = value.as_str().and_then(in_si) {
-        let (value, unit) = (json!(in_si), Some(unit));
-        return Parameter { key, value, unit };
+impl Parameter {
+    /// A key with its value as TOML, or with a value that is written without quotation marks.
+    pub fn of(key: &str, text: &str) -> Self {
+        let key = key.to_owned();
+        // Numbers, switches and strings without escapes are JSON as well.
+        let value = serde_json::from_str(text).unwrap_or_else(|_| json!(text));
+        if let Some((in_si, unit)) = value.as_str().and_then(in_si) {
+            let (value, unit) = (json!(in_si), Some(unit));
+            return Self { key, value, unit };
+        }
+        let title = title_of(&key).filter(|_| value.is_number());
+        let unit = title.and_then(|(title, _)| NUMBERS.iter().find(|(unit, ..)| *unit == title.unit));
+        let unit = unit.map(|(_, name, code)| (*name, Some(*code)));
+        Self { key, value, unit }
     }
-    let title = title_of(&key).filter(|_| value.is_number());
-    let unit = title.and_then(|(title, _)| NUMBERS.iter().find(|(unit, ..)| *unit == title.unit));
-    let unit = unit.map(|(_, name, code)| (*name, Some(*code)));
-    Parameter { key, value, unit }
 }
 
 /// A quantity with its unit in SI; none of a text that is no quantity.

@@ -1,46 +1,47 @@
 //! The metadata of a Process Run Crate 0.5 (<https://w3id.org/ro/wfrun/process/0.5>), a profile of RO-Crate
 //! 1.1.
 //!
-//! A run is a `CreateAction`: slipfront is its instrument; the case, the files that the case reads and the
-//! keys of the case are its objects; every other file of the run is a result.
+//! Whatever was done is a `CreateAction`: slipfront is its instrument; the files and keys that it was made
+//! from are its objects, and the files that it gave are its results.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use jiff::Timestamp;
 use serde_json::{Map, Value, json};
 use slipfront_base::disk::json as json_bytes;
-use slipfront_base::number_format::count;
 use slipfront_base::text::shell_path;
 
 use super::attribution::Attribution;
 use super::citation::{ARTICLE_TITLE, ARTICLE_URL, ARTICLE_YEAR, DEVELOPERS, MODEL};
-use super::parameters::{Parameter, parameters};
-use super::whole_run::WholeRun;
-use crate::manifest::ManifestFile;
-use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RO_CRATE, RunPicture, SERIES, SUMMARY};
-use crate::observers::tables;
+use super::exported::{Action, Exported, ExportedFile, MadeBy};
+use super::meaning::format_of;
+use super::parameters::Parameter;
+use crate::names::RO_CRATE;
 
 const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
 const SPECIFICATION: &str = "https://w3id.org/ro/crate/1.1";
 const PROFILE: &str = "https://w3id.org/ro/wfrun/process/0.5";
 
-/// The file `ro-crate-metadata.json` of runs, each with the path of its folder in the crate: empty, or ending
-/// with a slash.
-pub(super) fn metadata(runs: &[(&WholeRun, String)], by: &Attribution, published: Timestamp) -> Vec<u8> {
+/// The file `ro-crate-metadata.json` of results, each with the path of its folder in the crate: empty, or
+/// ending with a slash.
+pub(super) fn metadata(all: &[(&Exported, String)], by: &Attribution, published: Timestamp) -> Vec<u8> {
     let mut graph = Graph::default();
-    let names: Vec<&str> = runs.iter().map(|(run, _)| run.name.as_str()).collect();
+    let titles: Vec<String> = all.iter().map(|(results, _)| results.title()).collect();
+    let actions = all.iter().flat_map(|(results, _)| &results.actions);
+    let parts = all.iter().flat_map(|(results, at)| parts(results, at));
     let licence = by.licence.as_ref().map_or_else(
         || json!("Not told: ask the authors before using the results."),
         |licence| link(&licence.url),
     );
     let mut root = json!({
-        "name": format!("Friction computed with slipfront: {}", names.join(", ")),
-        "description": format!("Results of slipfront, {MODEL}: of every run its case, curves, fields, pictures and provenance."),
+        "name": format!("Friction computed with slipfront: {}", titles.join(", ")),
+        "description": format!("Results of slipfront, {MODEL}: cases, curves, fields, tables and pictures with their provenance."),
         "conformsTo": link(PROFILE),
         "datePublished": published.strftime("%Y-%m-%d").to_string(),
         "license": licence,
-        "hasPart": one_or_all(runs.iter().flat_map(|(run, at)| parts(run, at)).collect()),
-        "mentions": one_or_all(runs.iter().map(|(run, _)| link(&action_id(run))).collect()),
+        "hasPart": one_or_all(parts.collect()),
+        "mentions": one_or_all(actions.map(|action| link(&action_id(action))).collect()),
     });
     let author = by.author.as_ref().map(|author| {
         let id = author.orcid.as_deref().unwrap_or("#author");
@@ -60,9 +61,8 @@ pub(super) fn metadata(runs: &[(&WholeRun, String)], by: &Attribution, published
         "CreativeWork",
         json!({"name": "Process Run Crate", "version": "0.5"}),
     );
-    for (run, at) in runs {
-        let agent = author.as_ref().map(|(id, _)| link(id));
-        add_run(&mut graph, run, at, agent);
+    for (results, at) in all {
+        add_results(&mut graph, results, at, author.as_ref().map(|(id, _)| *id));
     }
     if let Some((id, person)) = author {
         graph.add(id, "Person", person);
@@ -81,12 +81,14 @@ pub(super) fn metadata(runs: &[(&WholeRun, String)], by: &Attribution, published
 #[derive(Default)]
 struct Graph {
     entities: Vec<Value>,
+    /// Identifiers of the entities.
+    ids: HashSet<String>,
 }
 
 impl Graph {
     /// Adds an entity, unless there is one with this identifier.
     fn add(&mut self, id: &str, kind: &str, properties: Value) {
-        if self.entities.iter().any(|entity| entity["@id"] == id) {
+        if !self.ids.insert(id.to_owned()) {
             return;
         }
         let mut entity = Map::from_iter([("@id".to_owned(), json!(id)), ("@type".to_owned(), json!(kind))]);
@@ -122,146 +124,130 @@ fn encoded(path: &str) -> String {
     path.bytes().map(byte).collect()
 }
 
-/// Links to the folder of a run in the crate, or to its files where it has none of its own.
-fn parts(run: &WholeRun, at: &str) -> Vec<Value> {
+/// Links to the folder of results in the crate, or to its files where it has none of its own.
+fn parts(results: &Exported, at: &str) -> Vec<Value> {
     if at.is_empty() {
-        run.files().map(|file| link(&file_id(at, file))).collect()
+        files(results, at)
     } else {
         vec![link(&encoded(at))]
     }
 }
 
-fn file_id(at: &str, file: &ManifestFile) -> String {
-    encoded(&format!("{at}{}", file.name))
+/// Links to all files of results.
+fn files(results: &Exported, at: &str) -> Vec<Value> {
+    let names = results.files.iter().map(|of| &of.file.name);
+    names.map(|name| link(&file_id(at, name))).collect()
 }
 
-fn action_id(run: &WholeRun) -> String {
-    format!("#run-{}", &run.manifest.checksum)
+fn file_id(at: &str, name: &str) -> String {
+    encoded(&format!("{at}{name}"))
 }
 
-/// Adds a run: its folder, its files, its parameters, the program and the action.
-fn add_run(graph: &mut Graph, run: &WholeRun, at: &str, agent: Option<Value>) {
-    let manifest = &run.manifest;
+fn action_id(action: &Action) -> String {
+    format!("#{}", encoded(&action.id))
+}
+
+/// Adds results: their folder, their files and their actions.
+fn add_results(graph: &mut Graph, results: &Exported, at: &str, agent: Option<&str>) {
     if !at.is_empty() {
-        let files: Vec<Value> = run.files().map(|file| link(&file_id(at, file))).collect();
-        let properties =
-            json!({"name": run.name, "description": "Folder of a run", "hasPart": one_or_all(files)});
+        let properties = json!({
+            "name": results.name,
+            "description": format!("Folder of a {}", results.kind),
+            "hasPart": one_or_all(files(results, at)),
+        });
         graph.add(&encoded(at), "Dataset", properties);
     }
-    let (mut objects, mut results) = (Vec::new(), Vec::new());
-    for file in run.files() {
-        let id = file_id(at, file);
-        let is_input = file.name == CASE || file.name.starts_with("inputs/");
-        if is_input { &mut objects } else { &mut results }.push(link(&id));
-        graph.add(&id, "File", file_properties(file));
+    for ExportedFile { file, meaning } in &results.files {
+        let properties = json!({
+            "name": file.name,
+            "description": meaning,
+            "contentSize": file.bytes.to_string(),
+            "encodingFormat": format_of(&file.name),
+        });
+        graph.add(&file_id(at, &file.name), "File", properties);
     }
-    for Parameter { key, value, unit } in parameters(&run.case) {
-        let id = format!("{}/{}", action_id(run), encoded(&key));
-        let mut properties = json!({"name": key, "value": value});
-        if let Some((name, code)) = unit {
-            properties["unitText"] = json!(name);
-            if let Some(code) = code {
-                properties["unitCode"] = json!(code);
-            }
-        }
-        graph.add(&id, "PropertyValue", properties);
-        objects.push(link(&id));
+    for action in &results.actions {
+        add_action(graph, action, at, agent);
     }
-    let program = format!(
-        "#{}",
-        encoded(&format!("{}/{}", manifest.program(), manifest.build))
-    );
-    let mut action = json!({
-        "name": format!("Run of the case {}", run.name),
-        "description": format!(
-            "`slipfront run {}` repeats it with the same bytes; on {}, {}, {}; {CASE} has the BLAKE3 hash {}",
-            shell_path(Path::new(&format!("{at}{CASE}"))),
-            manifest.host,
-            manifest.platform,
-            count(manifest.threads, "thread"),
-            manifest.case_blake3
-        ),
-        "identifier": run.identifier(),
-        "instrument": link(&program),
-        "object": one_or_all(objects),
-        "result": one_or_all(results),
-    });
-    for (key, time) in [("startTime", &manifest.started), ("endTime", &manifest.finished)] {
-        if let Ok(time) = time.parse::<Timestamp>() {
-            action[key] = json!(time.strftime("%Y-%m-%dT%H:%M:%S%.3f+00:00").to_string());
-        }
-    }
-    if let Some(agent) = agent {
-        action["agent"] = agent;
-    }
-    graph.add(&action_id(run), "CreateAction", action);
-    let mut software = json!({
-        "name": "slipfront",
-        "description": MODEL,
-        "softwareVersion": manifest.version,
-        "identifier": manifest.build,
-        "author": link("#developers"),
-        "citation": link(ARTICLE_URL),
-    });
-    if let Some(revision) = &manifest.revision {
-        software["description"] = json!(format!("{MODEL}; built from the git commit {revision}"));
-    }
-    graph.add(&program, "SoftwareApplication", software);
 }
 
-fn file_properties(file: &ManifestFile) -> Value {
-    let ending = file.name.rsplit('.').next().unwrap_or_default();
+/// Adds an action with its parameters and its program.
+fn add_action(graph: &mut Graph, action: &Action, at: &str, agent: Option<&str>) {
+    let links = |names: &[String]| -> Vec<Value> {
+        let ids = names.iter().map(|name| file_id(at, name));
+        ids.map(|id| link(&id)).collect()
+    };
+    let mut objects = links(&action.objects);
+    for parameter in &action.parameters {
+        let id = format!("{}/{}", action_id(action), encoded(&parameter.key));
+        objects.push(link(&id));
+        graph.add(&id, "PropertyValue", value_of(parameter));
+    }
     let mut properties = json!({
-        "name": file.name,
-        "description": description(&file.name),
-        "contentSize": file.bytes.to_string(),
+        "name": action.name,
+        "description": description(action, at),
+        "instrument": link(&add_program(graph, &action.program)),
+        "object": one_or_all(objects),
+        "result": one_or_all(links(&action.results)),
     });
-    if let Some((_, format)) = FORMATS.iter().find(|(known, _)| *known == ending) {
-        properties["encodingFormat"] = json!(format);
+    for (key, time) in ["startTime", "endTime"].into_iter().zip(&action.times) {
+        if let Ok(time) = time.parse::<Timestamp>() {
+            properties[key] = json!(time.strftime("%Y-%m-%dT%H:%M:%S%.3f+00:00").to_string());
+        }
+    }
+    if let Some(seal) = &action.seal {
+        properties["identifier"] = json!(format!("blake3:{seal}"));
+    }
+    if let Some(reason) = &action.failure {
+        properties["actionStatus"] = json!("http://schema.org/FailedActionStatus");
+        properties["error"] = json!(reason);
+    }
+    if let Some(agent) = agent {
+        properties["agent"] = link(agent);
+    }
+    graph.add(&action_id(action), "CreateAction", properties);
+}
+
+/// The command that repeats an action, and what else is known of it.
+fn description(action: &Action, at: &str) -> String {
+    let Some((command, files)) = &action.command else {
+        return action.description.clone();
+    };
+    let files = files.iter().map(|name| format!("{at}{name}"));
+    let files: String = files
+        .map(|path| format!(" {}", shell_path(Path::new(&path))))
+        .collect();
+    format!("`{command}{files}` repeats it; {}", action.description)
+}
+
+fn value_of(Parameter { key, value, unit }: &Parameter) -> Value {
+    let mut properties = json!({"name": key, "value": value});
+    if let Some((name, code)) = unit {
+        properties["unitText"] = json!(name);
+        if let Some(code) = code {
+            properties["unitCode"] = json!(code);
+        }
     }
     properties
 }
 
-/// Media types of the files of a run by their endings.
-const FORMATS: [(&str, &str); 10] = [
-    ("csv", "text/csv"),
-    ("gif", "image/gif"),
-    ("json", "application/json"),
-    ("nc", "application/x-netcdf"),
-    ("npy", "application/x-npy"),
-    ("png", "image/png"),
-    ("svg", "image/svg+xml"),
-    ("tif", "image/tiff"),
-    ("tiff", "image/tiff"),
-    ("toml", "application/toml"),
-];
-
-fn description(name: &str) -> String {
-    let known = [
-        (CASE, "The case with every default filled in"),
-        (SUMMARY, "The numbers of the run"),
-        (SERIES, "The curves over time"),
-        (
-            KYMOGRAPH,
-            "Share of sliding blocks over place along the drive and time",
-        ),
-        (
-            FIELDS,
-            "Displacement, velocity, stress and sliding of every block at some instants",
-        ),
-        (MOVIE, "The snapshots one after the other"),
-        (
-            MANIFEST,
-            "Provenance of the run; length and BLAKE3 checksum of every other file",
-        ),
-    ];
-    let tables = tables().map(|table| (table.file, table.description));
-    if let Some((_, meaning)) = known.into_iter().chain(tables).find(|(known, _)| *known == name) {
-        return meaning.to_owned();
+/// Adds a program, and returns its identifier.
+fn add_program(graph: &mut Graph, program: &MadeBy) -> String {
+    let id = format!(
+        "#{}",
+        encoded(&format!("{}/{}", program.in_words(), program.build))
+    );
+    let mut software = json!({
+        "name": "slipfront",
+        "description": MODEL,
+        "softwareVersion": program.version,
+        "identifier": program.build,
+        "author": link("#developers"),
+        "citation": link(ARTICLE_URL),
+    });
+    if let Some(revision) = &program.revision {
+        software["description"] = json!(format!("{MODEL}; built from the git commit {revision}"));
     }
-    let is_shown = |picture: &RunPicture| picture.files().iter().any(|file| file == name);
-    match RunPicture::ALL.into_iter().find(is_shown) {
-        Some(picture) => format!("Picture: {}", picture.shows()),
-        None => "A file that the case reads".to_owned(),
-    }
+    graph.add(&id, "SoftwareApplication", software);
+    id
 }

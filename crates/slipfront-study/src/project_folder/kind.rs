@@ -21,6 +21,10 @@ pub struct ProjectKind {
     pub file: &'static str,
     /// Name of the journal of runs.
     pub journal: &'static str,
+    /// Beginnings of the names of other files that the project is made from, with the meaning of these files.
+    pub given: &'static [(&'static str, &'static str)],
+    /// Beginnings of the names of result files, with the meaning of these files.
+    pub found: &'static [(&'static str, &'static str)],
 }
 
 impl ProjectKind {

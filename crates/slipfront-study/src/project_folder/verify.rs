@@ -9,7 +9,7 @@ use slipfront_base::number_format::{are, count};
 use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::program;
-use slipfront_run::verify::{Verdict, VerifyError, differences, unlisted_files};
+use slipfront_run::verify::{Verdict, VerifyError, description_in, differences, unlisted_files};
 use thiserror::Error;
 
 use super::checksums::{CHECKSUMS, Checksums};
@@ -101,8 +101,13 @@ pub fn verify_checksums(
     verdict.what = format!("{} as {by} wrote them", count(list.files.len(), "file"));
     let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = list.files.iter().map(|file| file.name.as_str());
-    let known = known.chain([CHECKSUMS]).chain(others.iter().copied()).collect();
-    verdict.notes = unlisted_files(folder, &known, is_left);
+    let (described, outdated) = description_in(folder, &list.seal);
+    let known = known
+        .chain([CHECKSUMS])
+        .chain(described)
+        .chain(others.iter().copied());
+    verdict.notes = unlisted_files(folder, &known.collect(), is_left);
+    verdict.notes.extend(outdated);
     Ok((verdict, list.is_complete))
 }
 
