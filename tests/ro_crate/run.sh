@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Has crates of `slipfront export --ro-crate` validated by roc-validator: a run in its folder, two runs as one
-# crate, a study with kept runs and one that failed, and a design. Has its citations read by pybtex and PyYAML.
+# crate, a study with a kept run and one that failed, and a design. Has its citations read by pybtex and
+# PyYAML.
 #
 #     SLIPFRONT=target/debug/slipfront tests/ro_crate/run.sh
 #
