@@ -46,7 +46,7 @@ def export(
     Parameters
     ----------
     runs
-        A run that has a folder, the path of a folder, or several of these.
+        A run that has a folder, the path of a folder of results, such as that of a study, or several of these.
     form
         ``"ro-crate"``: write ``ro-crate-metadata.json``, with which a folder is a Process Run Crate; ``"bibtex"``: entries of each run, of
         slipfront and of the article of its model; ``"cff"``: a citation file, which needs an author.

@@ -96,6 +96,14 @@ def test_runs_are_exported_with_the_bytes_of_the_command(small: sf.Case, tmp_pat
     assert copies == tmp_path / "crate" / "ro-crate-metadata.json" and (tmp_path / "crate/run/summary.json").exists()
 
 
+def test_a_study_is_exported_by_its_folder(small: sf.Case, tmp_path: Path) -> None:
+    study = sf.Study(small, {"drive.v_star": [0.1, 0.2]})
+    folder = study.run(tmp_path / "first", progress=False).folder
+    assert folder is not None
+    assert "first (study from 2 recorded runs)" in sf.export(folder, "bibtex")
+    assert sf.export(folder, "bibtex") == command("export", folder, "--bibtex").stdout
+
+
 def test_an_export_that_cannot_be_is_refused_in_the_words_of_python(small: sf.Case, tmp_path: Path) -> None:
     run = sf.run(small, progress=False)
     folder = run.save(tmp_path / "run")
