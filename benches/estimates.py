@@ -4,7 +4,8 @@
 
 Sizes, speeds, laws and ends are drawn at random from a fixed seed, so that a run takes some seconds. Prints a
 line a run: seconds, the two bounds over them, and the case; at the end how many lower bounds are below half of
-the truth and how many upper ones above twice of it. Other work on the machine does not count in either time.
+the truth and how many upper ones above twice of it, of runs that are said to take a second or more; others must
+take less than two. Other work on the machine does not count in either time.
 """
 
 import json
@@ -58,8 +59,11 @@ def main() -> None:
             subprocess.run([program, "run", *sets, *options], check=True)
             ended = resource.getrusage(resource.RUSAGE_CHILDREN)
             truth = ended.ru_utime - began.ru_utime + ended.ru_stime - began.ru_stime
-            low += least < truth / 2
-            high += most > 2 * truth
+            if most < 1:
+                low += truth > 2
+            else:
+                low += least < truth / 2
+                high += most > 2 * truth
             print(f"{truth:7.2f} s   {least / truth:5.2f} to {most / truth:5.2f}   {name}", flush=True)
     print(f"{low} of {RUNS} lower bounds are below half of the truth, {high} upper ones above twice of it")
 

@@ -22,19 +22,6 @@ pub struct ExpectedSteps {
 }
 
 impl ExpectedSteps {
-    /// Least and largest share of the steps in which blocks slide: slip takes a time of its own, however slow
-    /// the loading is between. In runs with V* N from 0.002 to 5 the share was about
-    ///
-    /// ```text
-    /// (V* N)^0.4 / 2
-    /// ```
-    ///
-    /// half or twice of it.
-    pub fn sliding_share(&self) -> [f64; 2] {
-        let share = 0.5 * libm::pow(self.front_ratio, 0.4);
-        [0.5, 2.0].map(|of_mean| (of_mean * share).min(1.0))
-    }
-
     /// Steps for an equal path at the speed times a factor.
     fn at_speed(self, factor: f64) -> Self {
         Self {
