@@ -8,7 +8,7 @@ import math
 import operator
 import os
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -16,7 +16,9 @@ import numpy.typing as npt
 
 import slipfront._dataset as _dataset
 import slipfront._slipfront as _slipfront
-from ._case import Case, CaseLike, as_case
+from ._case import Case, CaseLike, Overrides, as_case
+from ._finite import check_numbers
+from ._legs import Past
 from ._pickle import sealed
 from ._progress import Bar, parted
 from ._run import Run
@@ -30,7 +32,9 @@ Progress: TypeAlias = bool | Callable[["Simulation"], object] | None
 _ALL = 2**63
 
 
-def run(case: CaseLike, progress: Progress = None, threads: int | None = None) -> Run:
+def run(
+    case: CaseLike, overrides: Overrides | None = None, *, progress: Progress = None, threads: int | None = None
+) -> Run:
     """Run a case to its end.
 
     Other threads of Python go on meanwhile. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.
@@ -39,6 +43,8 @@ def run(case: CaseLike, progress: Progress = None, threads: int | None = None) -
     ----------
     case
         A case, a dictionary of its tables, or the path of its file.
+    overrides
+        Keys of the case that are set anew.
     progress
         True for a bar, False for none, None (default) for a bar in terminals and notebooks; or a function that is called with
         the simulation every 50 ms.
@@ -56,14 +62,13 @@ def run(case: CaseLike, progress: Progress = None, threads: int | None = None) -
 
     Examples
     --------
-    >>> result = run(Case.load("cases/circle.toml"), progress=False)
+    >>> result = run("cases/circle.toml", {"drive.v_star": 0.05}, progress=False)
     >>> result.transition
     True
     >>> float(result.series["mu_star"].max()) == result.static_friction_star
     True
     """
-    simulation = Simulation(as_case(case), threads=threads)
-    return simulation.run(progress=progress)
+    return Simulation(case, overrides, threads=threads).run(progress=progress)
 
 
 class _Alone:
@@ -104,13 +109,15 @@ class Simulation:
     Parameters
     ----------
     case
-        What is run.
+        A case, a dictionary of its tables, or the path of its file.
+    overrides
+        Keys of the case that are set anew.
     threads
         At most so many, one per core unless given.
 
     Examples
     --------
-    >>> simulation = Simulation(Case.load("cases/circle.toml"))
+    >>> simulation = Simulation("cases/circle.toml")
     >>> simulation.step(100)
     100
     >>> simulation.displacement.shape
@@ -121,20 +128,15 @@ class Simulation:
     True
     """
 
-    def __init__(self, case: Case, *, threads: int | None = None) -> None:
-        self._threads = _threads(threads)
-        self._begin(case, _slipfront.Simulation(case._native, self._threads))
-        self._legs: list[tuple[Case, int]] = []
-        # The columns of the series of the legs before this one.
-        self._curves: list[dict[str, Any]] = []
-        # Where the drive stood when this leg began, block by block, and the time and steps before it.
-        self._origin: npt.NDArray[np.float64] | float = 0.0
-        self._before = (0, 0.0)
+    def __init__(self, case: CaseLike, overrides: Overrides | None = None, *, threads: int | None = None) -> None:
+        case, threads = as_case(case, overrides), _threads(threads)
+        self._set(case, _slipfront.Simulation(case._native, threads), threads, Past())
 
-    def _begin(self, case: Case, native: _slipfront.Simulation | None) -> None:
-        self._case = case
+    def _set(
+        self, case: Case, native: _slipfront.Simulation | None, threads: int, past: Past, ended: str | None = None
+    ) -> None:
+        self._case, self._threads, self._past, self._ended = case, threads, past, ended
         self._alone = _Alone(native)
-        self._ended: str | None = None
 
     @property
     def case(self) -> Case:
@@ -150,17 +152,17 @@ class Simulation:
     def steps(self) -> int:
         """Steps since the start, those before changes included."""
         with self._alone as native:
-            return self._before[0] + native.step
+            return self._past.steps + native.step
 
     @property
     def time_s(self) -> float:
         """Time since the start, s."""
-        return self._before[1] + self.time_star * self._case.numbers["time_unit_s"]
+        return self._past.counted("time_s") + self._point[0] * self._case.numbers["time_unit_s"]
 
     @property
     def time_star(self) -> float:
-        """t* since the start or the last change."""
-        return self._point[0]
+        """t* since the start, each leg in the unit of its own case."""
+        return self._past.counted("time_star") + self._point[0]
 
     @property
     def mu_star(self) -> float:
@@ -187,7 +189,7 @@ class Simulation:
         """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). The array cannot be written to."""
         with self._alone as native:
             moved, _ = native.motion()
-        return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._origin)
+        return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._past.origin)
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
@@ -202,26 +204,26 @@ class Simulation:
         Parameters
         ----------
         name
-            ``contact_stress_star`` (over its largest value so far), ``traction`` (Pa), ``displacement_x``, ``displacement_y`` (m, since
-            the last change), ``velocity_x``, ``velocity_y`` (m/s) or ``sliding``.
+            ``contact_stress_star`` (over its largest value so far in this leg), ``traction`` (Pa), ``displacement_x``,
+            ``displacement_y`` (m), ``velocity_x``, ``velocity_y`` (m/s) or ``sliding``.
         """
         with self._alone as native:
-            return native.field(name)
+            field = native.field(name)
+        axis = ("displacement_x", "displacement_y").index(name) if name.startswith("displacement") else None
+        return field if axis is None else (field + self._past.origin[axis]).astype(np.float32)
 
     @property
     def series(self) -> xr.Dataset:
-        """The curve since the start or the last change, as `Run.series`; ``time_s`` counts from the start."""
-        return _dataset.table(self._columns())
+        """The curve since the start, as `Run.series`.
+
+        After a `change` every column goes on: steps, times, the path of the drive, work and losses add up over the legs; all else,
+        stored energies included, is of its instant under the case of its leg. A column that a leg lacks is NaN there.
+        """
+        return _dataset.table(self._past.joined(self._columns()))
 
     def _columns(self) -> dict[str, Any]:
         with self._alone as native:
-            columns = native.series()
-        return {**columns, "time_s": columns["time_s"] + self._before[1]}
-
-    @property
-    def curves(self) -> list[xr.Dataset]:
-        """The `series` of every leg, the present one last."""
-        return [_dataset.table(columns) for columns in [*self._curves, self._columns()]]
+            return native.series()
 
     def step(self, n: int = 1) -> int:
         """Take n steps, or fewer if the run ends before.
@@ -257,7 +259,7 @@ class Simulation:
         condition
             A function of this simulation, asked every `every` steps.
         time_star
-            t* to stop at, rounded up to a step.
+            t* since the start to stop at, rounded up to a step.
         every
             Steps between two looks of `condition` and `observer`.
         observer
@@ -270,7 +272,7 @@ class Simulation:
 
         Examples
         --------
-        >>> simulation = Simulation(Case.load("cases/circle.toml"))
+        >>> simulation = Simulation("cases/circle.toml")
         >>> simulation.run_until(lambda now: now.sliding_percent > 0, every=10)
         True
         """
@@ -278,9 +280,10 @@ class Simulation:
             raise ValueError(f"every is a number of steps from 1 on, not {every}")
         if math.isnan(time_star):
             raise ValueError("t* is a number, not NaN")
-        last = math.ceil(time_star / self._case.numbers["dt_star"] - 1e-9) if time_star < math.inf else _ALL
         if time_star < (now := self.time_star):
-            raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start or the last change")
+            raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start")
+        in_leg = (time_star - self._past.counted("time_star")) / self._case.numbers["dt_star"]
+        last = math.ceil(in_leg - 1e-9) if in_leg < math.inf else _ALL
         while True:
             if observer is not None:
                 observer(self)
@@ -302,7 +305,7 @@ class Simulation:
         progress
             As of `slipfront.run`.
         """
-        if self._legs:
+        if self._past.legs:
             raise RuntimeError(
                 "a run that was changed on its way has no results of one case: read `series` and the fields, and keep `recipe()`"
             )
@@ -323,11 +326,11 @@ class Simulation:
         with self._alone as native:
             return Run(self._case, native.record(self._ended))
 
-    def change(self, overrides: Mapping[str, Any]) -> None:
+    def change(self, overrides: Overrides) -> None:
         """Go on under another case from here: a new leg of the same slider.
 
         Displacements in m and velocities in m/s are kept; the drive goes on from where it stands. Scales, load per block and what is
-        stuck follow the new case, in which time begins anew.
+        stuck follow the new case, whose durations and programs count from here; `steps`, `time_s`, `time_star` and `series` go on.
 
         Parameters
         ----------
@@ -341,20 +344,16 @@ class Simulation:
 
         Examples
         --------
-        >>> simulation = Simulation(Case.load("cases/circle.toml"))
+        >>> simulation = Simulation("cases/circle.toml")
         >>> _ = simulation.run_until(time_star=80)
         >>> simulation.change({"drive.v_star": 0.1, "time.duration_star": 50})
-        >>> simulation.case.numbers["v_star"], simulation.time_star
-        (0.1, 0.0)
+        >>> simulation.case.numbers["v_star"], round(simulation.time_star)
+        (0.1, 80)
         """
-        case = self._case.replace(overrides)
+        case, curve = self._case.replace(overrides), self._columns()
         with self._alone as native:
-            begun, steps, time_s, drive = native.change(case._native, self._threads)
-        self._curves.append(self._columns())
-        self._legs.append((self._case, steps))
-        self._origin = self._origin + drive
-        self._before = (self._before[0] + steps, self._before[1] + time_s)
-        self._begin(case, begun)
+            begun, drive, steps, counts = native.change(case._native, self._threads)
+        self._set(case, begun, self._threads, self._past.after(self._case, steps, curve, dict(counts), drive))
 
     @property
     def textured(self) -> npt.NDArray[np.bool_]:
@@ -363,6 +362,7 @@ class Simulation:
 
     @textured.setter
     def textured(self, mask: npt.ArrayLike) -> None:
+        check_numbers("mask", mask)
         wanted = np.asarray(mask, dtype=bool)
         if wanted.shape != self._case.shape:
             raise ValueError(f"a texture has the shape of the lattice, {self._case.shape}, not {wanted.shape}")
@@ -375,7 +375,7 @@ class Simulation:
         """
         with self._alone as native:
             now = native.step
-        return [*((case.to_toml(), steps) for case, steps in self._legs), (self._case.to_toml(), now)]
+        return [*((case.to_toml(), steps) for case, steps in self._past.legs), (self._case.to_toml(), now)]
 
     def checkpoint(self) -> bytes:
         """State from which `resume` goes on with the same bits."""
@@ -383,7 +383,7 @@ class Simulation:
             return native.checkpoint()
 
     @classmethod
-    def resume(cls, case: Case, checkpoint: bytes, *, threads: int | None = None) -> Simulation:
+    def resume(cls, case: CaseLike, checkpoint: bytes, *, threads: int | None = None) -> Simulation:
         """The simulation of a case that goes on from a checkpoint.
 
         Raises
@@ -391,52 +391,37 @@ class Simulation:
         ValueError
             When it is not a checkpoint of this case by this build of slipfront, or is damaged.
         """
-        native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
-        return cls._of(case, native, threads)
+        case = as_case(case)
+        return cls._of(case, _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads)), threads)
 
     @classmethod
     def _of(cls, case: Case, native: _slipfront.Simulation | None, threads: int | None) -> Simulation:
         simulation = cls.__new__(cls)
-        simulation._threads = _threads(threads)
-        simulation._begin(case, native)
-        simulation._legs, simulation._curves = [], []
-        simulation._origin, simulation._before = 0.0, (0, 0.0)
+        simulation._set(case, native, _threads(threads), Past())
         return simulation
 
     def __copy__(self) -> Simulation:
         other = self.resume(self._case, self.checkpoint(), threads=self._threads)
-        other._ended, other._legs, other._curves = self._ended, list(self._legs), list(self._curves)
-        other._origin, other._before = self._origin, self._before
+        other._ended, other._past = self._ended, self._past
         return other
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
         return copy.copy(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        kept = (self._threads, self._ended, self._legs, self._curves, self._origin, self._before)
-        return sealed(_unpickled, self._case, self.checkpoint(), *kept)
+        return sealed(_unpickled, self._case, self.checkpoint(), self._threads, self._ended, self._past)
 
     def __repr__(self) -> str:
         return f"Simulation({self._case.name}: step {self.steps}, t* = {self.time_star:.4g}, mu* = {self.mu_star:.4g})"
 
 
-def _unpickled(
-    case: Case,
-    checkpoint: bytes,
-    threads: int,
-    ended: str | None,
-    legs: list[tuple[Case, int]],
-    curves: list[dict[str, Any]],
-    origin: npt.NDArray[np.float64] | float,
-    before: tuple[int, float],
-) -> Simulation:
+def _unpickled(case: Case, checkpoint: bytes, threads: int, ended: str | None, past: Past) -> Simulation:
     native = None
     # A process that was forked too late is told when it uses the simulation, as with a case.
     with contextlib.suppress(_slipfront.ForkError):
         native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
     simulation = Simulation._of(case, native, threads)
-    simulation._ended, simulation._legs, simulation._curves = ended, legs, curves
-    simulation._origin, simulation._before = origin, before
+    simulation._ended, simulation._past = ended, past
     return simulation
 
 

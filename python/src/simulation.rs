@@ -16,7 +16,7 @@ use slipfront_run::checksum::{verified, with_checksum};
 use slipfront_run::columns::Columns;
 use slipfront_run::fields::FieldFrame;
 use slipfront_run::running::{RunState, Running};
-use slipfront_run::series::SeriesRow;
+use slipfront_run::series::{SeriesRow, counts};
 use slipfront_run::{clock, program};
 
 use crate::arrays::{rows, stacked};
@@ -86,20 +86,23 @@ impl Simulation {
         })?)
     }
 
-    /// The run that goes on under another case; the steps of this run and their duration in s; and the
-    /// position of the drive over each block, x and y in m.
+    /// The run that goes on under another case; the position of the drive over each block, x and y in m; the
+    /// steps of this run, and what else it has counted by the names of the columns of its series. This run
+    /// ends with it.
     #[allow(clippy::type_complexity, reason = "a tuple of Python, which has no name")]
     fn change<'py>(
-        &self,
+        &mut self,
         py: Python<'py>,
         case: &Case,
         threads: usize,
-    ) -> PyResult<(Self, u64, f64, Bound<'py, PyArray3<f64>>)> {
-        let running = self.running()?;
+    ) -> PyResult<(Self, Bound<'py, PyArray3<f64>>, u64, Vec<(&'static str, f64)>)> {
+        let running = self.running.as_mut().ok_or_else(ended)?;
         let leg = detached(py, || running.change(&case.0, threads))?;
         let leg = leg.map_err(|error| CaseError::new_err(error.to_string()))?;
+        let row = detached(py, || running.end_of_leg())?.map_err(run_error)?;
+        let counted = counts(&row, &running.case().scales, &running.case().model);
         let drive = vectors(py, leg.drive_m, running)?;
-        Ok((Self::of(leg.running)?, leg.steps, leg.time_s, drive))
+        Ok((Self::of(leg.running)?, drive, leg.steps, counted))
     }
 
     /// Takes at most `steps` steps, for 50 ms or a little longer; returns their number, and whether the run

@@ -26,7 +26,7 @@ def held_by(made):
     if isinstance(made, sf.Run):
         return state(made.case), made.summary, [made.series.to_dict(), made.fields.to_dict(), made.kymograph.to_dict()]
     if isinstance(made, sf.Simulation):
-        return state(made.case), made.checkpoint(), made.recipe(), made.time_s, made.displacement.tolist(), len(made.curves)
+        return state(made.case), made.checkpoint(), made.recipe(), made.time_s, made.displacement.tolist(), made.series.to_dict()
     if isinstance(made, sf.Convergence):
         return made.to_dict(), made.text, made.runs.to_csv(), made.points.to_csv(), made.failures, made.folder
     if isinstance(made, sf.StudyResults):
@@ -126,7 +126,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     mask = np.zeros((5, 6), dtype=bool)
     mask[2, 3] = True
     tables = {"slider": {"blocks": [6, 5]}, "time": {"duration_star": 60}, "texture": [{"shape": "mask", "file": mask}]}
-    case = sf.Case.from_dict(tables, name="small")
+    case = sf.Case(tables, name="small")
     simulation = sf.Simulation(case)
     simulation.step(20)
     simulation.change({"drive.v_star": 0.1})
@@ -137,8 +137,8 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
         "case": case,
         "run": sf.run(case, progress=False),
         "simulation": simulation,
-        "study": sf.Study(case, {"drive.v_star": [0.05, 0.1]}).run(progress=False),
-        "convergence": sf.converge(sf.Case.from_dict({"slider.blocks": [6, 4], "drive.v_star": 0.1, "time.stop": "after_onset"}), replicates=1, progress=False),
+        "study": sf.Study(case, axes={"drive.v_star": [0.05, 0.1]}).run(progress=False),
+        "convergence": sf.converge(sf.Case({"slider.blocks": [6, 4], "drive.v_star": 0.1, "time.stop": "after_onset"}), replicates=1, progress=False),
         "stopped": stopped(folder),
         "paper": sf.open(folder, verify=False),
     }
@@ -176,7 +176,7 @@ def test_a_sentence_says_that_a_pickle_is_damaged(objects: dict[str, object]) ->
 
 def test_damaged_checkpoints_and_those_of_other_cases_are_refused() -> None:
     """A checkpoint of another case of the same shape is refused: it would go on with a curve of two cases."""
-    case = sf.Case.from_dict({"slider": {"blocks": [6, 5]}, "time": {"duration_star": 60}})
+    case = sf.Case({"slider": {"blocks": [6, 5]}, "time": {"duration_star": 60}})
     simulation = sf.Simulation(case)
     simulation.step(100)
     checkpoint = simulation.checkpoint()

@@ -4,6 +4,7 @@ import copy
 import math
 import pickle
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -116,13 +117,15 @@ def test_a_change_keeps_where_blocks_are_and_how_fast() -> None:
     moved = before + dt * velocity
     scale = np.abs(moved).max()
     np.testing.assert_allclose(simulation.displacement, moved, rtol=0, atol=1e-13 * scale)
-    assert (simulation.steps, simulation.time_star) == (steps + 1, 0.0)
+    assert simulation.steps == steps + 1
+    # The sum of the steps of the legs, each in the unit of its case.
+    assert simulation.time_star == (steps + 1) * case.numbers["dt_star"]
     assert simulation.time_s == pytest.approx((steps + 1) * dt, rel=1e-12)
     assert [taken for _, taken in simulation.recipe()] == [steps + 1, 0]
     simulation.step(5)
-    first, second = simulation.curves
-    time_s = [*first["time_s"].values, *second["time_s"].values]
-    assert time_s == sorted(time_s) and second["time_s"].values[-1] == pytest.approx(simulation.time_s, rel=1e-12)
+    last = simulation.series.isel(time_star=-1)
+    assert last["step"] == simulation.steps == steps + 6
+    assert last["time_s"] == pytest.approx(simulation.time_s, rel=1e-12) and last["time_star"] == pytest.approx(simulation.time_star, rel=1e-12)
     with pytest.raises(ValueError, match="is over"):
         simulation.run_until(time_star=0.1)
     with pytest.raises(RuntimeError, match="no results of one case"):
@@ -143,6 +146,47 @@ def test_a_change_to_the_same_case_goes_on_as_before() -> None:
         simulation.step(200)
     assert changed.mu_star == pytest.approx(plain.mu_star, rel=1e-6)
     np.testing.assert_allclose(changed.displacement, plain.displacement, atol=1e-6 * np.abs(plain.displacement).max())
+
+
+@pytest.mark.parametrize("more", [{}, {"slider.viscosity_time_star": 0.1}, {"drive.loading": "held"}])
+def test_every_column_goes_on_after_a_change(more: dict[str, Any]) -> None:
+    """A run that is changed to the same case, also after its end, has the columns of one that is not: work and losses add up."""
+    changes = {"output.series": 0.1, "drive.v_star": 0.1, **more}
+    case = sf.Case.load("cases/circle.toml", changes)
+    plain, changed = sf.Simulation(case), sf.Simulation(case, {"time.duration_star": 40})
+    while changed.step(10_000):
+        pass
+    assert changed.ended
+    changed.change({})
+    changed.step(150)
+    changed.change({"time.duration_star": 100})
+    changed.step(150)
+    plain.step(changed.steps)
+    found, wanted = changed.series, plain.series
+    # A held drive that stands has no rows, but each leg has one where it begins.
+    found = found.isel(time_star=np.isin(found["step"], wanted["step"]))
+    assert list(found) == list(wanted) and len(changed.series["step"]) - len(found["step"]) in (0, 2)
+    assert found["friction_loss_j"].values[-1] > 0.1 * found["work_j"].values[-1] > 0
+    for name in (*found.coords, *found):
+        values = wanted[name].values
+        # Rounding of the displacements relative to the drive, which moves on by more than the blocks do.
+        np.testing.assert_allclose(found[name].values, values, rtol=0, atol=1e-6 * np.abs(values).max(), err_msg=str(name))
+    for name in ("displacement_x", "displacement_y"):
+        # A field has 24 bits.
+        np.testing.assert_allclose(changed.field(name), plain.field(name), rtol=0, atol=1e-6 * np.abs(plain.field("displacement_x")).max())
+
+
+def test_a_column_that_a_leg_lacks_counts_nothing_there() -> None:
+    simulation = sf.Simulation("cases/circle.toml", {"output.series": 0.1})
+    simulation.step(200)
+    simulation.change({"slider.viscosity_time_star": 0.1})
+    simulation.step(100)
+    lost = float(simulation.series["viscous_loss_j"].values[-1])
+    assert lost > 0
+    simulation.change({"slider.viscosity_time_star": 0.0})
+    simulation.step(10)
+    loss = simulation.series["viscous_loss_j"].values
+    assert not loss[:201].any() and (np.diff(loss) >= 0).all() and loss[-1] == pytest.approx(lost, rel=0.02) and loss[-1] == loss[-10]
 
 
 def test_changes_that_have_no_meaning_are_refused(small: sf.Case) -> None:

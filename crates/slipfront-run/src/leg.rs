@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use slipfront::{Execution, State, VectorField};
+use slipfront::observe::{CurveRow, Scheduled};
+use slipfront::{Execution, RunError, State, Stop, VectorField};
 use slipfront_case::case::Case;
 use thiserror::Error;
 
@@ -147,10 +148,25 @@ impl Running {
             drive_m: drive,
         })
     }
+
+    /// Takes the step that has begun to its end, where a leg after this one begins, also after the last step
+    /// of the case, and returns the row of the curve there without the energies that blocks and springs
+    /// store.
+    ///
+    /// # Errors
+    /// [`RunError`] when the run diverges in this step.
+    pub fn end_of_leg(&mut self) -> Result<CurveRow, RunError> {
+        let curve = &mut self.observers.summary.curve;
+        let mut observers = [Scheduled::always(&mut *curve)];
+        self.simulation.advance(Stop::never(), 1, &mut observers)?;
+        Ok(curve.counts(&self.simulation.snapshot()))
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use slipfront::StoredEnergy;
+
     use super::*;
 
     const SMALL: &str = "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
@@ -248,6 +264,21 @@ mod tests {
             (leg.drive_time_star / time_star - 1.0).abs() < 1e-15,
             "{time_star}"
         );
+    }
+
+    #[test]
+    fn a_leg_counts_up_to_where_the_next_one_begins_even_after_its_end() {
+        let (case, short) = (
+            case_of(&["output.series = 0.1"]),
+            case_of(&["output.series = 0.1", "time.duration_star = 60"]),
+        );
+        let mut leg = started(&short, u64::MAX);
+        let plain = started(&case, leg.snapshot().step + 1);
+        let (found, last) = (leg.end_of_leg().unwrap(), plain.rows().last().unwrap());
+        let mut wanted = *last;
+        wanted.energies.stored = StoredEnergy::default();
+        assert!(wanted.energies.friction_loss > 0.0);
+        assert_eq!(format!("{found:?}"), format!("{wanted:?}"));
     }
 
     #[test]

@@ -57,8 +57,8 @@ pub fn run(case: &Arc<Case>, threads: usize) -> Result<RunData, RunError> {
 /// A run in progress, with the observers that its files need.
 pub struct Running {
     case: Arc<Case>,
-    simulation: Simulation,
-    observers: Observers,
+    pub(crate) simulation: Simulation,
+    pub(crate) observers: Observers,
     communicator: Arc<dyn Communicator>,
     /// Largest number of threads, each of which has enough blocks.
     threads: usize,
@@ -67,7 +67,7 @@ pub struct Running {
 /// Recordings of a run up to now.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Observers {
-    summary: SummaryObservers,
+    pub(crate) summary: SummaryObservers,
     kymograph: Kymograph,
     fields: Fields,
 }

@@ -156,6 +156,33 @@ const COLUMNS: &[Column] = columns_of! {
     viscous_loss_j sheet_coupling_energy_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
 };
 
+/// Columns that count from the start of a run, on which a leg after it goes on.
+const COUNTS: [&str; 10] = [
+    "time_star",
+    "time_s",
+    "drive_time_star",
+    "drive_displacement_m",
+    "work_j",
+    "friction_loss_j",
+    "damping_loss_j",
+    "viscous_loss_j",
+    "broken_spring_loss_j",
+    "weakening_loss_j",
+];
+
+/// The numbers of a row that count from the start of a run of this model, by the names of their columns, but
+/// the number of the step; 0 for a column that the run lacks.
+pub fn counts(row: &CurveRow, scales: &Scales, model: &Model) -> Vec<(&'static str, f64)> {
+    let row = SeriesRow {
+        drive_time_star: Some(row.drive_time_star),
+        ..SeriesRow::new(row, scales, model)
+    };
+    let counted = COLUMNS.iter().filter(|(name, _)| COUNTS.contains(name));
+    counted
+        .map(|(name, value)| (*name, value(&row).unwrap_or_default()))
+        .collect()
+}
+
 /// The columns of a series: names and values, without columns that it lacks, and without the numbers of the
 /// steps.
 pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
@@ -322,6 +349,13 @@ mod tests {
         };
         let names: Vec<&str> = super::columns(&[whole]).iter().map(|(name, _)| *name).collect();
         assert_eq!(names, all[1..]);
+    }
+
+    #[test]
+    fn what_counts_from_the_start_is_a_column() {
+        for name in COUNTS {
+            assert!(COLUMNS.iter().any(|(column, _)| *column == name), "{name}");
+        }
     }
 
     #[test]

@@ -119,10 +119,9 @@ impl Ledger {
         self.before = Some(powers);
     }
 
-    /// The balance at an instant at which energies are known.
-    pub(crate) fn energies(&self, now: &Snapshot) -> Energies {
+    /// The balance at this instant, without what blocks and springs store.
+    pub(crate) fn counts(&self, now: &Snapshot) -> Energies {
         Energies {
-            stored: now.stored_energy(),
             weakening_loss: now.weakening_energy(),
             ..self.totals
         }
