@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 import slipfront._slipfront as _slipfront
+from ._finite import check_numbers
 from ._temporary import TemporaryFolder
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -127,8 +128,11 @@ def value(given: Any, arrays: Arrays, of: str = "") -> str:
         return _quantities(given)
     if hasattr(given, "__array__"):
         array = np.asanyarray(given)
-        # What has rows is a field or a mask, of which a case names the file.
-        return word(arrays.add(array, of)) if array.ndim == 2 else value(array.tolist(), arrays)
+        # What has rows is a field or a mask, of which a case names the file, and heights may be missing.
+        if array.ndim == 2:
+            return word(arrays.add(array, of))
+        check_numbers(of, array)
+        return value(array.tolist(), arrays)
     if isinstance(given, Sequence):
         if names_file(of):
             return word(arrays.add(_rows(of, given), of))

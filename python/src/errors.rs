@@ -65,11 +65,23 @@ pub(crate) fn in_words_of_python(error: impl Display) -> String {
     for part in parts {
         let named = part.split_once('/').and_then(|(_, rest)| rest.split_once(".npy"));
         match named {
-            Some((key, rest)) => told.extend([key, rest]),
+            Some((key, rest)) => match by_index(rest) {
+                Some((index, value, rest)) => told.extend([key, &index, value, rest]),
+                None => told.extend([key, rest]),
+            },
             None => told.extend([IN_MEMORY, part]),
         }
     }
     told
+}
+
+/// The place in an array, and its value, of what is wrong with the file of the array, and the rest of the
+/// sentence after its name.
+fn by_index(after_name: &str) -> Option<(String, &str, &str)> {
+    let (value, rest) = after_name.strip_prefix("` has ")?.split_once(" in row ")?;
+    let (row, rest) = rest.split_once(", column ")?;
+    let (column, rest) = rest.split_once(" (both counted from 0)")?;
+    Some((format!("[{row}, {column}]` is "), value, rest))
 }
 
 /// A case that cannot be run, as an exception with its place.

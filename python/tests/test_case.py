@@ -1,6 +1,7 @@
 """Cases from everywhere, and what is wrong with them."""
 
 import io
+import math
 import os
 import pickle
 import signal
@@ -26,7 +27,7 @@ def test_a_case_is_the_same_from_a_path_a_text_and_a_dictionary() -> None:
         "texture": [{"shape": "cavity", "coverage": 10}],
     }
     assert sf.Case.parse(path.read_text()).to_toml() == loaded.to_toml()
-    assert sf.Case(tables).to_toml() == sf.Case.from_dict(tables).to_toml() == loaded.to_toml()
+    assert sf.Case(tables).to_toml() == sf.Case(tables).to_toml() == loaded.to_toml()
     assert loaded == sf.Case.load(str(path))
     assert hash(loaded) == hash(sf.Case.load(str(path)))
     assert loaded != loaded.replace({"drive.v_star": 0.5})
@@ -40,18 +41,18 @@ def test_overrides_replace_keys_that_exclude_them() -> None:
 
 
 def test_a_table_that_is_replaced_keeps_the_keys_that_are_not_given() -> None:
-    case = sf.Case.from_dict({"slider": {"blocks": [4, 4]}, "drive": {"v_star": 0.05, "direction": 45}})
+    case = sf.Case({"slider": {"blocks": [4, 4]}, "drive": {"v_star": 0.05, "direction": 45}})
     changed = case.replace({"drive": {"v_star": 0.1}})
     assert changed == case.replace({"drive.v_star": 0.1}) and "direction = 45" in changed.to_toml()
-    study = sf.Study(case, {"speed": {"slow": {}, "fast": {"drive": {"v_star": 0.1}}}})
+    study = sf.Study(case, axes={"speed": {"slow": {}, "fast": {"drive": {"v_star": 0.1}}}})
     assert study.case(1).numbers == changed.numbers and "direction = 45" in study.case(1).to_toml()
 
 
 def test_values_may_be_those_of_numpy_and_of_pint() -> None:
     pint = pytest.importorskip("pint")
     unit = pint.UnitRegistry()
-    written = sf.Case.from_dict({"slider": {"blocks": [4, 4]}, "drive": {"speed": "1.5 mm/s"}, "load": {"pressure": "50 kPa"}})
-    given = sf.Case.from_dict(
+    written = sf.Case({"slider": {"blocks": [4, 4]}, "drive": {"speed": "1.5 mm/s"}, "load": {"pressure": "50 kPa"}})
+    given = sf.Case(
         {
             "slider": {"blocks": np.array([4, 4])},
             "drive": {"speed": 1.5 * unit.mm / unit.s},
@@ -60,7 +61,7 @@ def test_values_may_be_those_of_numpy_and_of_pint() -> None:
     )
     assert given.numbers == written.numbers
     with pytest.raises(sf.CaseError, match="a speed is wanted|is wanted"):
-        sf.Case.from_dict({"drive": {"speed": 3 * unit.kg}})
+        sf.Case({"drive": {"speed": 3 * unit.kg}})
 
 
 def test_errors_have_the_sentences_of_the_command() -> None:
@@ -75,7 +76,7 @@ def test_errors_have_the_sentences_of_the_command() -> None:
     with pytest.raises(sf.CaseError, match="^drive.v_star=0: "):
         sf.Case.load("cases/circle.toml", {"drive.v_star": 0})
     with pytest.raises(TypeError, match="not of object"):
-        sf.Case.from_dict({"drive": {"v_star": object()}})
+        sf.Case({"drive": {"v_star": object()}})
     with pytest.raises(TypeError, match="a dictionary of its tables, not of str: of a file by Case.load"):
         sf.Case("cases/circle.toml")  # type: ignore[arg-type]
 
@@ -135,7 +136,7 @@ def test_rows_of_a_list_are_a_mask_and_a_field() -> None:
     for rows in (mask.tolist(), [tuple(row) for row in mask.tolist()], [[bool(one) for one in row] for row in mask]):
         of_rows = case(rows, field.tolist())
         assert (of_rows.textured == of_arrays.textured).all() and sf.map([of_rows]) == sf.map([of_arrays])
-    study = sf.Study(of_arrays, {"texture.0.file": [mask.tolist(), (1 - mask).tolist()]})
+    study = sf.Study(of_arrays, axes={"texture.0.file": [mask.tolist(), (1 - mask).tolist()]})
     assert [study.case(point).textured.sum() for point in (0, 1)] == [10, 110]
     for wrong in ([[0, 1], [1]], [0, 1], [["a"]]):
         with pytest.raises(ValueError, match="`texture.0.file` is the name of a file, an array"):
@@ -168,7 +169,7 @@ def test_arrays_stand_in_for_files_and_are_pickled() -> None:
     mask = np.zeros((12, 20), dtype=bool)
     mask[3:7, 5:9] = True
     coefficients = rng.uniform(0.8, 1.2, (12, 20))
-    case = sf.Case.from_dict(
+    case = sf.Case(
         {
             "slider": {"blocks": [20, 12]},
             "friction": {"mu_static_field": coefficients},
@@ -193,7 +194,7 @@ import numpy as np
 import slipfront as sf
 
 mask = np.eye(3, 4, dtype=bool)
-case = sf.Case.from_dict({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": mask}], "time": {"duration_star": 5}})
+case = sf.Case({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": mask}], "time": {"duration_star": 5}})
 other = sf.Case.load("cases/circle.toml", {"slider.blocks": [4, 3], "texture": [{"shape": "mask", "file": ~mask}]})
 assert (other.textured == ~mask).all()
 twin = pickle.loads(pickle.dumps(case.replace({"drive.v_star": 0.2})))
@@ -226,8 +227,8 @@ def test_an_array_is_the_file_of_numpy_with_its_values(tmp_path: Path) -> None:
     paths = [tmp_path / "texture.0.file.npy", tmp_path / "friction.mu_static_field.npy"]
     for path, array in zip(paths, (mask, coefficients), strict=True):
         np.save(path, array)
-    on_disk = sf.Case.from_dict(tables(*paths))
-    in_memory = sf.Case.from_dict(tables(mask, coefficients))
+    on_disk = sf.Case(tables(*paths))
+    in_memory = sf.Case(tables(mask, coefficients))
     assert in_memory == on_disk and in_memory._hashes() == on_disk._hashes()
     saved = [sf.run(case, progress=False).save(tmp_path / name) for case, name in ((on_disk, "disk"), (in_memory, "memory"))]
     files = [sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file()) for folder in saved]
@@ -255,13 +256,13 @@ def test_arrays_in_memory_are_what_numpy_saves(dtype: Any) -> None:
 def test_arrays_of_objects_are_refused() -> None:
     mask = np.array([[None, 1]])
     with pytest.raises(sf.CaseError, match="`texture.0.file`"):
-        sf.Case.from_dict({"slider": {"blocks": [2, 1]}, "texture": [{"shape": "mask", "file": mask}]})
+        sf.Case({"slider": {"blocks": [2, 1]}, "texture": [{"shape": "mask", "file": mask}]})
 
 
 def test_arrays_follow_a_case(tmp_path: Path) -> None:
     """Arrays of a case that is changed stand beside new ones, and beside files of their names."""
     mask, field = np.eye(10, 12, dtype=bool), np.full((10, 12), 0.9)
-    case = sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
+    case = sf.Case({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
     both = pickle.loads(pickle.dumps(case.replace({"load.pressure_field": field}))).replace({"friction.mu_static_field": field + 1})
     assert (both.textured == mask).all() and both.mu_static[0, 1] == both.mu_static.max()
     named = ("texture.0.file", "load.pressure_field", "friction.mu_static_field")
@@ -276,7 +277,7 @@ def test_arrays_follow_a_case(tmp_path: Path) -> None:
         case.replace({"friction.mu_static_field": field[:3, :4]})
     with pytest.raises(sf.CaseError, match="`friction.mu_static_field` has 80128 bytes where 10 rows of 12 numbers take at most"):
         case.replace({"friction.mu_static_field": np.ones((100, 100))})
-    study = sf.Study(both, {"texture.0.file": [mask, ~mask], "drive.v_star": [0.2]}, settings={"keep": "all"})
+    study = sf.Study(both, axes={"texture.0.file": [mask, ~mask], "drive.v_star": [0.2]}, keep="all")
     results = study.run(tmp_path / "study", progress=False)
     assert list(results.runs["texture_percent"]) == [pytest.approx(100 / 12), pytest.approx(1100 / 12)]
 
@@ -297,7 +298,7 @@ def test_a_file_that_changes_does_not_change_the_case_in_silence(tmp_path: Path)
         "pickle": lambda: pickle.dumps(case),
         "replace": lambda: case.replace({"drive.v_star": 0.1}),
         "change": lambda: simulation.change({"drive.v_star": 0.1}),
-        "study": lambda: sf.Study(case, {"drive.v_star": [0.1]}),
+        "study": lambda: sf.Study(case, axes={"drive.v_star": [0.1]}),
     }
     for use in uses.values():
         with pytest.raises(sf.CaseError, match="mask.npy has changed since the case was made of it: load the case anew") as raised:
@@ -316,9 +317,38 @@ def test_masked_heights_are_not_taken_for_measured_ones() -> None:
     texture = {"shape": "height_map", "file": heights, "height_unit": "1 nm", "pixel_size": "1 um", "bearing_percent": 50}
     tables = {"slider": {"blocks": [20, 12]}, "texture": [texture]}
     with pytest.raises(sf.CaseError, match="NaN|not measured|no number|finite"):
-        sf.Case.from_dict(tables)
+        sf.Case(tables)
     texture["file"] = heights.filled(1.0)
-    assert sf.Case.from_dict(tables).numbers["texture_percent"] == 50
+    assert sf.Case(tables).numbers["texture_percent"] == 50
+
+
+def test_what_is_no_number_is_told_by_its_index(small: sf.Case) -> None:
+    """In every array that is given, whoever reads it."""
+    holed = np.ones(small.shape)
+    holed[3, 5] = math.nan
+    texture = {"shape": "height_map", "file": holed, "height_unit": "1 nm", "pixel_size": "1 um", "bearing_percent": 50}
+    design = sf.Design(small, wish=sf.Least("static_friction"), coverage=(0, 40))
+    rig = {"slider": {"blocks": [6, 6]}, "time": {"step": 0.4}}
+    calibration = sf.Calibration(rig, unknowns={"friction.mu_static": (0.3, 0.9)}, noise=0.01)
+    force = np.ones(50)
+    force[7] = math.inf
+    given: dict[str, Callable[[], object]] = {
+        r"`friction.mu_static_field\[3, 5\]` is NaN": lambda: small.replace({"friction.mu_static_field": holed}),
+        r"`load.pressure_field\[0, 1\]` is inf": lambda: small.replace({"load.pressure_field": np.where(np.arange(12) == 1, math.inf, 1.0) * np.ones(small.shape)}),
+        r"`texture.0.file\[3, 5\]` is NaN, where 0 or 1": lambda: small.replace({"texture": [{"shape": "mask", "file": holed}]}),
+        r"`texture.0.file\[3, 5\]` is NaN, where a height": lambda: small.replace({"texture": [texture]}),
+        r"`output.snapshots\[1\]` is NaN": lambda: small.replace({"output.snapshots": np.array([1, math.nan])}),
+        r"`drive.v_star\[1\]` is NaN": lambda: sf.Study(small, axes={"drive.v_star": np.array([1, math.nan])}),  # type: ignore[dict-item]
+        r"`mask\[3, 5\]` is NaN": lambda: design.illegal(holed),
+        r"`losses\[0\]` is NaN": lambda: design.tell([holed > 0], [math.nan]),
+        r"`force_n\[7\]` is inf": lambda: calibration.check((np.arange(50) * 1e-9, force)),
+    }
+    for said, give in given.items():
+        with pytest.raises(ValueError, match=said):
+            give()
+    simulation = sf.Simulation(small)
+    with pytest.raises(ValueError, match=r"`mask\[3, 5\]` is NaN"):
+        simulation.textured = holed
 
 
 def test_a_surface_has_the_same_contact_from_every_file_of_surface_topography(tmp_path: Path) -> None:
@@ -334,7 +364,7 @@ def test_a_surface_has_the_same_contact_from_every_file_of_surface_topography(tm
 
     def contact(file: object, **units: str) -> np.ndarray:
         texture = {"shape": "height_map", "file": file, "bearing_percent": 50, **units}
-        return ~sf.Case.from_dict({"slider": {"blocks": [20, 12]}, "texture": [texture]}).textured
+        return ~sf.Case({"slider": {"blocks": [20, 12]}, "texture": [texture]}).textured
 
     # The library shows heights()[:, 0] on top, where y is largest; half of an even number of blocks touch.
     wanted = (heights > np.median(heights)).T[::-1]
@@ -357,14 +387,14 @@ import os, signal
 import numpy as np
 import slipfront as sf
 
-case = sf.Case.from_dict({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": np.eye(3, 4, dtype=bool)}]})
-study = sf.Study(case, {"drive.v_star": [0.2]})
+case = sf.Case({"slider": {"blocks": [4, 3]}, "texture": [{"shape": "mask", "file": np.eye(3, 4, dtype=bool)}]})
+study = sf.Study(case, axes={"drive.v_star": [0.2]})
 if os.fork() == 0:
     # It has the files of the study's arrays in common with the process that made them.
     del study
     raise SystemExit
 os.wait()
-assert sf.Study(case, {"drive.v_star": [0.2]}).n_points == study.n_points == 1
+assert sf.Study(case, axes={"drive.v_star": [0.2]}).n_points == study.n_points == 1
 print(len(os.listdir(os.environ["TMPDIR"])), flush=True)
 if KILLED:
     os.kill(os.getpid(), signal.SIGKILL)
