@@ -14,6 +14,8 @@ import netCDF4
 import numpy as np
 import xarray as xr
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkFiltersCore import vtkArrayCalculator
 from vtkmodules.vtkIONetCDF import vtkNetCDFCFReader
 
 FIELDS = ["contact_stress_star", "traction"]
@@ -66,6 +68,8 @@ def check_netcdf(path, nx, ny, written, model):
 
 
 def check_vtk(path, nx, ny, written):
+    said = vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(said)
     reader = vtkNetCDFCFReader()
     reader.SetFileName(str(path))
     reader.UpdateMetaData()
@@ -84,6 +88,22 @@ def check_vtk(path, nx, ny, written):
             for name in names:
                 found = vtk_to_numpy(points.GetArray(name)).reshape(end - start, nx)
                 expect(f"{name}, rows from {start}", found, known(name, instant, row, column))
+            check_vector(output, start, row, column, instant)
+    expect("what the reader says", said.GetOutput(), "")
+
+
+def check_vector(output, start, row, column, instant):
+    """Two fields become one vector by the expression of the guide."""
+    calculator = vtkArrayCalculator()
+    calculator.SetInputData(output)
+    for name in FIELDS:
+        calculator.AddScalarArrayName(name)
+    calculator.SetFunction(f"{FIELDS[0]}*iHat + {FIELDS[1]}*jHat")
+    calculator.SetResultArrayName("vector")
+    calculator.Update()
+    found = vtk_to_numpy(calculator.GetOutput().GetPointData().GetArray("vector"))
+    wanted = [known(name, instant, row, column).ravel() for name in FIELDS]
+    expect(f"the vector, rows from {start}", found, np.stack([*wanted, np.zeros(found.shape[0])], axis=1))
 
 
 def check_kymograph(path):
