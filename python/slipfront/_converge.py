@@ -12,9 +12,12 @@ from typing import Any
 
 import slipfront._slipfront as _slipfront
 import slipfront._toml as _toml
-from ._case import Case, CaseLike, as_case
+from ._axes import Axis
+from ._case import CaseLike, Overrides, as_case
+from ._html import table, with_error
 from ._pickle import sealed
 from ._simulation import _threads
+from ._slipfront import title
 from ._study import Progress, StudyResults, executed, read_tables
 
 
@@ -54,19 +57,20 @@ class Convergence(StudyResults):
         self,
         folder: Path | None,
         tables: dict[str, dict[str, list[Any]]],
+        axes: list[Axis],
         failures: Sequence[tuple[str, str]],
         found: dict[str, Any],
         text: str,
     ) -> None:
-        super().__init__(folder, tables, failures)
+        super().__init__(folder, tables, axes, failures)
         self._found, self.text = found, text
 
     @classmethod
-    def read(cls, folder: Path, failures: Sequence[tuple[str, str]] = ()) -> Convergence:
+    def read(cls, folder: Path, axes: list[Axis], failures: Sequence[tuple[str, str]] = ()) -> Convergence:
         """The results in a folder."""
         found = json.loads((folder / "convergence.json").read_bytes())
         text = (folder / "convergence.txt").read_text(encoding="utf-8")
-        return cls(folder, read_tables(folder), failures, found, text)
+        return cls(folder, read_tables(folder), axes, failures, found, text)
 
     @property
     def block_sizes(self) -> list[str]:
@@ -112,8 +116,16 @@ class Convergence(StudyResults):
             sentence=sentence,
         )
 
+    def _repr_html_(self) -> str:
+        def row(found: QuantityOnMeshes) -> list[str]:
+            values = [with_error(*parts) for parts in zip(found.values, found.scatter, strict=True)]
+            return [title(found.quantity), *values, "none claimed" if found.mesh_error is None else f"{found.mesh_error:.1g}"]
+
+        rows = [row(found) for found in self.quantities.values()]
+        return table(["blocks of", *self.block_sizes, "mesh error"], rows)
+
     def __reduce__(self) -> tuple[Any, ...]:
-        return sealed(type(self), self.folder, self._tables, self._failures, self._found, self.text)
+        return sealed(type(self), self.folder, self._tables, self._axes, self._failures, self._found, self.text)
 
     def __repr__(self) -> str:
         return self.text.rstrip()
@@ -121,8 +133,9 @@ class Convergence(StudyResults):
 
 def converge(
     case: CaseLike,
-    folder: str | os.PathLike[str] | None = None,
+    overrides: Overrides | None = None,
     *,
+    folder: str | os.PathLike[str] | None = None,
     force: bool = False,
     levels: int = 3,
     replicates: int | None = None,
@@ -140,6 +153,8 @@ def converge(
     ----------
     case
         A case, a dictionary of its tables, or the path of its file.
+    overrides
+        Keys of the case that are set anew.
     folder
         A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront converge`; in memory unless it
         is given.
@@ -173,13 +188,13 @@ def converge(
     Examples
     --------
     >>> coarse = {"slider.blocks": [20, 20], "slider.block_size": "50 um", "time.stop": "after_onset"}
-    >>> found = converge(Case.load("cases/sheet.toml", coarse), progress=False)
+    >>> found = converge("cases/sheet.toml", coarse, progress=False)
     >>> found.block_sizes
     ['100 um', '50 um', '25 um']
     >>> found.quantities["static_friction_star"]
     static_friction_star: 0.853 ± 0.021, of which the mesh is 0.021 (order 2.0)
     """
-    case = as_case(case)
+    case = as_case(case, overrides)
     # A file that has changed would make another case than this one.
     case._native.read_inputs()
     native, arrays = case._native, _toml.Arrays(case._native.arrays)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from ._optional import Columns
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -58,7 +60,7 @@ def _dataset(variables: dict[str, Any], coordinates: dict[str, Any]) -> xr.Datas
         import xarray
     except ImportError:
         plain = {name: array for name, (_, array, _) in {**coordinates, **variables}.items()}
-        return cast("xr.Dataset", plain)
+        return cast("xr.Dataset", Columns(plain))
     return xarray.Dataset(variables, coordinates)
 
 

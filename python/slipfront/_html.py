@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import base64
 import html
+import math
 import struct
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 _MAX_PIXELS = 400
+_MAX_ROWS = 20
 
 
 def numbers(rows: Iterable[tuple[str, str]]) -> str:
@@ -23,6 +25,23 @@ def numbers(rows: Iterable[tuple[str, str]]) -> str:
         for name, value in rows
     )
     return f"<table>{''.join(cells)}</table>"
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table with a header; of many rows the first."""
+    shown = rows[:_MAX_ROWS]
+    if len(rows) > len(shown):
+        shown = [*shown, [f"{len(rows) - len(shown)} more", *[""] * (len(header) - 1)]]
+
+    def line(cells: Sequence[str], kind: str) -> str:
+        return f"<tr>{''.join(f'<{kind}>{html.escape(cell)}</{kind}>' for cell in cells)}</tr>"
+
+    return f"<table>{line(header, 'th')}{''.join(line(cells, 'td') for cells in shown)}</table>"
+
+
+def with_error(value: float, error: float | None) -> str:
+    """A number and its uncertainty, if it has one."""
+    return f"{value:.4g}" + ("" if error is None or math.isnan(error) else f" \u00b1 {error:.2g}")
 
 
 def picture(textured: npt.NDArray[np.bool_]) -> str:

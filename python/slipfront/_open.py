@@ -151,14 +151,13 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
         raise _slipfront.FolderError(f"{path} is not the folder of a run, of a study, of a design, of a calibration, or of a paper that is finished: name one with a case.toml, a study.toml, a design.json, a calibration.json or a claims.csv")
     if verify:
         _slipfront.verify(path)
-    if kind == "study":
-        return StudyResults.read(path)
+    if kind in ("study", "meshes"):
+        results = StudyResults if kind == "study" else Convergence
+        return results.read(path, _slipfront.Study.of_folder(path).axes)
     if kind == "design":
         return DesignResults.read(path, path)
     if kind == "calibration":
         return CalibrationResults.read(path, path)
-    if kind == "meshes":
-        return Convergence.read(path)
     native, read = _slipfront.read_run(path)
     return Run(Case._of(native), FolderSource(path, read), path)
 

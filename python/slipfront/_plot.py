@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
+from ._axes import Axis, levels_of
 from ._case import Case
+from ._optional import needed
+from ._slipfront import title, title_of_field, titles_of_run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,30 +49,43 @@ class Drawn(Protocol):
     def _arrays(self) -> dict[str, Any]: ...
 
 
-def plot(run: Drawn, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Axes:
+def plot(run: Drawn, kind: str, ax: Axes | None, instant: str | int, label: str | None) -> Axes:
     """Draw a run, as described at `Run.plot`."""
     if kind == "friction":
         return drawn(partial(_friction, run, label), 0.75, ax)
     if kind == "kymograph":
         return drawn(partial(_kymograph, run), 0.75, ax)
-    values, title = (run._arrays["first_slip_time_star"], "first slip, t*") if kind == "front" else _field(run, kind, instant)
+    if kind == "front":
+        values, label = run._arrays["first_slip_time_star"], _titles(run)["first_slip_time_star"]
+    else:
+        values, label = _field(run, kind, instant)
     height = min(max(0.85 * values.shape[0] / values.shape[1], 0.3), 1.5)
-    return drawn(partial(_map, run, values, title), height, ax)
+    return drawn(partial(_map, run, values, label), height, ax)
+
+
+def _titles(run: Drawn) -> dict[str, str]:
+    """Titles of the axes of pictures of a run."""
+    titles = titles_of_run(run.summary.get("motion") == "rotation")
+    return {name: _with_subscripts(title) for name, title in titles}
+
+
+def _with_subscripts(title: str) -> str:
+    """A title for matplotlib, in which the character after an underscore is a subscript."""
+    return re.sub("_(.)", r"$_{\\mathrm{\1}}$", title)
 
 
 def drawn(draw: Callable[[Axes], None], height: float, ax: Axes | None) -> Axes:
     """Draw in these axes, or in new ones as wide as a column of a journal, of this height over their width."""
-    import matplotlib.pyplot as plt
-
+    plt = needed("matplotlib.pyplot", "a picture")
     if ax is not None:
         draw(ax)
         return ax
     # The first figure chooses the backend, which would be forgotten with the style.
     figure = plt.figure(figsize=(_WIDTH, height * _WIDTH), layout="compressed")
     with plt.rc_context(cast("Any", _STYLE)):
-        ax = figure.add_subplot()
-        draw(ax)
-    return ax
+        new: Axes = figure.add_subplot()
+        draw(new)
+    return new
 
 
 def _friction(run: Drawn, label: str | None, ax: Axes) -> None:
@@ -78,8 +96,9 @@ def _friction(run: Drawn, label: str | None, ax: Axes) -> None:
         ax.plot(found["time_star"], found["mu_star"], ".", ms=4, color=line.get_color())
         # Beside the curve, which rises before the peak and falls after it.
         ax.annotate(found["instant"], (found["time_star"], found["mu_star"]), (3, 2), textcoords="offset points", fontsize=7)
-    ax.set_xlabel("$t^*$")
-    ax.set_ylabel(r"$\mu^*$")
+    titles = _titles(run)
+    ax.set_xlabel(titles["time_star"])
+    ax.set_ylabel(titles["mu_star"])
     ax.set_ylim(bottom=0)
     ax.set_xlim(left=0)
     if label is not None:
@@ -95,11 +114,11 @@ def _kymograph(run: Drawn, ax: Axes) -> None:
     # Each value stands for the time and the place around it.
     (first, last), (start, end) = _ends(time_star), _ends(place)
     extent = (first, last, start / unit, end / unit)
-    percent = 100 * np.asarray(kymograph["sliding_share"]).T
-    image = ax.imshow(percent, origin="lower", extent=extent, aspect="auto", cmap="viridis", vmin=0, interpolation="nearest")
-    ax.set_xlabel("$t^*$")
-    ax.set_ylabel(f"along the drive ({prefix}m)")
-    _colorbar(ax, image, "sliding (%)")
+    share, titles = np.asarray(kymograph["sliding_share"]).T, _titles(run)
+    image = ax.imshow(share, origin="lower", extent=extent, aspect="auto", cmap="viridis", vmin=0, interpolation="nearest")
+    ax.set_xlabel(titles["time_star"])
+    ax.set_ylabel(f"{titles['place']} ({prefix}m)")
+    _colorbar(ax, image, titles["sliding_share"])
 
 
 def _ends(centres: npt.NDArray[np.float64]) -> tuple[float, float]:
@@ -143,44 +162,75 @@ def _field(run: Drawn, name: str, instant: str | int) -> tuple[npt.NDArray[Any],
         if not found:
             raise ValueError(f'the run has no instant "{instant}": it has {", ".join(letters) or "none"}')
         instant = found[0]
-    values, unit, long_name = arrays[name]
-    shown = values[instant]
-    size, prefix = _unit(float(np.nanmax(np.abs(shown), initial=0.0))) if unit != "1" else (1.0, "")
-    in_unit = "" if unit == "1" else f" ({prefix}{unit.replace(' s-1', '/s')})"
-    return shown / size, long_name + in_unit
+    values, _, _ = arrays[name]
+    # The unit of all snapshots.
+    label, unit = title_of_field(run.case._native, name, values.reshape(-1, values.shape[-1]))
+    return values[instant] / unit, _with_subscripts(label)
 
 
-def plot_points(points: dict[str, list[Any]], quantity: str, ax: Axes | None, over: str | None) -> Axes:
+def plot_points(
+    points: dict[str, list[Any]], axes: Sequence[Axis], quantity: str, ax: Axes | None, over: str | None
+) -> Axes:
     """Draw the means of a quantity over an axis of a study, as described at `StudyResults.plot`."""
-    columns = list(points)
-    axes = [name for name in columns[columns.index("point") + 1 : columns.index("quantity")] if name != "texture_percent"]
-    rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*points.values(), strict=True)]
+    rows = [dict(zip(points, cells, strict=True)) for cells in zip(*points.values(), strict=True)]
     found = [row for row in rows if row["quantity"] == quantity]
     if not found:
         known = ", ".join(dict.fromkeys(f'"{row["quantity"]}"' for row in rows))
         raise ValueError(f'the study has no quantity "{quantity}": it has {known}')
     if not axes:
         raise ValueError("a study without an axis has one point: `points` tells its mean")
-    along = axes[0] if over is None else over
-    if along not in axes:
-        raise ValueError(f'the study has no axis "{along}": it has {", ".join(axes)}')
-    others = [name for name in axes if name != along]
-    curves: dict[str, list[dict[str, Any]]] = {}
+    columns = {column: place for place, axis in enumerate(axes) for column in axis["columns"]}
+    if over is not None and over not in columns:
+        raise ValueError(f'the study has no axis "{over}": it has {", ".join(columns)}')
+    along = 0 if over is None else columns[over]
+    curves: dict[tuple[int, ...], list[Point]] = {}
     for row in found:
-        curves.setdefault(", ".join(f"{name} = {row[name]}" for name in others), []).append(row)
-    return drawn(partial(_points, curves, along, quantity), 0.75, ax)
+        levels = levels_of(row["point"], axes)
+        curves.setdefault((*levels[:along], *levels[along + 1 :]), []).append((levels[along], row))
+    others = [*axes[:along], *axes[along + 1 :]]
+    labelled = [(_curve_label(others, levels, own), own) for levels, own in curves.items()]
+    legend = others[0]["drawn_symbol"] if len(others) == 1 else None
+    return drawn(partial(_points, labelled, axes[along], quantity, legend), 0.75, ax)
 
 
-def _points(curves: dict[str, list[dict[str, Any]]], along: str, quantity: str, ax: Axes) -> None:
-    for label, rows in curves.items():
-        mean, low, high = (np.array([row[column] for row in rows], dtype=float) for column in ("mean", "low", "high"))
+Point: TypeAlias = tuple[int, dict[str, Any]]
+"""The level of a point on the axis that is drawn along, and its row."""
+
+
+def _curve_label(others: Sequence[Axis], levels: Sequence[int], points: Sequence[Point]) -> str:
+    """Name of a curve by its levels of the other axes: the level alone if there is one, for the legend has its title."""
+    names = [axis["levels"][level] for axis, level in zip(others, levels, strict=True)]
+    if len(others) != 1:
+        return ", ".join(beside for *_, beside in names)
+    if not others[0]["is_meshed"]:
+        return names[0][2]
+    ends = dict.fromkeys(f"{of(row['texture_percent'] for _, row in points):.4g}" for of in (min, max))
+    return " to ".join(ends)
+
+
+def _points(curves: Sequence[tuple[str, list[Point]]], axis: Axis, quantity: str, legend: str | None, ax: Axes) -> None:
+    numbers = [number for _, number, *_ in axis["levels"]]
+    is_of_numbers = None not in numbers
+
+    def x(level: int, row: dict[str, Any]) -> Any:
+        name = axis["levels"][level][2]
+        return row["texture_percent"] if axis["is_meshed"] else numbers[level] if is_of_numbers else name
+
+    for label, points in curves:
+        rows = [(x(*point), point[1]) for point in points]
+        if is_of_numbers:
+            rows.sort(key=itemgetter(0))
+        mean, low, high = (np.array([row[column] for _, row in rows], dtype=float) for column in ("mean", "low", "high"))
         # One run has no interval.
         errors = np.nan_to_num([mean - low, high - mean])
-        ax.errorbar([row[along] for row in rows], mean, errors, marker="o", ms=3, capsize=2, label=label)
-    ax.set_xlabel(along)
-    ax.set_ylabel(quantity)
+        ax.errorbar([place for place, _ in rows], mean, errors, marker="o", ms=3, capsize=2, label=label)
+    # What covers no block has no place on a logarithmic scale.
+    if axis["is_log"] and all(x(*point) > 0 for _, points in curves for point in points):
+        ax.set_xscale("log")
+    ax.set_xlabel(axis["drawn_title"])
+    ax.set_ylabel(title(quantity))
     if len(curves) > 1:
-        ax.legend(frameon=False)
+        ax.legend(title=legend, frameon=False)
 
 
 def plot_band(band: dict[str, list[Any]], ax: Axes | None) -> Axes:

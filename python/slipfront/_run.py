@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import html
 import json
 import os
 import shutil
@@ -15,6 +16,7 @@ import numpy.typing as npt
 import slipfront._dataset as _dataset
 import slipfront._slipfront as _slipfront
 from ._case import Case
+from ._html import numbers, picture, with_error
 from ._pickle import sealed
 
 if TYPE_CHECKING:
@@ -252,18 +254,22 @@ class Run:
         self._folder = path
         return path
 
-    def plot(self, kind: str = "friction", ax: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self, kind: str = "friction", ax: Axes | None = None, *, instant: str | int = -1, label: str | None = None
+    ) -> Axes:
         """Draw the run with matplotlib, as wide as a column of a journal (85 mm).
 
         Parameters
         ----------
         kind
             ``"friction"``: mu* over t* with the instants A to F; ``"front"``: when each block first slid; ``"kymograph"``: the share of
-            the blocks that slide over t* and along the drive; or the name of a field, such as ``"traction"``, at the snapshot ``instant`` (a letter, or its number).
+            the blocks that slide over t* and along the drive; or the name of a field, such as ``"traction"``.
         ax
             Axes to draw in, in their own style; new ones unless given.
-        options
-            ``instant`` of a field, ``label`` of a curve.
+        instant
+            The snapshot of a field: a letter, or its number.
+        label
+            Name of the curve in a legend.
 
         Returns
         -------
@@ -271,7 +277,7 @@ class Run:
         """
         from ._plot import plot
 
-        return plot(self, kind, ax, **options)
+        return plot(self, kind, ax, instant, label)
 
     def __getattr__(self, name: str) -> xr.Dataset | None:
         if name.startswith("_") or name not in self._tables:
@@ -286,16 +292,14 @@ class Run:
         return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._told())})"
 
     def _repr_html_(self) -> str:
-        from ._html import numbers, picture
-
         rows = [*self._told(), *(("warning", warning) for warning in self.warnings)]
-        return f"<b>{self._case.name}</b>{picture(self.texture)}{numbers(rows)}"
+        return f"<b>{html.escape(self._case.name)}</b>{picture(self.texture)}{numbers(rows)}"
 
     def _told(self) -> list[tuple[str, str]]:
         kinetic, error = self.kinetic_friction_star, self.kinetic_friction_star_uncertainty
         told = [("mu_s*", f"{self.static_friction_star:.4g}")]
         if kinetic is not None:
-            told.append(("mu_k*", f"{kinetic:.4g}" + (f" \u00b1 {error:.1g}" if error is not None else "")))
+            told.append(("mu_k*", with_error(kinetic, error)))
         return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
 
     # What was asked for once is kept. It is handed out in new datasets, whose arrays are shared and cannot be

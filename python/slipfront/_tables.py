@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from ._optional import PandasColumns
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -34,5 +36,5 @@ def frame(table: dict[str, list[Any]]) -> pd.DataFrame:
     try:
         import pandas
     except ImportError:
-        return cast("pd.DataFrame", {name: np.asarray(values) for name, values in table.items()})
+        return cast("pd.DataFrame", PandasColumns({name: np.asarray(values) for name, values in table.items()}))
     return pandas.DataFrame(table)

@@ -16,6 +16,7 @@ mod design;
 mod errors;
 mod export;
 mod folder;
+mod labels;
 mod map;
 mod pickle;
 mod process;
@@ -64,6 +65,9 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(folder::make_ready, module)?)?;
     module.add_function(wrap_pyfunction!(export::ro_crate, module)?)?;
     module.add_function(wrap_pyfunction!(export::citation, module)?)?;
+    module.add_function(wrap_pyfunction!(labels::title, module)?)?;
+    module.add_function(wrap_pyfunction!(labels::titles_of_run, module)?)?;
+    module.add_function(wrap_pyfunction!(labels::title_of_field, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::with_checksum, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::verified, module)?)?;
     module.add_function(wrap_pyfunction!(process::check_process, module)?)?;

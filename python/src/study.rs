@@ -8,12 +8,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use jiff::SignedDuration;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_run::{clock, running};
 use slipfront_study::converge::{self, MeshStudy};
 use slipfront_study::{
-    self as study, CostLimits, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder,
-    StudyResults,
+    self as study, CostLimits, Plan, Progress, Role, RunKey, Sample, Spacing, StudyError, StudyFile,
+    StudyFolder, StudyResults,
 };
 
 use crate::case::{Case, make};
@@ -75,9 +76,14 @@ impl Study {
 
 #[pymethods]
 impl Study {
+    /// The study of a file, with overrides of its base of the form KEY=VALUE.
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::of(py, || StudyFile::load(&path))
+    fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
+        Self::of(py, || {
+            let mut file = StudyFile::load(&path)?;
+            file.set(&overrides)?;
+            Ok(file)
+        })
     }
 
     /// The study of a text called `name`; the files it names stand relative to a folder.
@@ -138,12 +144,26 @@ impl Study {
         (settings.min_replicates(), settings.max_replicates())
     }
 
-    /// The keys of the axes, each with its number of levels.
+    /// The axes: of each the columns of the tables, whose cells name its levels, the labels of pictures, and
+    /// of each level its cells, its number and its label beside those of other axes.
     #[getter]
-    fn axes(&self) -> Vec<(Vec<String>, usize)> {
-        let axes = self.plan.axes.iter();
-        axes.map(|axis| (axis.columns.clone(), axis.levels.len()))
-            .collect()
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let axes = self.plan.axes.iter().zip(study::axis_labels(&self.plan));
+        axes.map(|(axis, labels)| {
+            let told = PyDict::new(py);
+            let levels = axis.levels.iter().zip(labels.levels);
+            let levels =
+                levels.map(|(level, label)| (level.labels.clone(), level.number, level.shown(), label));
+            told.set_item("columns", &axis.columns)?;
+            told.set_item("title", labels.title)?;
+            told.set_item("drawn_title", labels.drawn_title)?;
+            told.set_item("drawn_symbol", labels.drawn_symbol)?;
+            told.set_item("is_meshed", labels.is_meshed)?;
+            told.set_item("is_log", axis.spacing == Spacing::Logarithmic)?;
+            told.set_item("levels", levels.collect::<Vec<_>>())?;
+            Ok(told)
+        })
+        .collect()
     }
 
     /// Warnings about the cases of the points, each with the number of points and the first of them.

@@ -14,6 +14,7 @@ use crate::lattice_map::{
 };
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
+use crate::quantity_labels::{FIRST_SLIP, SLIDING_SHARE};
 use crate::style::{MARGIN, RADIUS_MARKER, TEXT_WIDTH, WHITE, WIDTH_FRAME};
 use crate::text::Text;
 use crate::ticks::{Direction, Tick, round_values};
@@ -147,7 +148,7 @@ fn share_bar(space_time: &SpaceTime, height: f64) -> ColourBar {
         .filter(|share| share.is_finite());
     let largest = f64::from(shares.fold(0.0, f32::max));
     let largest = if largest > 0.0 { largest } else { 1.0 };
-    ColourBar::labelled("share that slides", [0.0, largest], height)
+    ColourBar::labelled(SLIDING_SHARE, [0.0, largest], height)
 }
 
 /// The marks of the map in words, those that it has.
@@ -250,7 +251,7 @@ impl FrontLayout {
         let sides = [0, 1].map(|axis| DrawnAxis::linear(0.0, lengths[axis] * units[axis].1));
         let (axes, place) = space_time_axes(space_time);
         let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
-        let map_bar = |height| ColourBar::labelled("first slip t*", first_slips, height);
+        let map_bar = |height| ColourBar::labelled(FIRST_SLIP, first_slips, height);
         let bar = |height| share_bar(space_time, height);
         let left = |axis: DrawnAxis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
         let [map_left, left] = [left(sides[1]), left(axes[1])];

@@ -61,7 +61,7 @@ pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use movie::{Movie, MovieFrame, MoviePictures, MovieSize};
 pub use picture::{Picture, PictureError};
 pub use polar::{Polar, polar};
-pub use quantity_labels::{QuantityLabel, has_glyphs};
+pub use quantity_labels::{FIRST_SLIP, QuantityLabel, SLIDING_SHARE, has_glyphs};
 pub use response::{Response, Responses, response};
 pub use shapes::{Shape, shapes};
 pub use size::PictureSize;

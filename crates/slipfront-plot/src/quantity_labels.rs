@@ -3,6 +3,11 @@
 use crate::font::advance;
 use crate::text::Text;
 
+/// Title of the time of first slip.
+pub const FIRST_SLIP: &str = "first slip t*";
+/// Title of the share of the blocks in contact that slide.
+pub const SLIDING_SHARE: &str = "share that slides";
+
 /// The names of a quantity.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct QuantityLabel<'a> {

@@ -1,6 +1,8 @@
 //! Titles of axes and legends for the keys of a case file and the quantities that are drawn.
 
 use crate::axis::{Axis, Spacing};
+use crate::meshed::MeshedCoverage;
+use crate::plan::Plan;
 use crate::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
@@ -15,8 +17,8 @@ fn title_of_quantity(name: &str) -> Option<[&'static str; 3]> {
     Some([words, symbol, ""])
 }
 
-/// The title of a quantity.
-pub(crate) fn title(quantity: &str) -> String {
+/// The title of a quantity; its name if it has none.
+pub fn title(quantity: &str) -> String {
     label(quantity).map_or_else(|| quantity.to_owned(), |label| label.title())
 }
 
@@ -34,6 +36,48 @@ pub(crate) fn axis_title(axis: &Axis) -> String {
 /// The title of a legend for the levels of an axis.
 pub(crate) fn axis_symbol(axis: &Axis) -> String {
     in_its_unit(axis, |label| label.legend())
+}
+
+/// The title of an axis, which says if its coverages are meshed ones.
+pub(crate) fn titled(title: String, is_meshed: bool) -> String {
+    match is_meshed {
+        true => format!("meshed {title}"),
+        false => title,
+    }
+}
+
+/// Labels of an axis in pictures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisLabels {
+    /// Title of the axis as the study asks for it.
+    pub title: String,
+    /// Title of the axis as it is drawn.
+    pub drawn_title: String,
+    /// Title of a legend of what is drawn of the axis.
+    pub drawn_symbol: String,
+    /// Whether pictures have meshed coverages in place of its levels.
+    pub is_meshed: bool,
+    /// Levels beside those of other axes: symbol, value and unit.
+    pub levels: Vec<String>,
+}
+
+/// Labels of the axes of a study in pictures.
+pub fn axis_labels(plan: &Plan) -> Vec<AxisLabels> {
+    let meshed = MeshedCoverage::of(plan).map(|meshed| meshed.axis);
+    let labels = plan.axes.iter().enumerate().map(|(position, axis)| {
+        let is_meshed = meshed == Some(position);
+        let levels = axis.levels.iter();
+        AxisLabels {
+            title: axis_title(axis),
+            drawn_title: titled(axis_title(axis), is_meshed),
+            drawn_symbol: titled(axis_symbol(axis), is_meshed),
+            is_meshed,
+            levels: levels
+                .map(|level| level_with_symbol(axis, level.shown()))
+                .collect(),
+        }
+    });
+    labels.collect()
 }
 
 /// Text of a level of an axis beside those of others: its symbol, value and unit. A name stands alone.

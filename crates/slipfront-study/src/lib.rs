@@ -60,6 +60,7 @@ pub use folder::{StudyFolder, is_of_figures, is_study, refuse_foreign, study_of}
 pub use friction_tensor::Principal;
 pub use identity::SOURCE_HASH;
 pub use idle_axes::idle_axes;
+pub use labels::{AxisLabels, axis_labels, title};
 pub use meshed::MeshedCoverage;
 pub use picture_plan::{quantities_without_pictures, why_no_pictures};
 pub use plan::{Plan, Point, Role, RunKey};

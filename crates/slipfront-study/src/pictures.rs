@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::anisotropy::FRICTION;
 use crate::axis::{Axis, Spacing};
 use crate::error::StudyError;
-use crate::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title};
+use crate::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title, titled};
 use crate::levels::{Levels, combinations};
 use crate::meshed::MeshedCoverage;
 use crate::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
@@ -131,20 +131,12 @@ impl<'a> PlottedQuantity<'a> {
         self.meshed.as_ref().filter(|meshed| meshed.axis == axis)
     }
 
-    /// A title of an axis, with a remark if its coverages are meshed ones.
-    fn titled(&self, axis: usize, title: String) -> String {
-        match self.meshed(axis) {
-            Some(_) => format!("meshed {title}"),
-            None => title,
-        }
-    }
-
     fn axis_title(&self, axis: usize) -> String {
-        self.titled(axis, axis_title(&self.axes[axis]))
+        titled(axis_title(&self.axes[axis]), self.meshed(axis).is_some())
     }
 
     fn axis_symbol(&self, axis: usize) -> String {
-        self.titled(axis, axis_symbol(&self.axes[axis]))
+        titled(axis_symbol(&self.axes[axis]), self.meshed(axis).is_some())
     }
 
     /// The name of a level in legends and notes, at these levels of other axes.

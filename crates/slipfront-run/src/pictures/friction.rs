@@ -435,6 +435,15 @@ impl DrawnRun {
     }
 }
 
+/// Axes of mu* against t*, of a slider that is pulled or turned.
+pub fn dimensionless_axes(is_rotation: bool) -> FrictionAxes {
+    let mut axes = FrictionAxes::default();
+    if is_rotation {
+        axes.friction = "torque \u{3bc}*".to_owned();
+    }
+    axes
+}
+
 /// Dimensionless axes, with a note if they are not mu* against t*.
 fn dimensionless(
     runs: &[DrawnRun],
@@ -458,10 +467,7 @@ fn dimensionless(
     if against == Against::Displacement {
         runs.iter().try_for_each(|run| run.si().map(|_| ()))?;
     }
-    let mut axes = FrictionAxes::default();
-    if runs.iter().all(DrawnRun::is_rotation) {
-        axes.friction = "torque \u{3bc}*".to_owned();
-    }
+    let mut axes = dimensionless_axes(runs.iter().all(DrawnRun::is_rotation));
     if other_friction {
         axes.friction = "friction \u{3bc}".to_owned();
         (axes.peak, axes.kinetic) = ("\u{3bc}_s".to_owned(), "\u{3bc}_k".to_owned());

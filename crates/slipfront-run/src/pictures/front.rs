@@ -69,14 +69,19 @@ fn space_time(kymograph: &KymographData, rows: Range<usize>, summary: &Summary) 
     // A row stands for the time around it.
     let half = 0.5 * (last - first) / (times.len() as f64 - 1.0).max(1.0);
     SpaceTime {
-        place: match summary.motion {
-            Some(Motion::Rotation) => "distance from the axis".to_owned(),
-            _ => "place along the drive".to_owned(),
-        },
+        place: title_of_place(summary.motion).to_owned(),
         places: kymograph.places,
         times: [first - half, last + half],
         columns,
         shares: kymograph.sliding_share[rows.start * columns..rows.end * columns].to_vec(),
+    }
+}
+
+/// Title of the places of a kymograph.
+pub fn title_of_place(motion: Option<Motion>) -> &'static str {
+    match motion {
+        Some(Motion::Rotation) => "distance from the axis",
+        _ => "place along the drive",
     }
 }
 

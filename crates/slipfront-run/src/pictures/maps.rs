@@ -7,7 +7,7 @@ use slipfront_base::number_format::{in_print, si_prefix};
 use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
 use slipfront_case::case_file::{CaseFile, Motion};
 use slipfront_case::field_info::field_info;
-use slipfront_plot::{self as plot, CellMeans, Picture, StressMap, StressMaps};
+use slipfront_plot::{self as plot, CellMeans, Picture, SLIDING_SHARE, StressMap, StressMaps};
 
 use super::error::RunPictureError;
 use super::files::case_of;
@@ -81,6 +81,17 @@ pub(super) fn field_of_maps(case: Option<&CaseFile>) -> Field {
     case.map_or(Field::ContactStress, mapped_field)
 }
 
+/// Title of the maps of a field with these values, in the unit of its file, and the unit in which they are
+/// drawn.
+pub fn title_of_field(
+    field: Field,
+    case: Option<&CaseFile>,
+    values: impl Iterator<Item = f32>,
+) -> (String, f32) {
+    let MapScale { title, unit, .. } = MapScale::of(field, case, values);
+    (title, unit)
+}
+
 /// The scale of the maps of a field.
 pub(super) struct MapScale {
     /// Title of the colour bar.
@@ -109,7 +120,7 @@ impl MapScale {
         let extent = extent(values);
         let (title, symbol, unit) = match (field, case) {
             (Field::ContactStress, _) => return Self::of_share(format!("contact stress {symbol}"), symbol),
-            (Field::Sliding, _) => return Self::of_share("share that slides".to_owned(), symbol),
+            (Field::Sliding, _) => return Self::of_share(SLIDING_SHARE.to_owned(), symbol),
             (Field::Traction, Some(case)) => {
                 let unit = scales(case).stress();
                 (format!("traction {symbol}"), symbol.to_owned(), unit)
