@@ -1,7 +1,6 @@
 """Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic friction.
 
->>> case = Case.load("cases/circle.toml", {"drive.v_star": 0.05})
->>> result = run(case, progress=False)
+>>> result = run("cases/circle.toml", {"drive.v_star": 0.05}, progress=False)
 >>> round(result.static_friction_star, 2)
 0.73
 """
@@ -17,7 +16,7 @@ from ._open import InterruptedRun, PaperResults, open, open_run, open_study
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
 from ._slipfront import ForkError, RunError, __version__
-from ._study import Study, StudyResults, study
+from ._study import Study, StudyResults
 
 __all__ = [
     "Calibration",
@@ -51,5 +50,4 @@ __all__ = [
     "open_run",
     "open_study",
     "run",
-    "study",
 ]

@@ -17,18 +17,21 @@ import numpy as np
 import numpy.typing as npt
 
 import slipfront._slipfront as _slipfront
-import slipfront._toml as _toml
-from ._case import Case, CaseLike, as_case
+from ._case import Case, CaseLike, Overrides
+from ._finite import check_numbers
+from ._html import table
+from ._keys import CalibrationKeys, InstrumentKeys, Range
 from ._pickle import sealed
 from ._progress import Bar, parted
+from ._project import of_case, of_file
 from ._simulation import _threads
-from ._study import _as_base
 from ._tables import frame, read_table
 from ._temporary import TemporaryFolder
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+    from typing_extensions import Unpack
 
 
 class Columns(Protocol):
@@ -43,16 +46,6 @@ Found = TypeVar("Found")
 Record: TypeAlias = str | os.PathLike[str] | Columns | tuple[npt.ArrayLike, npt.ArrayLike]
 """A record: the path of a table of text or of a workbook; its columns by their names, which are found as in such a table, with or without
 their units; or two arrays, of the columns `x` and `y`."""
-
-Range: TypeAlias = Sequence[float] | Sequence[str] | Mapping[str, Any]
-"""Both ends of a range, as numbers or texts with a unit, or ``{"from": 0.03, "to": 0.5, "scale": "log"}``."""
-
-
-def _table(name: str, keys: Mapping[str, Any], arrays: _toml.Arrays) -> str:
-    """A table of a calibration file, without the keys that are None."""
-    lines = (f"{key} = {_toml.value(given, arrays, f'{name}.{key}')}\n" for key, given in keys.items() if given is not None)
-    return f"[{name}]\n{''.join(lines)}"
-
 
 def _without_folder(text: str, folder: Path) -> str:
     """A sentence that names a record that was given in memory, and not the file in which it was handed on."""
@@ -119,19 +112,22 @@ class Calibration:
     Parameters
     ----------
     case
-        The case, a dictionary of its tables or the path of its file; or the path of a calibration file, with which nothing else is given.
+        The case, a dictionary of its tables or the path of its file; or the path of a calibration file, with which nothing but overrides
+        is given.
+    overrides
+        Keys of the case that are set anew.
     unknowns
         The keys that are looked for, each with its range.
     noise
         Standard deviation of the noise of a record, as a share of its mean friction.
     x, y
-        Columns of records: times or displacements, and forces, or coefficients if their unit is 1. Names end in the unit, or `x_unit` and
-        `y_unit` tell it.
+        Columns of records: times or displacements, ``time_s`` unless given, and forces, or coefficients if their unit is 1, ``force_n``.
+        Names end in the unit, or `x_unit` and `y_unit` tell it.
     instrument
         What stands between friction and the record, as the table ``[instrument]``: load cell, filter, sampling, gain, offset and range.
         Unknowns may be keys of it, such as ``"instrument.gain"``.
     keys
-        Further keys of the table ``[calibrate]``, such as ``against``, ``runs``, ``finer_runs`` or ``next``.
+        Further keys of the table ``[calibrate]``, such as ``against``, ``runs``, ``finer_runs`` or ``next``; ``from`` is ``from_``.
 
     Examples
     --------
@@ -139,7 +135,7 @@ class Calibration:
     >>> slider = {"slider": {"blocks": [6, 6]}, "drive": {"v_star": 0.1}, "time": {"step": 0.4}}
     >>> measured = slipfront.run({**slider, "output": {"series": 1}}, progress=False).series
     >>> unknowns = {"friction.mu_static": (0.3, 0.9), "drive.stiffness_star": (0.3, 0.9)}
-    >>> calibration = Calibration(slider, unknowns, noise=0.01, runs=200, finer_runs=0)
+    >>> calibration = Calibration(slider, unknowns=unknowns, noise=0.01, runs=200, finer_runs=0)
     >>> record = {"time_s": measured["time_s"], "force_n": measured["friction_force_n"]}
     >>> fit = calibration.fit(record, progress=False)
     >>> fit.intervals["drive.stiffness_star"].is_determined
@@ -159,32 +155,31 @@ class Calibration:
     def __init__(
         self,
         case: CaseLike,
-        unknowns: Mapping[str, Range] | None = None,
+        overrides: Overrides | None = None,
         *,
+        unknowns: Mapping[str, Range] | None = None,
         noise: float | None = None,
-        x: str = "time_s",
-        y: str = "force_n",
-        instrument: Mapping[str, Any] | None = None,
+        x: str | None = None,
+        y: str | None = None,
+        instrument: InstrumentKeys | None = None,
         name: str | None = None,
-        **keys: Any,
+        **keys: Unpack[CalibrationKeys],
     ) -> None:
         # Runs of records at the same times are made once.
         self._training = TemporaryFolder()
-        if unknowns is None or noise is None:
-            is_alone = unknowns is None and noise is None and instrument is None and not keys
-            if not is_alone or not isinstance(case, (str, os.PathLike)):
-                raise ValueError("give a case with `unknowns` and `noise`, or the path of a calibration file alone")
-            self._native = _slipfront.Calibration.load(Path(case))
+        given = (unknowns, noise, x, y, instrument, name)
+        if isinstance(case, (str, os.PathLike)) and all(one is None for one in given) and not keys:
+            self._native, self._arrays = of_file(_slipfront.Calibration, case, overrides)
             return
-        case = as_case(case)
-        arrays = _toml.Arrays(case._native.arrays)
-        ranges = {key: dict(ends) if isinstance(ends, Mapping) else list(ends) for key, ends in unknowns.items()}
-        lines = {"unknowns": ranges, "noise": noise, "x": x, "y": y, **keys}
-        tables = {"calibrate": lines} if instrument is None else {"calibrate": lines, "instrument": instrument}
-        text = "".join(_table(name, keys, arrays) for name, keys in tables.items())
-        # Its runs read arrays from files, which stand as long as it may have some to do.
-        text, self._arrays = arrays.on_disk(text + _as_base(case))
-        self._native = _slipfront.Calibration.parse(text, name or f"{case.name}-calibration", Path())
+        if unknowns is None or noise is None:
+            raise ValueError("give a case with `unknowns` and `noise`, or the path of a calibration file alone")
+        records = {"x": x or "time_s", "y": y or "force_n"}
+        # `from` is a word of Python.
+        others = {key.removesuffix("_"): value for key, value in keys.items()}
+        tables: dict[str, Mapping[str, Any]] = {"calibrate": {"unknowns": unknowns, "noise": noise, **records, **others}}
+        if instrument is not None:
+            tables["instrument"] = instrument
+        self._native, self._arrays = of_case(_slipfront.Calibration, case, overrides, tables, name, "calibration")
 
     @property
     def name(self) -> str:
@@ -353,6 +348,11 @@ class Calibration:
         lengths = {len(array) for array in arrays.values() if array.ndim == 1}
         if len(lengths) != 1:
             raise ValueError(f"the columns of a record are as long as each other: {', '.join(arrays)} have {sorted(lengths)} values")
+        for name, array in arrays.items():
+            if array.dtype.kind == "f" and name.startswith(tuple(self._native.columns)):
+                # What ends a record without numbers is passed over with a note, as in a file.
+                ends = np.flatnonzero(np.isfinite(array))
+                check_numbers(name, array[: ends[-1] + 1 if len(ends) else None])
         with path.open("w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
             table.writerow(name for name, array in arrays.items() if array.ndim == 1)
@@ -491,6 +491,21 @@ class CalibrationResults:
     def to_dict(self) -> dict[str, Any]:
         """The content of `calibration.json`."""
         return dict(json.loads(json.dumps(self._found)))
+
+    def _repr_html_(self) -> str:
+        def row(key: str, found: Interval) -> list[str]:
+            doubts = {
+                "not determined": not found.is_determined,
+                "belongs to the block": found.belongs_to_block,
+                "depends on the time step": found.depends_on_step,
+            }
+            unit = found.unit or ""
+            interval = f"{found.low:.4g} to {found.high:.4g} {unit}".strip()
+            return [key, f"{found.median:.4g} {unit}".strip(), interval, ", ".join(doubt for doubt, is_so in doubts.items() if is_so)]
+
+        rows = [row(key, found) for key, found in self.intervals.items()]
+        refused = "<p>The model does not make such records: the intervals promise nothing.</p>" if self.is_refused else ""
+        return refused + table(["key", "median", "90 % interval", ""], rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return sealed(type(self), self.folder, self._found, self.posterior, self.text, self._bands)

@@ -34,6 +34,8 @@ class Case:
     ----------
     tables
         Tables by their names; keys may have dots.
+    overrides
+        Keys that are set anew.
     name
         What the case is called in messages and results.
 
@@ -57,14 +59,15 @@ class Case:
 
     _make: Callable[[], _slipfront.Case]
 
-    def __init__(self, tables: Mapping[str, Any], *, name: str = "case") -> None:
+    def __init__(self, tables: Mapping[str, Any], overrides: Overrides | None = None, *, name: str = "case") -> None:
         if not isinstance(tables, Mapping):
             raise TypeError(
                 f"a case is made of a dictionary of its tables, not of {type(tables).__name__}: "
                 "of a file by Case.load, of a text by Case.parse"
             )
         arrays = _toml.Arrays()
-        self._set(_slipfront.Case.parse(_toml.document(tables, arrays), name, Path(), [], arrays.contents))
+        text, changed = _toml.document(tables, arrays), set_anew(overrides, arrays)
+        self._set(_slipfront.Case.parse(text, name, Path(), changed, arrays.contents))
 
     @classmethod
     def _of(cls, native: _slipfront.Case) -> Case:
@@ -100,7 +103,7 @@ class Case:
         'circle'
         """
         arrays = _toml.Arrays()
-        return cls._of(_slipfront.Case.load(Path(path), _overrides(overrides, arrays), arrays.contents))
+        return cls._of(_slipfront.Case.load(Path(path), set_anew(overrides, arrays), arrays.contents))
 
     @classmethod
     def parse(
@@ -135,18 +138,7 @@ class Case:
         2 7
         """
         arrays = _toml.Arrays()
-        return cls._of(_slipfront.Case.parse(text, name, Path(folder), _overrides(overrides, arrays), arrays.contents))
-
-    @classmethod
-    def from_dict(cls, tables: Mapping[str, Any], *, name: str = "case") -> Case:
-        """The case of a dictionary, as `Case` itself makes it.
-
-        Parameters
-        ----------
-        tables, name
-            As of `Case`.
-        """
-        return cls(tables, name=name)
+        return cls._of(_slipfront.Case.parse(text, name, Path(folder), set_anew(overrides, arrays), arrays.contents))
 
     def replace(self, overrides: Overrides) -> Case:
         """Return the case with other values of some keys.
@@ -158,8 +150,8 @@ class Case:
         5
         """
         arrays = _toml.Arrays(self._native.arrays)
-        set_anew = _overrides(overrides, arrays)
-        return self._of(_slipfront.Case.parse(self._text(), self.name, Path(), set_anew, arrays.contents))
+        changed = set_anew(overrides, arrays)
+        return self._of(_slipfront.Case.parse(self._text(), self.name, Path(), changed, arrays.contents))
 
     @property
     def name(self) -> str:
@@ -301,19 +293,26 @@ def _with_files(value: Any, files: Mapping[str, Any]) -> Any:
     return {key: files.get(inner, inner) if _toml.names_file(key) else _with_files(inner, files) for key, inner in given.items()}
 
 
-def as_case(given: CaseLike) -> Case:
-    """The case that is given, of its tables, or of its file."""
+def as_case(given: CaseLike, overrides: Overrides | None = None) -> Case:
+    """The case that is given, of its tables, or of its file, with other values of some keys."""
     if isinstance(given, Case):
-        return given
-    return Case(given) if isinstance(given, Mapping) else Case.load(given)
+        return given if overrides is None else given.replace(overrides)
+    return Case(given, overrides) if isinstance(given, Mapping) else Case.load(given, overrides)
 
 
 CaseLike: TypeAlias = Case | Mapping[str, Any] | str | os.PathLike[str]
 """A case, its tables as `Case` takes them, or the path of a case file."""
 
 
-def _overrides(given: Overrides | None, arrays: _toml.Arrays) -> list[str]:
-    return [f"{key}={_toml.value(value, arrays, key)}" for key, value in _toml.by_key(given or {}).items()]
+def set_anew(overrides: Overrides | None, arrays: _toml.Arrays) -> list[str]:
+    """Overrides as the command takes them, KEY=VALUE."""
+    if overrides is None:
+        return []
+    if not isinstance(overrides, Mapping):
+        raise TypeError(
+            f"behind a case stand keys that are set anew, such as {{'drive.v_star': 0.05}}, not {overrides!r}: give other arguments by name"
+        )
+    return [f"{key}={_toml.value(value, arrays, key)}" for key, value in _toml.by_key(overrides).items()]
 
 
 CaseError = _slipfront.CaseError

@@ -8,19 +8,24 @@ import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 import slipfront._slipfront as _slipfront
-import slipfront._toml as _toml
-from ._case import Case, CaseLike, as_case
+from ._case import Case, CaseLike, Overrides
+from ._finite import check_numbers
+from ._html import numbers, picture, with_error
+from ._keys import DesignKeys
 from ._pickle import sealed
 from ._progress import Bar, parted
+from ._project import of_case, of_file
 from ._simulation import _threads
-from ._study import _as_base
 from ._temporary import TemporaryFolder
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
 """A texture of shape (ny, nx), the smallest y first: True where a block is textured."""
@@ -71,20 +76,23 @@ class Design:
     Parameters
     ----------
     case
-        The case, a dictionary of its tables or the path of its file; or the path of a design file, with which nothing else is given.
+        The case, a dictionary of its tables or the path of its file; or the path of a design file, with which nothing but overrides is
+        given.
+    overrides
+        Keys of the case that are set anew.
     wish
         What the texture is to be good for.
     coverage
         Least and largest share of the slider that is textured, %.
     keys
-        Further keys of the table ``[design]``, such as ``feature``, ``gap``, ``feature_blocks``, ``runs``, ``tolerance`` or ``forbidden``. Masks
-        in textures may be arrays. With ``unknowns``, such as ``{"texture.0.lambda": ("2 um", "6 um")}``, the search is for numbers of the
+        Further keys of the table ``[design]``, such as ``feature``, ``gap``, ``runs``, ``tolerance`` or ``forbidden``. Masks in textures
+        may be arrays. With ``unknowns``, such as ``{"texture.0.lambda": ("2 um", "6 um")}``, the search is for numbers of the
         textures of the case.
 
     Examples
     --------
     >>> slider = {"slider": {"blocks": [16, 16]}, "drive": {"v_star": 0.1}}
-    >>> design = Design(slider, Least("static_friction"), (0, 15), feature_blocks=2, gap_blocks=2, runs=150)
+    >>> design = Design(slider, wish=Least("static_friction"), coverage=(0, 15), feature_blocks=2, gap_blocks=2, runs=150)
     >>> found = design.run(progress=False)
     >>> found.mask.shape, bool(found.coverage <= 15)
     ((16, 16), True)
@@ -93,7 +101,9 @@ class Design:
 
     >>> disc = slider | {"texture": [{"shape": "cavity", "lambda": "2 um"}]}
     >>> wish = Value(0.7, "static_friction_star")
-    >>> found = Design(disc, wish, (0, 40), unknowns={"texture.0.lambda": ("1 um", "6 um")}, tolerance=0.02, runs=60).run(progress=False)
+    >>> unknowns = {"texture.0.lambda": ("1 um", "6 um")}
+    >>> shapes = Design(disc, wish=wish, coverage=(0, 40), unknowns=unknowns, tolerance=0.02, runs=60)
+    >>> found = shapes.run(progress=False)
     >>> list(found.unknowns), found.within_tolerance[1]
     (['texture.0.lambda'], 64)
 
@@ -109,27 +119,21 @@ class Design:
     def __init__(
         self,
         case: CaseLike,
+        overrides: Overrides | None = None,
+        *,
         wish: Wish | None = None,
         coverage: tuple[float, float] | None = None,
-        *,
         name: str | None = None,
-        **keys: Any,
+        **keys: Unpack[DesignKeys],
     ) -> None:
-        if wish is None or coverage is None:
-            if wish is not None or coverage is not None or keys or not isinstance(case, (str, os.PathLike)):
-                raise ValueError("give a case with `wish` and `coverage`, or the path of a design file alone")
-            self._native = _slipfront.Design.load(Path(case))
+        if isinstance(case, (str, os.PathLike)) and wish is None and coverage is None and name is None and not keys:
+            self._native, self._arrays = of_file(_slipfront.Design, case, overrides)
             return
-        case = as_case(case)
-        arrays = _toml.Arrays(case._native.arrays)
-        table = dict(wish) if isinstance(wish, Mapping) else wish._table()
-        lines = {"wish": table, "coverage": list(coverage), **keys}
-        text = "[design]\n" + "".join(
-            f"{key} = {_toml.value(given, arrays, f'design.{key}')}\n" for key, given in lines.items() if given is not None
-        )
-        # Its runs read arrays from files, which stand as long as it may have some to do.
-        text, self._arrays = arrays.on_disk(text + _as_base(case))
-        self._native = _slipfront.Design.parse(text, name or f"{case.name}-design", Path())
+        if wish is None or coverage is None:
+            raise ValueError("give a case with `wish` and `coverage`, or the path of a design file alone")
+        wished = wish if isinstance(wish, Mapping) else wish._table()
+        tables = {"design": {"wish": wished, "coverage": coverage, **keys}}
+        self._native, self._arrays = of_case(_slipfront.Design, case, overrides, tables, name, "design")
 
     @property
     def name(self) -> str:
@@ -152,6 +156,8 @@ class Design:
         texts = [self._bytes(mask) for mask in masks]
         if len(texts) != len(losses):
             raise ValueError(f"there are {len(texts)} masks and {len(losses)} losses: give one for each")
+        # The loss of a texture that breaks a limit is infinite.
+        check_numbers("losses", losses, may_be_infinite=True)
         self._native.tell(texts, [float(loss) for loss in losses])
 
     @property
@@ -247,6 +253,7 @@ class Design:
 
     def _bytes(self, mask: npt.ArrayLike) -> bytes:
         array = np.asarray(mask)
+        check_numbers("mask", array)
         columns, rows = self._native.size
         if array.shape != (rows, columns):
             raise ValueError(f"a mask of this slider has the shape ({rows}, {columns}), that is (ny, nx), not {array.shape}")
@@ -329,6 +336,13 @@ class DesignResults:
     def to_dict(self) -> dict[str, Any]:
         """The content of `design.json`."""
         return dict(json.loads(json.dumps(self._found)))
+
+    def _repr_html_(self) -> str:
+        within, (mean, error) = self.within_tolerance, self.static_friction_star
+        rows = [("mu_s*", with_error(mean, error)), ("A*", f"{self.coverage:.4g} %"), ("loss", f"{self.loss:.4g}")]
+        rows += [(key, f"{value:.4g}") for key, value in self.unknowns.items()]
+        rows += [] if within is None else [("within the tolerance", f"{within[0]} of {within[1]}")]
+        return picture(self.mask) + numbers(rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return sealed(type(self), self.folder, self.mask, self._case_text, self._found, self.text)

@@ -7,10 +7,13 @@ from collections.abc import Iterable
 from typing import Any
 
 import slipfront._slipfront as _slipfront
-from ._case import Case, CaseError, CaseLike, as_case
+from ._case import Case, CaseError, CaseLike, Overrides, as_case
 from ._simulation import _threads
 
-def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str, Any]]:
+
+def map(
+    cases: Iterable[CaseLike], overrides: Overrides | None = None, *, threads: int | None = None
+) -> list[dict[str, Any]]:
     """Run cases, and return the numbers of each.
 
     Every run has one thread, and ends where its `time.stop` says. No file is written. All cases are in memory until the last run ends, and
@@ -21,6 +24,8 @@ def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str,
     ----------
     cases
         Cases, dictionaries, or paths of case files.
+    overrides
+        Keys that are set anew in every case.
     threads
         Runs at once, one per core unless given. Results do not depend on it.
 
@@ -38,19 +43,19 @@ def map(cases: Iterable[CaseLike], threads: int | None = None) -> list[dict[str,
 
     Examples
     --------
-    >>> base = Case({"slider": {"blocks": [10, 10]}, "time": {"stop": "after_onset"}})
-    >>> found = map(base.replace({"friction.seed": seed}) for seed in (1, 2))
+    >>> base = Case({"slider": {"blocks": [10, 10]}})
+    >>> found = map((base.replace({"friction.seed": seed}) for seed in (1, 2)), {"time.stop": "after_onset"})
     >>> [round(numbers["static_friction_star"], 3) for numbers in found]
     [0.912, 0.878]
     """
-    made = [_made(index, given) for index, given in enumerate(cases)]
+    made = [_made(index, given, overrides) for index, given in enumerate(cases)]
     summaries = _slipfront.run_summaries([case._native for case in made], _threads(threads))
     return [json.loads(summary) for summary in summaries]
 
 
-def _made(index: int, given: CaseLike) -> Case:
+def _made(index: int, given: CaseLike, overrides: Overrides | None) -> Case:
     try:
-        return as_case(given)
+        return as_case(given, overrides)
     except CaseError as error:
         told = CaseError(f"case {index}: {error}")
         told.line, told.column = error.line, error.column

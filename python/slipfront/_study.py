@@ -12,9 +12,14 @@ import numpy as np
 
 import slipfront._slipfront as _slipfront
 import slipfront._toml as _toml
-from ._case import Case
+from ._axes import Axis, grid, means_by_point
+from ._case import Case, CaseLike, Overrides
+from ._finite import check_numbers
+from ._html import table
+from ._keys import StudyKeys
 from ._pickle import sealed
 from ._progress import Bar, parted
+from ._project import of_case, of_file
 from ._run import Run
 from ._simulation import _threads, run
 from ._tables import frame, read_table
@@ -22,7 +27,9 @@ from ._temporary import TemporaryFolder
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
     from matplotlib.axes import Axes
+    from typing_extensions import Unpack
 
 Quantities: TypeAlias = Mapping[str, Callable[[Run], float]]
 """Names of the user's own quantities, and the functions of a run that give them."""
@@ -43,19 +50,22 @@ class Study:
     Parameters
     ----------
     case
-        The case that is varied, or the path of a study file, with which nothing else is given.
+        The case that is varied, a dictionary of its tables or the path of its file; or the path of a study file, with which nothing but
+        overrides is given.
+    overrides
+        Keys of the case that are set anew.
     axes
-        Keys and the lists of their values; all combinations are run, the last axis fastest. Values as in `Case.from_dict`. Names
-        that are not keys have dictionaries: the names of variants, and the keys that each of them sets.
+        Keys and the lists of their values; all combinations are run, the last axis fastest. Values as in `Case`. Names that are not keys
+        have dictionaries: the names of variants, and the keys that each of them sets.
     replicates
-        Random surfaces per point.
-    settings
-        Further keys of the table ``[study]`` of a study file, such as ``reference`` or ``until``.
+        Random surfaces per point, 1 unless given.
+    keys
+        Further keys of the table ``[study]`` of a study file: ``reference``, ``keep`` and ``until``.
 
     Examples
     --------
-    >>> case = Case.from_dict({"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}})
-    >>> study = Study(case, {"drive.v_star": [0.02, 0.05]}, replicates=2)
+    >>> slider = {"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}}
+    >>> study = Study(slider, axes={"drive.v_star": [0.02, 0.05]}, replicates=2)
     >>> study.n_points
     2
     >>> results = study.run(progress=False)
@@ -65,30 +75,23 @@ class Study:
 
     def __init__(
         self,
-        case: Case | str | os.PathLike[str],
-        axes: Mapping[str, Sequence[Any] | Mapping[str, Mapping[str, Any]]] | None = None,
+        case: CaseLike,
+        overrides: Overrides | None = None,
         *,
-        replicates: int = 1,
-        settings: Mapping[str, Any] | None = None,
+        axes: Mapping[str, Sequence[Any] | Mapping[str, Mapping[str, Any]]] | None = None,
+        replicates: int | None = None,
         name: str | None = None,
+        **keys: Unpack[StudyKeys],
     ) -> None:
-        if not isinstance(case, Case):
-            if axes is not None or settings is not None:
-                raise ValueError("a study file has its own axes and settings: give the path alone")
-            self._native = _slipfront.Study.load(Path(case))
+        if isinstance(case, (str, os.PathLike)) and axes is None and replicates is None and name is None and not keys:
+            self._native, self._arrays = of_file(_slipfront.Study, case, overrides)
             return
-        arrays = _toml.Arrays(case._native.arrays)
-        listed = "".join(_axis(name, levels, arrays) for name, levels in (axes or {}).items())
-        study = {"replicates": replicates, **(settings or {})}
-        text = _toml.document({"study": study}, arrays) + listed + _as_base(case)
-        # Its runs read arrays from files, which stand as long as it may have some to do.
-        text, self._arrays = arrays.on_disk(text)
-        self._native = _slipfront.Study.parse(text, name or f"{case.name}-study", Path())
 
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Study:
-        """The study of a study file."""
-        return cls(path)
+        def listed(arrays: _toml.Arrays) -> str:
+            return "".join(_axis(name, levels, arrays) for name, levels in (axes or {}).items())
+
+        tables = {"study": {"replicates": 1 if replicates is None else replicates, **keys}}
+        self._native, self._arrays = of_case(_slipfront.Study, case, overrides, tables, name, "study", listed)
 
     @property
     def name(self) -> str:
@@ -103,7 +106,7 @@ class Study:
     @property
     def axes(self) -> dict[str, int]:
         """The keys of the axes and the number of their levels."""
-        return {", ".join(keys): levels for keys, levels in self._native.axes}
+        return {", ".join(axis["columns"]): len(axis["levels"]) for axis in self._native.axes}
 
     @property
     def warnings(self) -> list[str]:
@@ -164,9 +167,9 @@ class Study:
 
         Examples
         --------
-        >>> case = Case.from_dict({"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}})
+        >>> slider = {"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}}
         >>> drop = {"drop": lambda run: run.static_friction_star - run.series["mu_star"].values[-1]}
-        >>> table = Study(case, {"drive.v_star": [0.02, 0.05]}).run(progress=False, quantities=drop).runs
+        >>> table = Study(slider, axes={"drive.v_star": [0.02, 0.05]}).run(progress=False, quantities=drop).runs
         >>> bool(table["drop"].min() > 0)
         True
         """
@@ -198,7 +201,7 @@ class Study:
             for name, value in zip(own, values.get(place, [np.nan] * len(own)), strict=True):
                 rows.setdefault(name, []).append(value)
         points = results._tables["points"]
-        axes = [column for columns, _ in self._native.axes for column in columns]
+        axes = [column for axis in self._native.axes for column in axis["columns"]]
         for point in dict.fromkeys(rows["point"]):
             of_point = [k for k, (p, r) in enumerate(zip(rows["point"], rows["role"], strict=True)) if (p, r) == (point, "point")]
             for name in own:
@@ -214,29 +217,6 @@ class Study:
         return f"Study({self.name}: {self.n_points} points over {axes or 'no axis'})"
 
 
-def study(
-    path: str | os.PathLike[str],
-    folder: str | os.PathLike[str] | None = None,
-    *,
-    progress: Progress = None,
-    threads: int | None = None,
-) -> StudyResults:
-    """Run the study of a study file, as described at `Study.run`.
-
-    Parameters
-    ----------
-    path
-        The study file.
-    folder
-        Where its results go, and a study that was stopped goes on; in memory unless it is given.
-    progress
-        As of `Study.run`.
-    threads
-        Runs at once, one per core unless given.
-    """
-    return Study(path).run(folder, progress=progress, threads=threads)
-
-
 class StudyResults:
     """The tables of a study.
 
@@ -250,17 +230,18 @@ class StudyResults:
         self,
         folder: Path | None,
         tables: dict[str, dict[str, list[Any]]],
+        axes: list[Axis],
         failures: Sequence[tuple[str, str]] = (),
     ) -> None:
         self.folder = folder
-        self._failures = failures
+        self._axes, self._failures = axes, failures
         self._runs = tables["runs"]
         self._tables = tables
 
     @classmethod
-    def read(cls: type[Results], folder: Path, failures: Sequence[tuple[str, str]] = ()) -> Results:
-        """The tables in a folder."""
-        return cls(folder, read_tables(folder), failures)
+    def read(cls: type[Results], folder: Path, axes: list[Axis], failures: Sequence[tuple[str, str]] = ()) -> Results:
+        """The tables in a folder of a study over these axes."""
+        return cls(folder, read_tables(folder), axes, failures)
 
     @property
     def runs(self) -> pd.DataFrame:
@@ -304,10 +285,27 @@ class StudyResults:
         """
         from ._plot import plot_points
 
-        return plot_points(self._tables["points"], quantity, ax, over)
+        return plot_points(self._tables["points"], self._axes, quantity, ax, over)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The numbers of all runs over the axes of the study and the replicates, NaN where a run has none; those of references are left out.
+
+        Examples
+        --------
+        >>> slider = {"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}}
+        >>> runs = Study(slider, axes={"drive.v_star": [0.02, 0.05]}, replicates=2).run(progress=False).to_xarray()
+        >>> dict(runs.sizes)
+        {'drive.v_star': 2, 'replicate': 2}
+        >>> means = runs["static_friction_star"].mean("replicate")
+        """
+        return grid(self._runs, self._axes)
+
+    def _repr_html_(self) -> str:
+        told = f"<b>{len(self._runs['point'])} runs, {len(self.failures)} failed</b>"
+        return told + table(*means_by_point(self._tables["points"], self._axes))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return sealed(type(self), self.folder, self._tables, self._failures)
+        return sealed(type(self), self.folder, self._tables, self._axes, self._failures)
 
     def __repr__(self) -> str:
         return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"
@@ -341,7 +339,7 @@ def executed(
 
         path = temporary.path / native.name if folder is None else Path(folder)
         values, failures, why = native.execute((path, force), _threads(threads), look, show)
-        results = kind.read(path, failures)
+        results = kind.read(path, native.axes, failures)
         if folder is None:
             results.folder = None
     return results, values, why
@@ -354,17 +352,7 @@ def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], ar
         return f"[[axes]]\nname = {_toml.word(name)}\n[axes.variants]\n{variants}"
     if isinstance(levels, str) or not hasattr(levels, "__iter__"):
         raise TypeError(f"the levels of `{name}` are a list, such as [{levels!r}], not {levels!r}")
+    if hasattr(levels, "__array__"):
+        check_numbers(name, levels)
     listed = ", ".join(_toml.value(level, arrays, name) for level in levels)
     return f"[[axes]]\nkey = {_toml.word(name)}\nlist = [{listed}]\n"
-
-
-def _as_base(case: Case) -> str:
-    """The tables of a case as those of the base of a study, with files where they stand."""
-    lines = []
-    for line in case._text().splitlines():
-        if line.startswith("[["):
-            line = "[[base." + line[2:]
-        elif line.startswith("["):
-            line = "[base." + line[1:]
-        lines.append(line)
-    return "\n".join(["[base]", *lines, ""])

@@ -25,9 +25,14 @@ impl Calibration {
         Self::of(py, || CalibrationFile::parse(text, name, name, &folder))
     }
 
+    /// The calibration of a file, with overrides of its base of the form KEY=VALUE.
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::of(py, || CalibrationFile::load(&path))
+    fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
+        Self::of(py, || {
+            let mut file = CalibrationFile::load(&path)?;
+            file.set(&overrides)?;
+            Ok(file)
+        })
     }
 
     #[getter]

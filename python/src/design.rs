@@ -48,9 +48,14 @@ impl Design {
         Self::of(py, || DesignFile::parse(text, name, name, &folder))
     }
 
+    /// The design of a file, with overrides of its base of the form KEY=VALUE.
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::of(py, || DesignFile::load(&path))
+    fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
+        Self::of(py, || {
+            let mut file = DesignFile::load(&path)?;
+            file.set(&overrides)?;
+            Ok(file)
+        })
     }
 
     #[getter]

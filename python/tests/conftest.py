@@ -15,13 +15,13 @@ CASES = sorted((ROOT / "cases").glob("*.toml"))
 @pytest.fixture
 def small() -> sf.Case:
     """A case that takes some milliseconds."""
-    return sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "time": {"duration_star": 150}}, name="small")
+    return sf.Case({"slider": {"blocks": [12, 10]}, "time": {"duration_star": 150}}, name="small")
 
 
 @pytest.fixture
 def long() -> sf.Case:
     """A case that takes minutes."""
-    return sf.Case.from_dict({"slider": {"blocks": [40, 40]}, "time": {"duration_star": 1e6}}, name="long")
+    return sf.Case({"slider": {"blocks": [40, 40]}, "time": {"duration_star": 1e6}}, name="long")
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def diverging() -> sf.Case:
         "friction": {"r_star": 0, "sigma_static_star": 1},
         "time": {"step": 0.9, "duration_star": 2000},
     }
-    return sf.Case.from_dict(tables)
+    return sf.Case(tables)
 
 
 @pytest.fixture

@@ -58,7 +58,7 @@ def converged_by_command(case: Path, folder: Path, *arguments: str) -> dict[str,
 
 def test_a_folder_has_the_bytes_of_the_command(sheet: Path, tmp_path: Path) -> None:
     expected = converged_by_command(sheet, tmp_path / "command")
-    found = sf.converge(sheet, tmp_path / "python", progress=False)
+    found = sf.converge(sheet, folder=tmp_path / "python", progress=False)
     assert found.to_dict() == expected and found.folder == tmp_path / "python"
     ours = files(tmp_path / "python")
     assert ours == files(tmp_path / "command") and {"convergence.json", "convergence.txt", "points.csv"} <= set(ours)
@@ -102,7 +102,7 @@ def test_no_limit_is_claimed_where_a_block_is_a_length_of_the_material(tmp_path:
 def test_a_picture_is_laid_over_every_mesh_and_copied(tmp_path: Path) -> None:
     case = Path("cases/mask.toml")
     expected = converged_by_command(case, tmp_path / "command", "--replicates", "1", "--set", "time.stop=after_onset")
-    found = sf.converge(sf.Case.load(case, {"time.stop": "after_onset"}), tmp_path / "python", replicates=1, progress=False)
+    found = sf.converge(sf.Case.load(case, {"time.stop": "after_onset"}), folder=tmp_path / "python", replicates=1, progress=False)
     assert found.to_dict() == expected and all(10 < percent < 90 for percent in found.coverages)
     ours = files(tmp_path / "python")
     assert ours == files(tmp_path / "command") and "inputs/herringbone.png" in ours
@@ -110,7 +110,7 @@ def test_a_picture_is_laid_over_every_mesh_and_copied(tmp_path: Path) -> None:
 
 def test_a_folder_is_opened_and_held_against_its_records(sheet: Path, tmp_path: Path) -> None:
     folder = tmp_path / "meshes"
-    found = sf.converge(sheet, folder, progress=False)
+    found = sf.converge(sheet, folder=folder, progress=False)
     opened = sf.open(folder)
     assert isinstance(opened, sf.Convergence)
     assert opened.to_dict() == found.to_dict() and opened.text == found.text and opened.runs.equals(found.runs)
@@ -120,8 +120,8 @@ def test_a_folder_is_opened_and_held_against_its_records(sheet: Path, tmp_path: 
         sf.open(folder)
     # An edited file is replaced on demand, as the records give it.
     with pytest.raises(sf.FolderError, match="convergence.json; .* by `force=True`"):
-        sf.converge(sheet, folder, progress=False)
-    sf.converge(sheet, folder, force=True, progress=False)
+        sf.converge(sheet, folder=folder, progress=False)
+    sf.converge(sheet, folder=folder, force=True, progress=False)
     assert isinstance(sf.open(folder), sf.Convergence)
     # Without what meshes found it is the folder of any study, of which files are missing.
     for name in ("convergence.json", "convergence.txt"):
@@ -141,11 +141,11 @@ def test_an_interrupt_ends_it_and_it_goes_on(sheet: Path, tmp_path: Path) -> Non
         os.kill(os.getpid(), signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):
-        sf.converge(case, folder, replicates=4, progress=press)
+        sf.converge(case, folder=folder, replicates=4, progress=press)
     before = (folder / "runs.jsonl").read_text().splitlines()
     assert 0 < len(before) < 24 and not (folder / "convergence.json").exists()
     seen: list[tuple[int, int, int]] = []
-    found = sf.converge(case, folder, replicates=4, progress=lambda *now: seen.append(now))
+    found = sf.converge(case, folder=folder, replicates=4, progress=lambda *now: seen.append(now))
     assert len(found.runs) == 24 and seen[-1] == (24, 24, 0)
     # Runs that were recorded are not run again.
     assert (folder / "runs.jsonl").read_text().splitlines()[: len(before)] == before
@@ -172,7 +172,7 @@ def test_what_cannot_be_is_refused_before_a_folder_is_made(
 ) -> None:
     case = sf.Case.load(sheet, overrides)
     with pytest.raises(refused) as raised:
-        sf.converge(case, tmp_path / "meshes", progress=False, **options)
+        sf.converge(case, folder=tmp_path / "meshes", progress=False, **options)
     assert said in str(raised.value) and "--" not in str(raised.value) and not (tmp_path / "meshes").exists()
 
 
@@ -196,10 +196,10 @@ def test_a_file_that_has_changed_is_refused(tmp_path: Path) -> None:
 
 def test_a_folder_of_other_things_is_refused(sheet: Path) -> None:
     with pytest.raises(sf.FolderError, match="holds other things than a study"):
-        sf.converge(sheet, sheet.parent, progress=False)
+        sf.converge(sheet, folder=sheet.parent, progress=False)
 
 
 def test_a_run_that_fails_is_told(tmp_path: Path, diverging: sf.Case) -> None:
     with pytest.raises(sf.RunError, match="of 3 runs failed, the others stand in the tables; the first, .* diverged"):
-        sf.converge(diverging, tmp_path / "meshes", replicates=1, progress=False)
+        sf.converge(diverging, folder=tmp_path / "meshes", replicates=1, progress=False)
     assert (tmp_path / "meshes" / "runs.csv").exists() and not (tmp_path / "meshes" / "convergence.json").exists()

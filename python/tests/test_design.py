@@ -16,7 +16,7 @@ SLIDER = {"slider": {"blocks": [16, 16]}, "drive": {"v_star": 0.1}}
 
 def design(**keys: Any) -> sf.Design:
     limits: dict[str, Any] = {"feature_blocks": 2, "gap_blocks": 2, "runs": 120, **keys}
-    return sf.Design(SLIDER, sf.Least("static_friction"), (0, 15), **limits)
+    return sf.Design(SLIDER, wish=sf.Least("static_friction"), coverage=(0, 15), **limits)
 
 
 def test_a_design_has_the_bytes_of_the_command(tmp_path: Path) -> None:
@@ -79,9 +79,9 @@ def test_masks_may_be_arrays() -> None:
 
 def test_what_cannot_be_is_told() -> None:
     with pytest.raises(sf.CaseError, match="friction_of"):
-        sf.Design(SLIDER, sf.Least("friction_of"), (0, 15))
+        sf.Design(SLIDER, wish=sf.Least("friction_of"), coverage=(0, 15))
     with pytest.raises(sf.CaseError, match="out of reach|limits"):
-        sf.Design(SLIDER, sf.Value(0.3), (1, 3), feature_blocks=4, runs=5).run(progress=False)
+        sf.Design(SLIDER, wish=sf.Value(0.3), coverage=(1, 3), feature_blocks=4, runs=5).run(progress=False)
     with pytest.raises(ValueError, match="path of a design file alone"):
         sf.Design(SLIDER)
 

@@ -23,7 +23,7 @@ from slipfront import _slipfront
 
 def small(speed=0.05):
     tables = {"slider": {"blocks": [12, 10]}, "time": {"duration_star": 100}, "drive": {"v_star": speed}}
-    return sf.Case.from_dict(tables, name="small")
+    return sf.Case(tables, name="small")
 
 def friction(case):
     return sf.run(case, progress=False).static_friction_star
@@ -67,7 +67,7 @@ def test_what_needs_threads_is_refused_after_a_fork_and_what_does_not_works(tmp_
 case = small()
 run = sf.run(case, progress=False)
 run.save("run")
-study = sf.Study(case, {"drive.v_star": [0.05]})
+study = sf.Study(case, axes={"drive.v_star": [0.05]})
 study.run("study", progress=False)
 simulation = sf.Simulation(case)
 simulation.step(10)
@@ -75,7 +75,7 @@ checkpoint, pickled = simulation.checkpoint(), pickle.dumps(case)
 refused = {
     "load": lambda: sf.Case.load("run/case.toml"),
     "parse": lambda: sf.Case.parse(case.to_toml()),
-    "from_dict": small,
+    "tables": small,
     "replace": lambda: case.replace({"drive.v_star": 0.1}),
     "run": lambda: friction(case),
     "Simulation": lambda: sf.Simulation(case),
@@ -87,7 +87,6 @@ refused = {
     "displacement": lambda: simulation.displacement,
     "field": lambda: simulation.field("traction"),
     "series": lambda: simulation.series,
-    "curves": lambda: simulation.curves,
     "recipe": lambda: simulation.recipe(),
     "checkpoint": lambda: simulation.checkpoint(),
     "change": lambda: simulation.change({"drive.v_star": 0.1}),
@@ -98,7 +97,7 @@ refused = {
     "open": lambda: sf.open("run"),
     "open without a check": lambda: sf.open("run", verify=False),
     "open a study": lambda: sf.open("study"),
-    "Study": lambda: sf.Study(case, {"drive.v_star": [0.05]}),
+    "Study": lambda: sf.Study(case, axes={"drive.v_star": [0.05]}),
     "converge": lambda: sf.converge(case, progress=False),
     "case of a study": lambda: study.case(0),
     "run of a study": lambda: study.run("study", progress=False),
@@ -126,7 +125,7 @@ for name, use in works.items():
 """,
     )
     refused = [line.split(": ", 1) for line in told if not line.startswith("works")]
-    assert len(refused) == 33
+    assert len(refused) == 32
     wrong = {name: found for name, found in refused if found.strip("[]'\"") != "ForkError"}
     assert not wrong
     works = [line for line in told if line.startswith("works")]
@@ -198,7 +197,7 @@ def test_a_fork_while_another_thread_steps_is_told_so(tmp_path: Path) -> None:
         tmp_path,
         """
 tables = {"slider": {"blocks": [40, 40]}, "time": {"duration_star": 1e6}}
-simulation = sf.Simulation(sf.Case.from_dict(tables))
+simulation = sf.Simulation(sf.Case(tables))
 thread = threading.Thread(target=simulation.step, args=(30_000,))
 thread.start()
 print({in_child(lambda: simulation.step()) for _ in range(5)}, thread.is_alive())
@@ -214,7 +213,7 @@ def test_a_child_that_ends_leaves_the_files_of_the_case(tmp_path: Path) -> None:
         """
 import numpy as np
 mask = np.eye(10, 12, dtype=bool)
-case = sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
+case = sf.Case({"slider": {"blocks": [12, 10]}, "texture": [{"shape": "mask", "file": mask}]})
 child = os.fork()
 if child == 0:
     del case

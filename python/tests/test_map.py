@@ -19,11 +19,11 @@ def test_map_gives_the_summaries_of_run_in_order(small: sf.Case) -> None:
     path = Path("cases/circle.toml")
     cases: list[sf.Case | Mapping[str, Any] | Path | str] = [small, tables, path, str(path)]
     cases += [small.replace({"friction.seed": seed, "time.duration_star": 20 + 7 * seed % 90}) for seed in range(20)]
-    made = [small, sf.Case.from_dict(tables), sf.Case.load(path), sf.Case.load(path)]
+    made = [small, sf.Case(tables), sf.Case.load(path), sf.Case.load(path)]
     made += [case for case in cases[4:] if isinstance(case, sf.Case)]
     expected = [sf.run(case, progress=False).summary for case in made]
     for threads in (1, 2, 5, None):
-        assert sf.map(cases, threads) == expected, threads
+        assert sf.map(cases, threads=threads) == expected, threads
     assert sf.map(iter(cases)) == expected
     assert sf.map([]) == []
 
@@ -32,7 +32,7 @@ def test_map_has_the_numbers_of_every_case() -> None:
     cases = [sf.Case.load(path, {"slider.blocks": [12, 12]}) for path in ("cases/circle.toml", "cases/rate_and_state.toml")]
     edge = {"slider": {"blocks": [20, 6]}, "drive": {"attach": "left", "v_star": 0.05}, "time": {"duration_star": 200}}
     program = {"slider": {"blocks": [8, 8]}, "drive": {"program": [{"until_star": 40, "v_star": 0.1}, {"v_star": 0.2}]}}
-    cases += [sf.Case.from_dict(tables) for tables in (edge, program)]
+    cases += [sf.Case(tables) for tables in (edge, program)]
     cases += [cases[0].replace({"output.snapshots": snapshots}) for snapshots in ([], [10, 20], {"every": 30})]
     summaries = [sf.run(case, progress=False).summary for case in cases]
     assert summaries[2]["precursors"]["events"] > 0 and len(summaries[3]["cycles"]) > 0
@@ -48,9 +48,9 @@ def test_errors_name_the_case(small: sf.Case, diverging: sf.Case) -> None:
     for threads in (1, 3):
         # The second one that diverges ends no earlier than the first, whichever is seen first.
         with pytest.raises(sf.RunError, match=r"^case 2 \(case\): .*at step .* diverged"):
-            sf.map([small, small, diverging, small, diverging], threads)
+            sf.map([small, small, diverging, small, diverging], threads=threads)
     with pytest.raises(ValueError, match="threads are counted from 1, not 0"):
-        sf.map([small], 0)
+        sf.map([small], threads=0)
 
 
 @pytest.mark.usefixtures("interruptible")

@@ -120,7 +120,7 @@ def test_an_exception_in_progress_ends_a_run(long: sf.Case) -> None:
 
 
 def test_other_threads_go_on_and_give_the_same() -> None:
-    case = sf.Case.from_dict({"slider": {"blocks": [40, 40]}, "time": {"duration_star": 400}})
+    case = sf.Case({"slider": {"blocks": [40, 40]}, "time": {"duration_star": 400}})
     alone = sf.run(case, progress=False, threads=1)
     found: list[sf.Run] = []
     threads = [threading.Thread(target=lambda: found.append(sf.run(case, progress=False, threads=1))) for _ in range(2)]
@@ -137,7 +137,7 @@ def test_other_threads_go_on_and_give_the_same() -> None:
 
 
 def test_threads_do_not_change_bits() -> None:
-    case = sf.Case.from_dict({"slider": {"blocks": [200, 150]}, "time": {"duration_star": 20}, "drive": {"v_star": 0.1}})
+    case = sf.Case({"slider": {"blocks": [200, 150]}, "time": {"duration_star": 20}, "drive": {"v_star": 0.1}})
     one, all_cores = (sf.run(case, progress=False, threads=threads) for threads in (1, None))
     assert one.summary == all_cores.summary and one.fields.identical(all_cores.fields)
 

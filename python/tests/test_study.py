@@ -16,7 +16,7 @@ pandas = pytest.importorskip("pandas")
 
 @pytest.fixture
 def study(small: sf.Case) -> sf.Study:
-    return sf.Study(small.replace({"slider.blocks": [8, 8]}), {"drive.v_star": [0.02, 0.05]}, replicates=3)
+    return sf.Study(small.replace({"slider.blocks": [8, 8]}), axes={"drive.v_star": [0.02, 0.05]}, replicates=3)
 
 
 def test_points_are_those_of_the_runs(study: sf.Study) -> None:
@@ -54,9 +54,12 @@ def test_means_are_drawn_over_an_axis(small: sf.Case) -> None:
     import matplotlib.pyplot as plt
 
     axes: dict[str, Any] = {"drive.v_star": [0.02, 0.05, 0.1], "shape": {"plain": {}, "groove": {"texture": [{"shape": "groove", "coverage": 10}]}}}
-    results = sf.Study(small, axes, replicates=2).run(progress=False)
+    results = sf.Study(small, axes=axes, replicates=2).run(progress=False)
     over_speed, over_shape = results.plot("sliding_percent_max"), results.plot("sliding_percent_max", over="shape")
-    assert (over_speed.get_xlabel(), over_speed.get_ylabel()) == ("drive.v_star", "sliding_percent_max")
+    assert (over_speed.get_xlabel(), over_speed.get_ylabel()) == ("drive speed V*", "sliding_percent_max")
+    legend = over_shape.get_legend()
+    assert legend is not None and legend.get_title().get_text() == "V*"
+    assert [text.get_text() for text in legend.get_texts()] == ["0.02", "0.05", "0.1"]
     assert [len(drawn.containers) for drawn in (over_speed, over_shape)] == [2, 3]
     points = results.points.query("quantity == 'sliding_percent_max' and shape == 'groove'")
     # Each curve is the first of the lines of its error bars.
@@ -99,13 +102,13 @@ def test_points_levels_and_names_that_are_none_are_told(study: sf.Study, small: 
             study.run(progress=False, quantities={name: lambda run: 1.0})
     for levels in (0.1, "1 mm/s"):
         with pytest.raises(TypeError, match="are a list, such as"):
-            sf.Study(small, {"drive.speed": levels})  # type: ignore[dict-item]
+            sf.Study(small, axes={"drive.speed": levels})  # type: ignore[dict-item]
 
 
 def test_coverages_stand_as_they_are_meshed(small: sf.Case) -> None:
     """Coverages are drawn as they are meshed: of 25 columns, 5 % are one and 15 % are three."""
     case = small.replace({"slider.blocks": [25, 4], "texture": [{"shape": "groove", "coverage": 5}]})
-    study = sf.Study(case, {"texture.0.coverage": [5, 15]}, replicates=2)
+    study = sf.Study(case, axes={"texture.0.coverage": [5, 15]}, replicates=2)
     points = study.run(progress=False, quantities={"twice": lambda run: 2 * run.steps}).points
     assert {(row["texture.0.coverage"], row["texture_percent"]) for _, row in points.iterrows()} == {(5, 4), (15, 12)}
 
@@ -114,7 +117,7 @@ def test_blocks_that_are_too_coarse_are_told_once(small: sf.Case) -> None:
     case = small.replace({"slider.blocks": [25, 25], "texture": [{"shape": "groove", "coverage": 5}]})
     (coarse,) = [sentence for sentence in case.warnings if "the outline needs" in sentence]
     assert "the smallest groove is 1.25 blocks across; the outline needs 5, at least 100 x 100 blocks" in coarse
-    told = sf.Study(case, {"texture.0.coverage": [5, 6]}).warnings
+    told = sf.Study(case, axes={"texture.0.coverage": [5, 6]}).warnings
     (sentence,) = [sentence for sentence in told if "the outline needs" in sentence]
     assert sentence == f"{coarse} (at 2 points, the first texture.0.coverage = 5)"
 
@@ -122,7 +125,7 @@ def test_blocks_that_are_too_coarse_are_told_once(small: sf.Case) -> None:
 def test_a_study_without_an_answer_has_a_warning(small: sf.Case) -> None:
     short = small.replace({"time.duration_star": 5})
     with pytest.warns(UserWarning, match="no run has a value of static_friction_star, since none has a transition"):
-        results = sf.Study(short, {"drive.v_star": [0.05, 0.1]}).run(progress=False)
+        results = sf.Study(short, axes={"drive.v_star": [0.05, 0.1]}).run(progress=False)
     assert len(results.runs) == 2
 
 
@@ -130,7 +133,7 @@ def test_an_axis_may_have_named_variants(small: sf.Case) -> None:
     mask = np.zeros(small.shape, dtype=bool)
     mask[3:6, 3:6] = True
     variants = {"plain": {}, "dimple": {"texture": [{"shape": "mask", "file": mask}]}}
-    runs = sf.Study(small, {"texture": variants}).run(progress=False).runs
+    runs = sf.Study(small, axes={"texture": variants}).run(progress=False).runs
     assert runs["texture"].tolist() == ["plain", "dimple"]
     assert runs["texture_percent"].tolist() == [0, 7.5]
 
@@ -145,7 +148,7 @@ def test_an_exception_of_an_own_quantity_ends_the_study_and_fails_no_run(study: 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_ends_a_study_which_goes_on(small: sf.Case, tmp_path: Path) -> None:
     speeds = [0.01 + 0.001 * k for k in range(20)]
-    study = sf.Study(small.replace({"slider.blocks": [100, 100]}), {"drive.v_star": speeds}, replicates=2)
+    study = sf.Study(small.replace({"slider.blocks": [100, 100]}), axes={"drive.v_star": speeds}, replicates=2)
 
     def press(done: int, total: int, _: int) -> None:
         assert done < total
@@ -162,7 +165,7 @@ def test_a_study_file_is_run(tmp_path: Path) -> None:
     text = 'base = "%s"\n[study]\nreplicates = 1\n[[axes]]\nkey = "drive.v_star"\nlist = [0.05, 0.1]\n'
     path = tmp_path / "mine.toml"
     path.write_text(text % Path("cases/chain.toml").absolute())
-    assert len(sf.study(path, progress=False).runs) == 2
+    assert len(sf.Study(path).run(progress=False).runs) == 2
     path.write_text(text.replace("v_star", "v_start") % Path("cases/chain.toml").absolute())
     with pytest.raises(sf.CaseError, match="v_star"):
         sf.Study(path)

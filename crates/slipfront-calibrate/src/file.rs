@@ -6,11 +6,11 @@ use serde::Deserialize;
 use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_base::number_format::{are, with_si_prefix};
 use slipfront_case::case::{Case, PROGRAM};
-use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, whole};
+use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, unknown_key, whole};
 use slipfront_case::key_rows;
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::instrument::{HELD_DRIVE, Instrument};
+use slipfront_run::instrument::{HELD_DRIVE, Instrument, InstrumentKeys};
 use slipfront_run::measured::{Correction, Measure, MeasuredRecord};
 use slipfront_run::names::RUN_JOURNAL;
 use slipfront_run::run_curve::steps_to;
@@ -221,6 +221,14 @@ impl CalibrationFile {
         Ok(file)
     }
 
+    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    ///
+    /// # Errors
+    /// When a text is no override.
+    pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
+        self.project.set(overrides)
+    }
+
     /// Name of the calibration and of its results.
     pub fn name(&self) -> &str {
         &self.project.name
@@ -254,7 +262,20 @@ impl CalibrationFile {
                 "`unknowns` names no key: give one with its range, such as \"friction.r_star\" = [0.3, 0.9]";
             return refuse("unknowns", sentence.to_owned());
         }
+        self.check_names_of_instrument()?;
         self.unknowns().map(drop)
+    }
+
+    /// Refuses a key of the table `[instrument]` that there is not; its values may be unknown.
+    fn check_names_of_instrument(&self) -> Result<(), CaseError> {
+        let known: Vec<&str> = InstrumentKeys::KEYS.iter().map(|key| key.name).collect();
+        let mut given = self.project.table(INSTRUMENT)?.into_iter().flatten();
+        given
+            .find(|(name, _)| !known.contains(&name.as_str()))
+            .map_or(Ok(()), |(name, _)| {
+                let sentence = unknown_key(name, "the table [instrument]", &known);
+                Err(self.project.error_in_table(INSTRUMENT, sentence))
+            })
     }
 
     /// The unknown keys.

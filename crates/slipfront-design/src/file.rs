@@ -212,6 +212,14 @@ impl DesignFile {
         Ok(Self { keys, project })
     }
 
+    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    ///
+    /// # Errors
+    /// When a text is no override.
+    pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
+        self.project.set(overrides)
+    }
+
     /// Name of the design and of its results.
     pub fn name(&self) -> &str {
         &self.project.name

@@ -38,6 +38,17 @@ impl Base {
         ParsedCase::parse_from(&self.text, source)?.set(&self.overrides)
     }
 
+    /// Sets keys of the case, each by a text such as `drive.v_star=0.05`.
+    ///
+    /// # Errors
+    /// When a text is no override.
+    pub(crate) fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
+        for text in overrides {
+            self.overrides.push(Override::parse(text)?);
+        }
+        Ok(())
+    }
+
     /// A base case of this text.
     fn new(text: String, name: String, folder: PathBuf) -> Self {
         Self {
@@ -105,6 +116,14 @@ impl ProjectFile {
             },
             keys,
         ))
+    }
+
+    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    ///
+    /// # Errors
+    /// When a text is no override.
+    pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
+        self.base.set(overrides)
     }
 
     /// The project with its base case inside and its files beside it, for the results folder.

@@ -212,9 +212,8 @@ impl StudyFile {
                 let start = source.add_override(text);
                 return Err(source.error_at(start..start + text.len(), sentence));
             }
-            self.base.overrides.push(change);
         }
-        Ok(())
+        self.base.set(overrides)
     }
 
     /// Whether the file has anything of a study: an empty file is a study, too, which varies nothing.
