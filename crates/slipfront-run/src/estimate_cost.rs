@@ -5,14 +5,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use serde::Serialize;
-use slipfront::{Execution, Model, Simulation, State};
+use slipfront::{Execution, State};
 use slipfront_base::machine::thread_time;
 use slipfront_case::case::{Case, ExpectedSteps};
 
+use crate::running::Running;
+
 /// Measurements of each kind in an estimate.
 const MEASUREMENTS: usize = 5;
-/// Duration of a measurement, which has one step at least.
-const MEASUREMENT: Duration = Duration::from_millis(5);
+/// Duration of a measurement, which has one step at least, in s.
+const MEASUREMENT: f64 = 0.005;
 /// Duration of the measurements of a kind from which on no other begins.
 const ENOUGH: Duration = Duration::from_millis(300);
 /// Duration of a pilot run whose blocks slide in every step, in s.
@@ -22,8 +24,7 @@ const MOST_PILOT_BLOCKS: usize = 1_000_000;
 /// V* N above which blocks slide in every step: a faster pilot has as many of them.
 const ALWAYS_SLIDING: f64 = 5.0;
 
-/// Bounds of the time that a computation takes on a machine without other work, in s, from several short
-/// measurements. In JSON it is `[least, most]`,
+/// Bounds of the time that a computation takes on a machine without other work, in s, from a short run of it. In JSON it is `[least, most]`,
 /// where no upper bound is null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(into = "[f64; 2]")]
@@ -63,10 +64,10 @@ impl Mul<f64> for TimeRange {
 /// Time of a step of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTime {
-    /// While the slider rests: most of its blocks are skipped.
-    pub at_rest: TimeRange,
-    /// While blocks slide: every block is computed.
-    pub sliding: TimeRange,
+    /// While the slider rests, in s: most of its blocks are skipped.
+    pub at_rest: f64,
+    /// While blocks slide, in s: every block is computed.
+    pub sliding: f64,
     slip: SlipTime,
 }
 
@@ -105,11 +106,11 @@ impl StepTime {
         let [fewest, most] = expected.steps;
         let slip = self.slip.at(expected.front_ratio);
         TimeRange {
-            least: fewest * (self.at_rest.least + slip.least),
+            least: fewest * (self.at_rest + slip.least),
             most: if expected.stands {
                 f64::INFINITY
             } else {
-                most * (self.at_rest.most + slip.most)
+                most * (self.at_rest + slip.most)
             },
         }
     }
@@ -118,49 +119,38 @@ impl StepTime {
 impl SlipTime {
     /// The time from a run over the whole path of the drive, as fast as its time has to be short; none where
     /// a faster drive is no other case of the same kind.
-    fn of_pilot(case: &Case, at_rest: TimeRange, sliding: TimeRange) -> Option<Self> {
+    fn of_pilot(case: &Case, at_rest: f64, sliding: f64) -> Option<Self> {
         let drive = &case.model.drive;
         if drive.program.is_some() || drive.is_held() || case.model.n_blocks() > MOST_PILOT_BLOCKS {
             return None;
         }
         let expected = case.expected_steps();
         let steps = 0.5 * (expected.steps[0] + expected.steps[1]);
-        let faster = (steps * sliding.most.max(at_rest.most) / PILOT).max(1.0);
-        let mut model = Model::clone(&case.model);
-        model.drive.v_star *= faster;
-        let mut simulation = Simulation::new(
-            Arc::new(model),
-            case.time_plan.dt_star,
-            None,
-            Execution::default(),
-        );
-        let n_steps = (steps / faster).ceil();
-        let began = thread_time();
-        for _ in 0..n_steps as u64 {
-            simulation.step();
-        }
-        let per_step = (thread_time() - began).as_secs_f64() / n_steps;
-        let rest = 0.5 * (at_rest.least + at_rest.most);
-        let slip = (per_step - rest).max(0.0);
+        let faster = (steps * sliding.max(at_rest) / PILOT).max(1.0);
+        let mut pilot = case.clone();
+        Arc::make_mut(&mut pilot.model).drive.v_star *= faster;
+        let (seconds, n_steps) = Steps::new(pilot, None).seconds((steps / faster).ceil() as u64);
+        let per_step = seconds / n_steps as f64;
+        let slip = (per_step - at_rest).max(0.0);
         Some(Self {
             front_ratio: (faster * expected.front_ratio).min(ALWAYS_SLIDING),
             seconds: TimeRange {
                 least: slip,
                 most: slip,
             },
-            exponents: [0.6, 0.2],
+            exponents: [0.4, 0.15],
         })
     }
 
     /// The time where none was measured: in runs with V* N from 0.002 to 5 blocks slid in half or twice (V*
     /// N)^0.4/2 of the steps.
-    fn expected(at_rest: TimeRange, sliding: TimeRange) -> Self {
-        let longer = |sliding: f64, at_rest: f64| (sliding - at_rest).max(0.0);
+    fn expected(at_rest: f64, sliding: f64) -> Self {
+        let longer = (sliding - at_rest).max(0.0);
         Self {
             front_ratio: 1.0,
             seconds: TimeRange {
-                least: 0.25 * longer(sliding.least, at_rest.least),
-                most: longer(sliding.most, at_rest.most),
+                least: 0.25 * longer,
+                most: longer,
             },
             exponents: [0.4; 2],
         }
@@ -187,39 +177,60 @@ fn sliding(case: &Case) -> State {
     state
 }
 
-/// Time of a step by some measurements from a state on, from the start of the case if there is none.
-fn measured(case: &Case, state: Option<State>) -> TimeRange {
-    let execution = Execution {
-        skips: state.is_none(),
-        ..Execution::default()
-    };
-    let mut simulation = Simulation::new(case.model.clone(), case.time_plan.dt_star, state, execution);
+/// Time of a step in s, the shortest of some measurements from a state on, from the start of the case if there
+/// is none: a slider that begins to move is not at rest at once.
+fn measured(case: &Case, state: Option<State>) -> f64 {
+    let mut steps = Steps::new(case.clone(), state);
     // The first step brings the lattice into the cache.
-    simulation.step();
+    let (mut shortest, _) = steps.seconds(1);
     let began = thread_time();
-    let mut measured = Vec::new();
-    while measured.is_empty() || (measured.len() < MEASUREMENTS && thread_time() - began < ENOUGH) {
-        measured.push(seconds_per_step(&mut simulation));
+    for _ in 0..MEASUREMENTS {
+        shortest = shortest.min(steps.seconds_per_step());
+        if thread_time() - began > ENOUGH {
+            break;
+        }
     }
-    TimeRange {
-        least: measured.iter().copied().fold(f64::INFINITY, f64::min),
-        most: measured.iter().copied().fold(0.0, f64::max),
-    }
+    shortest
 }
 
-/// Seconds per step of one measurement. The clock is read seldom, since that takes as long as a step of a few
-/// blocks.
-fn seconds_per_step(simulation: &mut Simulation) -> f64 {
-    let (began, mut steps) = (thread_time(), 0_u32);
-    let passed = loop {
-        for _ in 0..steps.max(1) {
-            simulation.step();
+/// Steps of a run, with all that it records.
+struct Steps(Running);
+
+impl Steps {
+    /// A run of a case from a state on, in which blocks slide in every step, or from its start.
+    fn new(case: Case, state: Option<State>) -> Self {
+        let execution = Execution {
+            skips: state.is_none(),
+            ..Execution::default()
+        };
+        Self(Running::start(&Arc::new(case), state, execution))
+    }
+
+    /// Time of so many steps in s, or of fewer if the run ends, and their number.
+    fn seconds(&mut self, steps: u64) -> (f64, u64) {
+        let (began, first) = (thread_time(), self.0.snapshot().step);
+        // A run that diverges ends, too.
+        let _ = self.0.advance(steps);
+        let made = self.0.snapshot().step - first;
+        ((thread_time() - began).as_secs_f64(), made)
+    }
+
+    /// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read seldom, since
+    /// that takes as long as a step of a few blocks.
+    fn seconds_per_step(&mut self) -> f64 {
+        let (mut passed, mut steps) = (0.0, 0);
+        while passed < MEASUREMENT {
+            let (more, made) = self.seconds(steps.max(1));
+            passed += more;
+            steps += made;
+            if made == 0 {
+                break;
+            }
         }
-        steps += steps.max(1);
-        let passed = thread_time() - began;
-        if passed >= MEASUREMENT {
-            break passed;
+        if steps == 0 {
+            f64::INFINITY
+        } else {
+            passed / steps as f64
         }
-    };
-    passed.as_secs_f64() / f64::from(steps)
+    }
 }

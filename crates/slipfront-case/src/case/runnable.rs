@@ -24,7 +24,7 @@ use crate::case_file::{CaseError, CaseFile};
 use crate::same::expect_same;
 
 /// A case that can be run, which is valid by construction.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Case {
     /// Name of the case and of its results.
     pub name: String,

@@ -197,6 +197,14 @@ fn files_of_instruments_are_read_as_shown() {
     assert!(check("instruments.md", true) >= 12);
 }
 
+/// The five jobs, each from its first command to its last one.
+#[test]
+fn jobs_show_what_is_printed() {
+    let workspace = with_cases();
+    assert!(check_in(&workspace, "jobs.md", true) >= 8);
+    assert!(workspace.exists("results/dimples/mask.dxf") && workspace.exists("effect-as-crate/effect"));
+}
+
 /// Every other guide, most of which show no output.
 #[test]
 fn other_guides_show_what_is_printed() {
@@ -207,6 +215,7 @@ fn other_guides_show_what_is_printed() {
             "textures.md",
             "experiment.md",
             "instruments.md",
+            "jobs.md",
             "studies.md",
         ];
         if name.ends_with(".md") && !have_a_test.contains(&name.as_str()) {
