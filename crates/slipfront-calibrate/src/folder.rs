@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Deserialize;
 use slipfront_base::disk::is_same;
+use slipfront_plot::PictureLook;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::measured::Measure;
 
@@ -113,13 +114,20 @@ pub struct CalibrationFolder {
 /// Folders of calibrations.
 pub const CALIBRATIONS: Derivation = Derivation {
     kind: &CALIBRATION,
+    no_pictures: &[],
     find_again,
 };
 
 /// Calibrates again in another folder from the runs in the journal.
-fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
+fn find_again(
+    folder: &Path,
+    other: &Path,
+    look: &PictureLook,
+    stop: &AtomicBool,
+) -> Result<[usize; 2], StudyError> {
     KeptRuns::copy(folder, other)?;
     let mut again = CalibrationFolder::again(folder, other)?;
+    again.files = again.files.with_look(look.clone());
     let kept = again.n_kept();
     again.find(stop, &mut |_| {})?;
     Ok([kept, again.n_kept()])

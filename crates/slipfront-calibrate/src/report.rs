@@ -5,7 +5,7 @@ use std::io::Write;
 use slipfront_base::number_format::{count, four_digits, in_print, si_prefix, with_si_prefix};
 use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::case::Case;
-use slipfront_plot::{Picture, PictureError, Response, Responses};
+use slipfront_plot::{Picture, PictureError, PictureSize, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
@@ -108,9 +108,9 @@ impl Report<'_> {
             }
             table.flush()
         })?;
-        let picture = picture(&places, record, band, [grid.along(), grid.friction()]);
+        let measures = [grid.along(), grid.friction()];
         self.batch
-            .write_picture(&name, &picture.map_err(StudyError::picture(&name))?)
+            .draw(&name, |size| picture(&places, record, band, measures, size))
     }
 }
 
@@ -146,6 +146,7 @@ fn picture(
     record: &[f64],
     band: &Band,
     measures: [Measure; 2],
+    size: PictureSize,
 ) -> Result<Picture, PictureError> {
     let prefixes = [places, &band.high].map(|values| {
         let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
@@ -174,7 +175,7 @@ fn picture(
             &format!("{}{}", in_print(prefix(axis).1), measures[axis].unit()),
         )
     });
-    slipfront_plot::response(&Responses {
+    let responses = Responses {
         x_title,
         y_title,
         note: format!("median and 90 % of {PREDICTED} runs"),
@@ -183,7 +184,8 @@ fn picture(
             curve("record", record, nothing.clone(), nothing),
         ],
         ..Responses::default()
-    })
+    };
+    slipfront_plot::response(&responses, size)
 }
 
 /// The findings as a text for a person.

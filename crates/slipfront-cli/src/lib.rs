@@ -7,6 +7,7 @@
 // The macros of these lints panic where they cannot print.
 #![deny(clippy::print_stderr, clippy::print_stdout)]
 
+mod bounds;
 mod browser;
 mod case_args;
 mod checkpoint_timer;
@@ -20,6 +21,7 @@ mod print_stderr;
 mod progress;
 mod ranks;
 mod report;
+mod run_again;
 mod signals;
 mod table_args;
 mod threads;

@@ -7,10 +7,12 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Deserialize;
 
+use slipfront_plot::PictureLook;
+
 use crate::design::{Design, Outcome};
 use crate::evaluate::{MadeRun, RunCache};
 use crate::file::{DESIGN, DesignFile};
-use crate::report::{Report, VERDICT};
+use crate::report::{MASK_NAME, Report, VERDICT};
 use crate::stages::{Bounds, RunCost, SearchLength, SearchProgress};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
@@ -251,15 +253,22 @@ fn search_of(folder: &Path) -> Result<SearchLength, StudyError> {
 /// Folders of designs.
 pub const DESIGNS: Derivation = Derivation {
     kind: &DESIGN,
+    no_pictures: &[MASK_NAME],
     find_again,
 };
 
 /// Finds a design again in another folder from the runs in its journal.
-fn find_again(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError> {
+fn find_again(
+    folder: &Path,
+    other: &Path,
+    look: &PictureLook,
+    stop: &AtomicBool,
+) -> Result<[usize; 2], StudyError> {
     let search = search_of(folder)?;
     Journal::copy::<MadeRun>(folder, other, DESIGN.journal)?;
     let file = DesignFile::load(&folder.join(DESIGN.file))?;
     let mut again = DesignFolder::open(other, &file, false)?;
+    again.files = again.files.with_look(look.clone());
     let kept = again.n_kept();
     let bounds = Bounds {
         runs: search.runs,

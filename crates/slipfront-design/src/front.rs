@@ -104,7 +104,7 @@ impl Report<'_> {
                 },
             ]);
         }
-        let picture = slipfront_plot::response(&Responses {
+        let responses = Responses {
             x_title: "textured area (%)".to_owned(),
             y_title: format!(
                 "{}{}",
@@ -114,9 +114,9 @@ impl Report<'_> {
             note: format!("95 % of {surfaces} fresh surfaces"),
             curves: vec![curve],
             ..Responses::default()
-        });
+        };
         self.batch
-            .write_picture(FRONT, &picture.map_err(StudyError::picture(FRONT))?)?;
+            .draw(FRONT, |size| slipfront_plot::response(&responses, size))?;
         Ok(format!(
             "\nWith less texture:\n{}",
             table(&["at most", "covers", wish.loss_name(), "texture"], &rows)

@@ -36,6 +36,8 @@ const EVALUATIONS: &str = "evaluations.csv";
 /// The verdict, as numbers and as a text.
 pub(crate) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
 
+/// Name of the mask, which is no picture of results, without an ending.
+pub(crate) const MASK_NAME: &str = "mask";
 /// Endings of the mask in other formats.
 const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
 
@@ -102,7 +104,7 @@ impl Report<'_> {
         let shares = outcome.shares.as_deref();
         let case = self.write_texture(design, texture, shares)?;
         for ending in MASK_ENDINGS {
-            let name = format!("mask.{ending}");
+            let name = format!("{MASK_NAME}.{ending}");
             let (bytes, _) = texture_file::contents(&case, Path::new(&name), None)?;
             self.batch.write(&name, |to| to.write_all(&bytes))?;
         }
@@ -226,18 +228,11 @@ impl Report<'_> {
             columns: 2,
             maps,
         };
-        let pictures = [
-            (
-                "friction",
-                slipfront_plot::friction(&curves, &FrictionAxes::default()),
-            ),
-            ("first_slips", slipfront_plot::field_maps(&maps)),
-        ];
-        for (name, picture) in pictures {
-            self.batch
-                .write_picture(name, &picture.map_err(StudyError::picture(name))?)?;
-        }
-        Ok(())
+        self.batch.draw("friction", |size| {
+            slipfront_plot::friction(&curves, &FrictionAxes::default(), size)
+        })?;
+        self.batch
+            .draw("first_slips", |size| slipfront_plot::field_maps(&maps, size))
     }
 }
 

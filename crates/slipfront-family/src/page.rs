@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use slipfront_base::disk::{begins_with, write_with_folders};
-use slipfront_plot::{Picture, response};
+use slipfront_plot::{Picture, PictureSize, response};
 use slipfront_run::folder_error::FolderError;
 
 use crate::answer::{Answer, Chapter};
@@ -119,7 +119,8 @@ pub fn write_docs(chapters: &[Chapter], folder: &Path) -> Result<(), FamilyError
     let draw = |chapter: &Chapter| {
         let (_, responses) = chapter.picture.as_ref()?;
         let name = chapter.name.to_owned();
-        let picture = response(responses).map_err(|source| FamilyError::Picture { name, source });
+        let drawn = response(responses, PictureSize::default());
+        let picture = drawn.map_err(|source| FamilyError::Picture { name, source });
         Some(picture.map(|picture| (chapter.name, picture)))
     };
     let pictures: Vec<(&str, Picture)> = chapters.par_iter().filter_map(draw).collect::<Result<_, _>>()?;

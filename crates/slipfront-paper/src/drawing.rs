@@ -6,8 +6,8 @@ use crate::error::PaperError;
 use crate::number::MeasuredNumber;
 
 use slipfront_plot::{
-    BarChart, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, Picture, PictureError, Response, Responses,
-    Shape, Sketch,
+    BarChart, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, Picture, PictureError, PictureSize, Response,
+    Responses, Shape, Sketch,
 };
 
 /// The contents of a picture.
@@ -33,11 +33,12 @@ impl Drawing {
     /// # Errors
     /// When there is nothing to draw.
     pub fn draw(&self) -> Result<Picture, PictureError> {
+        let size = PictureSize::default();
         match self {
-            Self::Curves(curves) => slipfront_plot::friction(curves, &FrictionAxes::default()),
-            Self::Maps(maps) => slipfront_plot::field_maps(maps),
-            Self::Responses(responses) => slipfront_plot::response(responses),
-            Self::Bars(chart) => slipfront_plot::bars(chart),
+            Self::Curves(curves) => slipfront_plot::friction(curves, &FrictionAxes::default(), size),
+            Self::Maps(maps) => slipfront_plot::field_maps(maps, size),
+            Self::Responses(responses) => slipfront_plot::response(responses, size),
+            Self::Bars(chart) => slipfront_plot::bars(chart, size),
             Self::Shapes(shapes) => slipfront_plot::shapes(shapes),
             Self::Sketch(sketch) => slipfront_plot::sketch(sketch),
         }

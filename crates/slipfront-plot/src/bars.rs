@@ -11,6 +11,7 @@ use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::series::{cross, error_bar, interval};
+use crate::size::PictureSize;
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, bar_colour};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
@@ -64,44 +65,49 @@ pub struct Bar {
     pub crossed: bool,
 }
 
-/// Draws bars from zero with error bars, as wide as a journal's column (85 mm)
-/// unless there are too many.
+/// Draws bars from zero with error bars, usually as wide as a journal's column (85 mm), or wider if there are
+/// too many.
 ///
 /// One group is drawn as bars of one colour, each with its name below. With several groups, each group has
 /// its name below, and a legend names the bars.
 ///
 /// # Errors
 ///
-/// No bar.
-pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
+/// No bar, or a size that leaves no room for the bars.
+pub fn bars(chart: &BarChart, size: PictureSize) -> Result<Picture, PictureError> {
     let places = Places::of(chart);
     if places.bars.is_empty() {
         return Err(PictureError::Nothing("bar"));
     }
     let y = value_axis(&places.bars);
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
-    let room = COLUMN_WIDTH.round() - MARGIN - left;
     let narrowest = MIN_SLOT.max(MIN_BAR_WIDTH * places.legend.len() as f64 / SHARE_GROUP);
-    let width = room.max(narrowest * places.names.len() as f64).round();
+    let least = left + narrowest * places.names.len() as f64 + MARGIN;
+    // A width that is asked for is kept, or refused.
+    let whole = match size.width_mm {
+        None => size.width(COLUMN_WIDTH).max(least),
+        Some(_) => size.wide_enough(COLUMN_WIDTH, least)?,
+    };
+    let width = (whole - left - MARGIN).round();
     let legend_names: Vec<_> = places
         .legend
         .iter()
         .map(|&name| (name, LegendSample::Patch))
         .collect();
     let legend = Legend::of(&chart.legend_title, &legend_names, left, left + width);
-    let area = Area::new(left, MARGIN + legend.height, width, HEIGHT);
+    let above = MARGIN + legend.height;
+    let names = CategoryAxis::of(&places.names, &chart.x_title, width);
+    let note = Note::of(&chart.note, left + 0.5 * width, whole);
+    let height = size.panel(HEIGHT, above + names.height + note.height, 1)?;
+    let area = Area::new(left, above, width, height);
     let y = y.placed(area.bottom(), area.y);
-    let names = CategoryAxis::of(&places.names, &chart.x_title, area);
 
-    let right = area.right() + MARGIN;
-    let note = Note::of(&chart.note, area.centre().0, right);
-
-    let mut canvas = Canvas::new(right, area.bottom() + names.height + note.height);
+    let mut canvas = Canvas::sized(whole, area.bottom() + names.height + note.height, size);
     note.draw(&mut canvas);
-    let title = Text::fitted(&chart.y_title, HEIGHT);
+    let title = Text::fitted(&chart.y_title, height);
     left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     legend.draw(&mut canvas);
-    names.draw(&mut canvas);
+    names.draw(&mut canvas, area);
     let slot = area.width / places.names.len() as f64;
     let bar_width = places.bar_width(slot);
     for placed in &places.bars {
@@ -271,13 +277,18 @@ mod tests {
     #[test]
     fn one_group_names_its_bars_and_several_have_a_legend() {
         let pair = [bar("slow", 3.0), bar("fast", 4.0)];
-        let one = bars(&chart(&[("circle", &pair)])).unwrap().svg;
+        let one = bars(&chart(&[("circle", &pair)]), PictureSize::default())
+            .unwrap()
+            .svg;
         assert!(
             one.contains(">slow</text>") && !one.contains(">circle</text>") && !one.contains(">V*</text>")
         );
-        let two = bars(&chart(&[("circle", &pair), ("square", &pair[1..])]))
-            .unwrap()
-            .svg;
+        let two = bars(
+            &chart(&[("circle", &pair), ("square", &pair[1..])]),
+            PictureSize::default(),
+        )
+        .unwrap()
+        .svg;
         for text in ["circle", "square", "slow", "fast", "V*"] {
             assert_eq!(two.matches(&format!(">{text}</text>")).count(), 1, "{text}");
         }
@@ -300,7 +311,7 @@ mod tests {
     #[test]
     fn bars_that_are_not_whole_are_crossed() {
         let lines = |bar: Bar| {
-            bars(&chart(&[("", &[bar])]))
+            bars(&chart(&[("", &[bar])]), PictureSize::default())
                 .unwrap()
                 .svg
                 .matches("fill=\"none\"")
@@ -325,12 +336,19 @@ mod tests {
             bar("one endless name ".repeat(20).as_str(), -9e99),
         ];
         for bar in &odd {
-            bars(&chart(&[("", std::slice::from_ref(bar))])).unwrap();
+            bars(&chart(&[("", std::slice::from_ref(bar))]), PictureSize::default()).unwrap();
         }
-        let svg = bars(&chart(&[("a", &odd), ("", &[]), ("c", &odd)])).unwrap().svg;
+        let svg = bars(
+            &chart(&[("a", &odd), ("", &[]), ("c", &odd)]),
+            PictureSize::default(),
+        )
+        .unwrap()
+        .svg;
         assert!(!svg.contains("NaN") && !svg.contains("inf\""));
         assert_eq!(
-            bars(&chart(&[("a", &[]), ("b", &[])])).unwrap_err().to_string(),
+            bars(&chart(&[("a", &[]), ("b", &[])]), PictureSize::default())
+                .unwrap_err()
+                .to_string(),
             "there is no bar to draw"
         );
     }
@@ -340,7 +358,7 @@ mod tests {
         let many: Vec<Bar> = (0..60)
             .map(|i| bar("some variant's name", f64::from(i)))
             .collect();
-        let svg = bars(&chart(&[("", &many)])).unwrap().svg;
+        let svg = bars(&chart(&[("", &many)]), PictureSize::default()).unwrap().svg;
         let width = svg
             .split_once("viewBox=\"0 0 ")
             .and_then(|(_, rest)| rest.split_once(' '));

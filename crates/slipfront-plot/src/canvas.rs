@@ -3,9 +3,11 @@
 
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, CanvasPoint};
-use crate::style::{BLACK, CurveStyle, Rgb, TICK_LENGTH, WHITE, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK};
+use crate::size::PictureSize;
+use crate::style::{BLACK, CurveStyle, MM, Rgb, TICK_LENGTH, WHITE, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK};
 use crate::text::{Text, width};
 
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Canvas {
     pub(crate) width: f64,
     pub(crate) height: f64,
@@ -17,6 +19,7 @@ pub(crate) struct Canvas {
 }
 
 /// Something drawn in one colour.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Element {
     pub(crate) primitive: Primitive,
     pub(crate) colour: Rgb,
@@ -24,7 +27,8 @@ pub(crate) struct Element {
     pub(crate) opacity: f64,
 }
 
-/// Elements that can be drawn; areas are filled. SVG and PNG are made of these alone.
+/// Elements that can be drawn; areas are filled. SVG, PNG and PDF are made of these alone.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Primitive {
     /// A line through points, and back to the first one if it is closed. `dashes` has the lengths of dashes
     /// and of the gaps after them; it is empty for a line without gaps.
@@ -49,20 +53,64 @@ pub(crate) enum Primitive {
     },
 }
 
+impl Primitive {
+    /// Moves the primitive to the right.
+    fn shift(&mut self, by: f64) {
+        match self {
+            Self::Line { points, .. } | Self::Polygon(points) => {
+                points.iter_mut().for_each(|point| point.0 += by);
+            }
+            Self::Rectangle(area) => area.x += by,
+            Self::Disc { centre: at, .. } | Self::Letters { at, .. } => at.0 += by,
+        }
+    }
+}
+
 impl Canvas {
     pub(crate) fn new(width: f64, height: f64) -> Self {
         Self {
-            width: width.round(),
-            height: height.round(),
+            width,
+            height,
             scale: 1.0,
             images: Vec::new(),
             elements: Vec::new(),
         }
     }
 
+    /// A canvas whose letters, lines and marks have a size that is asked for.
+    pub(crate) fn sized(width: f64, height: f64, size: PictureSize) -> Self {
+        Self {
+            scale: size.scale(),
+            ..Self::new(width, height)
+        }
+    }
+
+    /// Width and height on paper, mm.
+    pub(crate) fn millimetres(&self) -> [f64; 2] {
+        [self.width, self.height].map(|side| self.scale * side / MM)
+    }
+
     /// Width and height in pixels of the PNG.
     pub(crate) fn pixels(&self) -> [u32; 2] {
         [self.width, self.height].map(|side| (self.scale * side).round() as u32)
+    }
+
+    /// Makes the canvas as wide as it is asked to be, with what is drawn in its middle; a narrower canvas
+    /// stays as wide as it is if no width is asked for.
+    pub(crate) fn widened(mut self, size: PictureSize) -> Self {
+        let width = match size.width_mm {
+            None => self.width,
+            Some(_) => size.width(self.width),
+        };
+        let right = 0.5 * (width - self.width);
+        for image in &mut self.images {
+            image.area.x += right;
+        }
+        for element in &mut self.elements {
+            element.primitive.shift(right);
+        }
+        self.width = width;
+        self
     }
 
     fn add(&mut self, primitive: Primitive, colour: Rgb, opacity: f64) {

@@ -2,12 +2,12 @@
 
 use crate::canvas::Canvas;
 use crate::geometry::{Align, Area};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK};
+use crate::style::{BLACK, MARGIN, SIZE_TEXT};
 use crate::text::{CAP_HEIGHT, Text};
 
 /// Largest number of lines of a name; a name that needs more stands upright.
 const MAX_LINES: usize = 3;
-const LINE: f64 = 1.25 * SIZE_TICK as f64;
+const LINE: f64 = 1.25 * SIZE_TEXT as f64;
 /// Lengths of upright names: they are broken at the first of these if they can, and cut at the last.
 const LENGTHS: [f64; 2] = [320.0, 480.0];
 /// Distance between the panel and the names.
@@ -15,13 +15,12 @@ const GAP: f64 = 14.0;
 /// Distance between two names.
 const APART: f64 = 16.0;
 /// Least width of the place of an upright name.
-pub(crate) const MIN_SLOT: f64 = 1.35 * SIZE_TICK as f64;
+pub(crate) const MIN_SLOT: f64 = 1.35 * SIZE_TEXT as f64;
 
 /// Names and the title below them.
 pub(crate) struct CategoryAxis {
     /// Height of the names and the title below the panel.
     pub(crate) height: f64,
-    area: Area,
     /// The lines of every name.
     names: Vec<Vec<Text>>,
     upright: bool,
@@ -29,15 +28,15 @@ pub(crate) struct CategoryAxis {
 }
 
 impl CategoryAxis {
-    /// Names in places of equal width below `area`.
-    pub(crate) fn of(names: &[&str], title: &str, area: Area) -> Self {
-        let room = area.width / names.len().max(1) as f64 - APART;
-        let across = |name: &&str| Text::wrapped(name, SIZE_TICK, room, MAX_LINES);
+    /// Names in places of equal width below a panel of this width.
+    pub(crate) fn of(names: &[&str], title: &str, width: f64) -> Self {
+        let room = width / names.len().max(1) as f64 - APART;
+        let across = |name: &&str| Text::wrapped(name, SIZE_TEXT, room, MAX_LINES);
         let most = ((room + APART) / LINE).floor().clamp(1.0, MAX_LINES as f64) as usize;
         let upright = |name: &&str| {
             let mut lengths = LENGTHS.into_iter();
-            let lines = lengths.find_map(|length| Text::wrapped(name, SIZE_TICK, length, most));
-            lines.unwrap_or_else(|| vec![Text::shortened(name, SIZE_TICK, LENGTHS[1])])
+            let lines = lengths.find_map(|length| Text::wrapped(name, SIZE_TEXT, length, most));
+            lines.unwrap_or_else(|| vec![Text::shortened(name, SIZE_TEXT, LENGTHS[1])])
         };
         let (names, upright, depth) = match names.iter().map(across).collect::<Option<Vec<_>>>() {
             Some(names) => {
@@ -50,27 +49,27 @@ impl CategoryAxis {
                 (names, true, longest)
             }
         };
-        let title = Text::fitted(title, area.width);
+        let title = Text::fitted(title, width);
         let has_title = title.width() > 0.0;
         let title_room = if has_title {
-            f64::from(SIZE_LABEL) + 8.0
+            f64::from(SIZE_TEXT) + 8.0
         } else {
             0.0
         };
         Self {
             height: (GAP + depth + title_room + MARGIN).ceil(),
-            area,
             names,
             upright,
             title,
         }
     }
 
-    pub(crate) fn draw(&self, canvas: &mut Canvas) {
-        let top = self.area.bottom() + GAP;
-        let cap = CAP_HEIGHT * f64::from(SIZE_TICK);
+    /// Draws names and title below a panel.
+    pub(crate) fn draw(&self, canvas: &mut Canvas, area: Area) {
+        let top = area.bottom() + GAP;
+        let cap = CAP_HEIGHT * f64::from(SIZE_TEXT);
         for (index, lines) in self.names.iter().enumerate() {
-            let middle = self.area.x + self.area.width * (index as f64 + 0.5) / self.names.len() as f64;
+            let middle = area.x + area.width * (index as f64 + 0.5) / self.names.len() as f64;
             let first = middle - 0.5 * LINE * (lines.len() as f64 - 1.0);
             for (line, text) in lines.iter().enumerate() {
                 let offset = LINE * line as f64;
@@ -81,13 +80,8 @@ impl CategoryAxis {
                 }
             }
         }
-        let baseline = self.area.bottom() + self.height - MARGIN - 4.0;
-        canvas.text(
-            &self.title,
-            (self.area.centre().0, baseline),
-            Align::Middle,
-            BLACK,
-        );
+        let baseline = area.bottom() + self.height - MARGIN - 4.0;
+        canvas.text(&self.title, (area.centre().0, baseline), Align::Middle, BLACK);
     }
 }
 
@@ -96,13 +90,7 @@ mod tests {
     use super::*;
 
     fn lines(names: &[&str], width: f64) -> (bool, Vec<usize>) {
-        let area = Area {
-            x: 0.0,
-            y: 0.0,
-            width,
-            height: 100.0,
-        };
-        let axis = CategoryAxis::of(names, "", area);
+        let axis = CategoryAxis::of(names, "", width);
         (axis.upright, axis.names.iter().map(Vec::len).collect())
     }
 

@@ -3,7 +3,7 @@
 use crate::canvas::Canvas;
 use crate::frame::{BAR_WIDTH, bar_room, colour_bar};
 use crate::geometry::{Align, Area, CanvasPoint};
-use crate::style::{BLACK, SIZE_LABEL};
+use crate::style::{BLACK, SIZE_TEXT};
 use crate::text::Text;
 
 /// Distance between the numbers and the name.
@@ -27,7 +27,7 @@ impl ColourBar {
 
     /// A bar whose name is as large as other labels, with subscripts after underscores.
     pub(crate) fn labelled(name: &str, range: [f64; 2], height: f64) -> Self {
-        Self::of(Text::math(name, SIZE_LABEL), range, height)
+        Self::of(Text::math(name, SIZE_TEXT), range, height)
     }
 
     fn is_named_above(&self) -> bool {
@@ -37,7 +37,7 @@ impl ColourBar {
     /// Room for a name above the bar.
     pub(crate) fn upper_room(&self) -> f64 {
         if self.is_named_above() {
-            ABOVE + f64::from(SIZE_LABEL)
+            ABOVE + f64::from(SIZE_TEXT)
         } else {
             0.0
         }

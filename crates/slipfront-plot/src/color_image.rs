@@ -4,6 +4,7 @@ use crate::geometry::Area;
 use crate::style::{BLANK, Rgb, ramp};
 
 /// An image whose pixels are levels of the colour ramp.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Image {
     pub(crate) area: Area,
     pub(crate) columns: usize,
@@ -14,6 +15,22 @@ pub(crate) struct Image {
 impl Image {
     pub(crate) fn rows(&self) -> usize {
         self.levels.len() / self.columns
+    }
+
+    /// Columns, rows and levels of the image with every pixel repeated, so often that a viewer's smoothing
+    /// blurs its edge only.
+    pub(crate) fn repeated(&self) -> (usize, usize, Vec<u8>) {
+        let rows = self.rows();
+        let repeat = (400 / self.columns.max(rows)).max(1);
+        let mut levels = Vec::with_capacity(self.levels.len() * repeat * repeat);
+        for row in self.levels.chunks_exact(self.columns) {
+            let start = levels.len();
+            levels.extend(row.iter().flat_map(|&level| std::iter::repeat_n(level, repeat)));
+            for _ in 1..repeat {
+                levels.extend_from_within(start..start + self.columns * repeat);
+            }
+        }
+        (self.columns * repeat, rows * repeat, levels)
     }
 }
 

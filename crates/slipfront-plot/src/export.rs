@@ -1,4 +1,4 @@
-//! Conversion of a canvas to a picture: SVG and PNG.
+//! Conversion of a canvas to a picture.
 
 use crate::canvas::Canvas;
 use crate::picture::{Picture, PictureError};
@@ -11,14 +11,15 @@ const MAX_PIXELS: f64 = 1e8;
 
 impl Canvas {
     /// Makes the SVG and the PNG of the canvas.
-    pub(crate) fn finish(&self) -> Result<Picture, PictureError> {
+    pub(crate) fn finish(self) -> Result<Picture, PictureError> {
         let [width, height] = self.pixels();
-        let pixels = Some(self).filter(|_| f64::from(width) * f64::from(height) <= MAX_PIXELS);
+        let pixels = Some(&self).filter(|_| f64::from(width) * f64::from(height) <= MAX_PIXELS);
         let pixels = pixels.and_then(raster::rgb);
         let pixels = pixels.ok_or_else(|| PictureError::Png("it would be too large".to_string()))?;
         Ok(Picture {
-            svg: svg::svg(self)?,
+            svg: svg::svg(&self)?,
             png: png_file::encode(width as usize, height as usize, &pixels, None)?,
+            canvas: self,
         })
     }
 }

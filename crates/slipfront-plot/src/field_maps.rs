@@ -6,9 +6,12 @@ use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::color_bar::{ABOVE, ColourBar};
 use crate::geometry::Area;
-use crate::lattice_map::{Cells, MARK, TITLE_ROOM, block_count, check_length, circle, draw_titles, place};
+use crate::lattice_map::{
+    Cells, MARK, MIN_MAP, TITLE_ROOM, block_count, check_length, circle, draw_titles, place,
+};
 use crate::picture::{Picture, PictureError};
-use crate::style::{MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
+use crate::size::PictureSize;
+use crate::style::{MARGIN, SIZE_TEXT, TEXT_WIDTH};
 use crate::text::Text;
 
 const GAP: f64 = 26.0;
@@ -48,24 +51,31 @@ pub struct FieldMap {
     pub marks: Vec<[usize; 2]>,
 }
 
-/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, all on one colour scale, textured
-/// areas outlined and marked blocks circled. Every map is as wide as the others, whatever its number of
+/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, or as wide as asked for with fewer in
+/// a row where they would be small, all on one colour scale, textured areas outlined and marked blocks circled. Every map is as wide as the others, whatever its number of
 /// blocks.
 ///
 /// # Errors
 ///
-/// No map, a lattice without blocks, an array of the wrong length.
-pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
+/// No map, a lattice without blocks, an array of the wrong length; a height, or a width without room for a
+/// map.
+pub fn field_maps(maps: &FieldMaps, size: PictureSize) -> Result<Picture, PictureError> {
     maps.maps.iter().try_for_each(check)?;
     let Some(first) = maps.maps.first() else {
         return Err(PictureError::Nothing("map"));
     };
     let bar_of = |height| ColourBar::labelled(&maps.value_title, maps.range, height);
     let bar_width = bar_of(MAX_WIDTH).room();
-    let columns = maps.columns.clamp(1, maps.maps.len());
+    size.expect_no_height()?;
+    let whole = size.roomy_width(TEXT_WIDTH)?;
+    let is_asked = size.width_mm.is_some();
+    let room_of = |columns: usize| (whole - 2.0 * MARGIN - bar_width) / columns as f64;
+    let is_small = |columns: &usize| is_asked && room_of(*columns) - GAP < MIN_MAP;
+    let most = maps.columns.clamp(1, maps.maps.len());
+    let columns = (1..=most).rev().find(|columns| !is_small(columns)).unwrap_or(1);
     let rows = maps.maps.len().div_ceil(columns);
-    let room = (TEXT_WIDTH - 2.0 * MARGIN - bar_width) / columns as f64;
-    let width = (room - GAP).min(MAX_WIDTH).round();
+    let max_width = if is_asked { f64::INFINITY } else { MAX_WIDTH };
+    let width = (room_of(columns) - GAP).min(max_width).round();
     let height = (width * (first.ny as f64 / first.nx as f64).clamp(0.2, 5.0)).round();
     let pitch = height + TITLE_ROOM + GAP;
     let bar = bar_of((rows - 1) as f64 * pitch + height);
@@ -76,12 +86,12 @@ pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
     };
     let lowest = area((rows - 1) * columns).bottom();
     let bar_x = area(columns - 1).right() + GAP;
-    let mut canvas = Canvas::new(bar_x + bar.room() + MARGIN, lowest + MARGIN);
+    let mut canvas = Canvas::sized(bar_x + bar.room() + MARGIN, lowest + MARGIN, size);
     for (index, map) in maps.maps.iter().enumerate() {
         draw_map(&mut canvas, map, area(index), maps.range);
     }
     bar.draw(&mut canvas, (bar_x, top), top - TITLE_ROOM - ABOVE);
-    canvas.finish()
+    canvas.widened(size).finish()
 }
 
 fn check(map: &FieldMap) -> Result<(), PictureError> {
@@ -109,7 +119,7 @@ fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
     }
     canvas.frame(area);
     let fitted = |text: &str, size| Text::shortened(text, size, area.width + 0.6 * GAP);
-    let (label, note) = (fitted(&map.label, SIZE_LABEL), fitted(&map.note, SIZE_TICK));
+    let (label, note) = (fitted(&map.label, SIZE_TEXT), fitted(&map.note, SIZE_TEXT));
     draw_titles(canvas, area, &label, &note);
 }
 
@@ -140,9 +150,12 @@ mod tests {
 
     #[test]
     fn lattices_of_different_sizes_stand_side_by_side() {
-        let svg = field_maps(&maps(&[(5, 5), (25, 25), (75, 75), (5, 5)]))
-            .unwrap()
-            .svg;
+        let svg = field_maps(
+            &maps(&[(5, 5), (25, 25), (75, 75), (5, 5)]),
+            PictureSize::default(),
+        )
+        .unwrap()
+        .svg;
         // Four maps and the bar.
         assert_eq!(svg.matches("<image").count(), 5);
         for text in ["5 x 5", "25 x 25", "75 x 75", "value"] {
@@ -156,7 +169,10 @@ mod tests {
         let mut more = plain.clone();
         more.maps[0].marks.push([4, 4]);
         more.maps[0].note = "note".to_owned();
-        let (plain, more) = (field_maps(&plain).unwrap().svg, field_maps(&more).unwrap().svg);
+        let (plain, more) = (
+            field_maps(&plain, PictureSize::default()).unwrap().svg,
+            field_maps(&more, PictureSize::default()).unwrap().svg,
+        );
         assert!(more.matches("<path").count() > plain.matches("<path").count());
         assert!(more.contains(">note</text>"));
     }
@@ -166,7 +182,7 @@ mod tests {
         let error = |change: &dyn Fn(&mut FieldMaps)| {
             let mut maps = maps(&[(2, 3)]);
             change(&mut maps);
-            field_maps(&maps).unwrap_err().to_string()
+            field_maps(&maps, PictureSize::default()).unwrap_err().to_string()
         };
         assert_eq!(error(&|m| m.maps.clear()), "there is no map to draw");
         assert_eq!(

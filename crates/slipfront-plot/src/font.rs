@@ -11,7 +11,7 @@ pub(crate) const WOFF2: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
 /// Data by which text is measured and drawn: in each line a character's code, its width and its outline.
 const OUTLINES: &str = include_str!("font/outlines.txt");
 /// Units of length of the font in the font size.
-const UNITS_PER_EM: f32 = 2048.0;
+pub(crate) const UNITS_PER_EM: f32 = 2048.0;
 
 struct Glyph {
     width: f32,
@@ -40,27 +40,56 @@ pub(crate) fn advance(character: char) -> f64 {
     f64::from(glyph(character).map_or(1.0, |glyph| glyph.width / UNITS_PER_EM))
 }
 
-/// Adds the outline of `character` to a path; a box if the font lacks it. `place` takes a point of the
-/// outline, x from the pen and y above the baseline, over the font size, to its place in the picture.
-pub(crate) fn draw(character: char, path: &mut PathBuilder, place: impl Fn(f32, f32) -> (f32, f32)) {
+/// A part of an outline: points are x from the pen and y above the baseline, in units of the font.
+pub(crate) enum GlyphPart {
+    /// The first point of a contour.
+    Start([f32; 2]),
+    Line([f32; 2]),
+    /// A quadratic curve: its control point and its end.
+    Curve([[f32; 2]; 2]),
+    /// The end of a contour, which goes back to its first point.
+    Close,
+}
+
+/// The outline of `character`; a box if the font lacks it.
+pub(crate) fn outline(character: char) -> impl Iterator<Item = GlyphPart> {
     let outline = glyph(character)
         .or_else(|| GLYPHS.get("missing"))
         .map_or("", |glyph| glyph.outline);
-    for command in outline.split(' ') {
-        let coordinate = |number: &str| number.parse::<f32>().ok().map(|units| units / UNITS_PER_EM);
-        let coordinates: Vec<f32> = command
-            .split(&['M', 'L', 'Q', ','])
-            .filter_map(coordinate)
-            .collect();
-        let points: Vec<_> = coordinates
-            .chunks_exact(2)
-            .map(|point| place(point[0], point[1]))
-            .collect();
-        match points[..] {
-            [(x, y)] if command.starts_with('M') => path.move_to(x, y),
-            [(x, y)] => path.line_to(x, y),
-            [(cx, cy), (x, y)] => path.quad_to(cx, cy, x, y),
-            _ => path.close(),
+    outline
+        .split(' ')
+        .filter(|command| !command.is_empty())
+        .map(|command| {
+            let numbers = command.split(&['M', 'L', 'Q', ',']);
+            let coordinates: Vec<f32> = numbers.filter_map(|number| number.parse().ok()).collect();
+            match coordinates[..] {
+                [x, y] if command.starts_with('M') => GlyphPart::Start([x, y]),
+                [x, y] => GlyphPart::Line([x, y]),
+                [cx, cy, x, y] => GlyphPart::Curve([[cx, cy], [x, y]]),
+                _ => GlyphPart::Close,
+            }
+        })
+}
+
+/// Adds the outline of `character` to a path; a box if the font lacks it. `place` takes a point of the
+/// outline, x from the pen and y above the baseline, over the font size, to its place in the picture.
+pub(crate) fn draw(character: char, path: &mut PathBuilder, place: impl Fn(f32, f32) -> (f32, f32)) {
+    let place = |[x, y]: [f32; 2]| place(x / UNITS_PER_EM, y / UNITS_PER_EM);
+    for part in outline(character) {
+        match part {
+            GlyphPart::Start(point) => {
+                let (x, y) = place(point);
+                path.move_to(x, y);
+            }
+            GlyphPart::Line(point) => {
+                let (x, y) = place(point);
+                path.line_to(x, y);
+            }
+            GlyphPart::Curve(points) => {
+                let [(cx, cy), (x, y)] = points.map(place);
+                path.quad_to(cx, cy, x, y);
+            }
+            GlyphPart::Close => path.close(),
         }
     }
 }

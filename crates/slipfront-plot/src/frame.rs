@@ -4,12 +4,12 @@ use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
 use crate::color_image::Image;
 use crate::geometry::{Align, Area};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
+use crate::style::{BLACK, MARGIN, SIZE_TEXT, TICK_LENGTH, WIDTH_FRAME};
 use crate::text::Text;
 use crate::ticks::{Direction, Tick};
 
 /// The room below a panel for numbers and a title.
-pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
+pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TEXT as f64 + SIZE_TEXT as f64 + MARGIN;
 /// Width of a colour bar.
 pub(crate) const BAR_WIDTH: f64 = 30.0;
 /// Largest number of steps of the numbers of a colour bar.
@@ -21,7 +21,7 @@ fn widest(ticks: &[Tick]) -> f64 {
 
 /// The room left of a panel for a title and these numbers.
 pub(crate) fn left_room(ticks: &[Tick]) -> f64 {
-    (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
+    (MARGIN + f64::from(SIZE_TEXT) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
 }
 
 /// Right end of a panel from `left` to `right` in a picture of this width, such that no number below it is
@@ -42,7 +42,7 @@ pub(crate) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tic
     for (y, text) in ticks {
         canvas.tick_left((area.x, *y), text);
     }
-    let baseline = edge + MARGIN + 0.8 * f64::from(SIZE_LABEL);
+    let baseline = edge + MARGIN + 0.8 * f64::from(SIZE_TEXT);
     canvas.text_upwards(title, (baseline, area.centre().1), Align::Middle, BLACK);
 }
 

@@ -12,7 +12,7 @@ use crate::series::segments;
 use crate::short_names::without_common_folder;
 use crate::size::PictureSize;
 use crate::style::{
-    BLACK, COLUMN_WIDTH, CURVES, CurveStyle, GREY, Rgb, SIZE_LABEL, WIDTH_LEADER, WIDTH_MARK, curve_style,
+    BLACK, COLUMN_WIDTH, CURVES, CurveStyle, GREY, Rgb, SIZE_TEXT, WIDTH_LEADER, WIDTH_MARK, curve_style,
 };
 use crate::text::{Text, number};
 
@@ -36,22 +36,13 @@ const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 ///
 /// # Errors
 ///
-/// No curve, or a curve whose columns differ in length.
-pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture, PictureError> {
-    friction_of_size(curves, axes, PictureSize::default())
-}
-
-/// Draws what [`friction`] draws, in this size.
-///
-/// # Errors
-///
-/// Errors of [`friction`], and a size that leaves no room for the curves.
-pub fn friction_of_size(
+/// No curve, a curve whose columns differ in length, or a size that leaves no room for the curves.
+pub fn friction(
     curves: &[FrictionCurve],
     axes: &FrictionAxes,
     size: PictureSize,
 ) -> Result<Picture, PictureError> {
-    size.check_width(COLUMN_WIDTH)?;
+    let width = size.roomy_width(COLUMN_WIDTH)?;
     if curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
@@ -62,7 +53,6 @@ pub fn friction_of_size(
         ];
         check_columns(&curve.label, ("abscissae", curve.x.len()), &columns)?;
     }
-    let width = size.width(COLUMN_WIDTH);
     let panels = Panels::of(curves, width, None);
     let named: Vec<&FrictionCurve> = curves.iter().filter(|_| curves.len() > 1).collect();
     let labels: Vec<&str> = named.iter().map(|curve| curve.label.as_str()).collect();
@@ -83,8 +73,7 @@ pub fn friction_of_size(
         None => panels,
     };
     let panels = panels.lowered(above);
-    let mut canvas = Canvas::new(width, panels.bottom());
-    canvas.scale = size.scale();
+    let canvas = Canvas::sized(width, panels.bottom(), size);
     let mut drawing = FrictionDrawing {
         canvas,
         panels,
@@ -150,13 +139,13 @@ impl FrictionDrawing<'_> {
         let placed = |middle: f64, text: &Text, [from, to]: [f64; 2]| {
             (middle - 0.5 * text.width()).min(to - text.width()).max(from)
         };
-        let slip = first_slip.map(|x| (x, Text::plain("first slip", SIZE_LABEL)));
+        let slip = first_slip.map(|x| (x, Text::plain("first slip", SIZE_TEXT)));
         let mut from = panel.x;
         let mut to = panel.right();
         if let Some(window) = window {
             let FrictionAxes { kinetic, unit, .. } = self.axes;
             let label = format!("{kinetic} = {}{unit}", with_uncertainty(window));
-            let text = Text::math(&label, SIZE_LABEL);
+            let text = Text::math(&label, SIZE_TEXT);
             if let Some((_, slip)) = &slip {
                 from += slip.width() + APART;
             }
@@ -281,7 +270,7 @@ impl Mark {
             let FrictionAxes { peak, unit, .. } = axes;
             label += &format!("{colon}{peak} = {}{unit}", number(value, 3));
         }
-        Text::math(&label, SIZE_LABEL)
+        Text::math(&label, SIZE_TEXT)
     }
 }
 
@@ -322,7 +311,7 @@ mod tests {
     use crate::friction_curve::Instant;
 
     fn drawn(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
-        friction(curves, &FrictionAxes::default())
+        friction(curves, &FrictionAxes::default(), PictureSize::default())
     }
 
     /// A curve like a real run's: a ramp, a peak, a fall, sliding.

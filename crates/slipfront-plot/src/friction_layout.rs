@@ -5,7 +5,7 @@ use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Area, CanvasPoint};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_LEADER};
+use crate::style::{BLACK, MARGIN, SIZE_NARROW, SIZE_TEXT, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS, Tick};
 
@@ -49,7 +49,7 @@ impl Panels {
             DrawnAxis::linear(0.0, 100.0).placed(sliding_top + larger * HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
         // The last number on the axis may stand half beyond its end.
-        let right = width.round() - 28.0;
+        let right = (width - 28.0).round();
         let x = DrawnAxis::linear(from, to).placed(left, right);
         let x = x.placed(left, right_end(&x_ticks(&x), left, right, width));
         Self { x, mu, sliding }
@@ -114,15 +114,15 @@ impl Panels {
     }
 }
 
-/// The first title that is no longer than `room`: the first in the size of a label, the second in that of a
-/// number, or else the third in that of a number.
+/// The first title that is no longer than `room`: the first in the size of all text, the second in that of
+/// titles without room, or else the third in that size.
 fn fitted(titles: [&str; 3], room: f64) -> Text {
-    let [label, number, last] = titles;
-    let sized = [(label, SIZE_LABEL), (number, SIZE_TICK)];
+    let [first, second, last] = titles;
+    let sized = [(first, SIZE_TEXT), (second, SIZE_NARROW)];
     let mut texts = sized.iter().map(|(title, size)| Text::math(title, *size));
     texts
         .find(|text| text.width() <= room)
-        .unwrap_or_else(|| Text::math(last, SIZE_TICK))
+        .unwrap_or_else(|| Text::math(last, SIZE_NARROW))
 }
 
 fn x_ticks(x: &DrawnAxis) -> Vec<Tick> {

@@ -15,6 +15,7 @@ use crate::lattice_map::{
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::quantity_labels::{FIRST_SLIP, SLIDING_SHARE};
+use crate::size::PictureSize;
 use crate::style::{MARGIN, RADIUS_MARKER, TEXT_WIDTH, WHITE, WIDTH_FRAME};
 use crate::text::Text;
 use crate::ticks::{Direction, Tick, round_values};
@@ -27,6 +28,8 @@ const MAX_SIDE: f64 = 520.0;
 const MAX_SIDE_LONG: f64 = 1000.0;
 /// Ratio of length to height above which a slider has its map above the other panel, as wide as the page.
 const MAX_RATIO: f64 = 3.0;
+/// Least width of a picture with both panels beside each other, 140 mm.
+const MIN_BESIDE: f64 = 1650.0;
 /// Least height of a map above the other panel, over its length.
 const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
 /// Height of the other panel below a map.
@@ -82,49 +85,53 @@ fn is_above(ratio: f64) -> bool {
     ratio * MAX_RATIO < 1.0
 }
 
-/// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less: the map beside the
-/// other panel, or above it for a long slider. Nucleations are circled, the first filled; the texture is
+/// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less, or as wide as asked
+/// for: the map beside the other panel, or above it for a long slider and in a narrow picture. Nucleations are circled, the first filled; the texture is
 /// outlined.
 ///
 /// # Errors
 ///
 /// A lattice without blocks, an array of the wrong length, a block size that is not a positive length, no
-/// instant.
-pub fn front(map: &FrontMap, space_time: &SpaceTime) -> Result<Picture, PictureError> {
+/// instant; a height, or a width without room for a map.
+pub fn front(map: &FrontMap, space_time: &SpaceTime, size: PictureSize) -> Result<Picture, PictureError> {
     check(map, space_time)?;
-    let layout = FrontLayout::of(map, space_time);
+    size.expect_no_height()?;
+    let layout = FrontLayout::of(map, space_time, size.roomy_width(TEXT_WIDTH)?);
     let lines = contour_lines(map, layout.map.bar.range);
     let note = Note::of(&meaning_of_marks(map, &lines), 0.5 * layout.width, layout.width);
-    let mut canvas = Canvas::new(layout.width, layout.height + note.height);
+    let mut canvas = Canvas::sized(layout.width, layout.height + note.height, size);
     draw_map(&mut canvas, map, &layout, lines);
     let [.., place] = &layout.titles;
     draw_space_time(&mut canvas, space_time, &layout.space_time, place);
     note.draw(&mut canvas);
-    canvas.finish()
+    canvas.widened(size).finish()
 }
 
-/// Draws the share of the sliding blocks against place and time alone, as wide as a journal's text (175 mm).
+/// Draws the share of the sliding blocks against place and time alone, usually as wide as a journal's text
+/// (175 mm).
 ///
 /// # Errors
 ///
-/// No instant, or an array of the wrong length.
-pub fn kymograph(space_time: &SpaceTime) -> Result<Picture, PictureError> {
+/// No instant, an array of the wrong length, or a size without room for the panel.
+pub fn kymograph(space_time: &SpaceTime, size: PictureSize) -> Result<Picture, PictureError> {
     check_space_time(space_time)?;
     let (axes, place) = space_time_axes(space_time);
-    let left = left_room(&axes[1].placed(HEIGHT_ALONE, 0.0).ticks(Direction::Y, 5));
-    let bar = share_bar(space_time, HEIGHT_ALONE);
+    let upper = share_bar(space_time, HEIGHT_ALONE).upper_room();
+    let height = size.panel(HEIGHT_ALONE, TOP + upper + LOWER_ROOM, 1)?;
+    let left = left_room(&axes[1].placed(height, 0.0).ticks(Direction::Y, 5));
+    let bar = share_bar(space_time, height);
     let top = TOP + bar.upper_room();
-    let width = (TEXT_WIDTH - left - GAP - bar.room() - MARGIN).round();
-    let area = Area::new(left, top, width, HEIGHT_ALONE);
+    let width = size.roomy_width(TEXT_WIDTH)? - left - GAP - bar.room() - MARGIN;
+    let area = Area::new(left, top, width.round(), height);
     let panel = FrontPanel {
         area,
         edge: 0.0,
         axes,
         bar,
     };
-    let mut canvas = Canvas::new(panel.right() + MARGIN, area.bottom() + LOWER_ROOM);
+    let mut canvas = Canvas::sized(panel.right() + MARGIN, area.bottom() + LOWER_ROOM, size);
     draw_space_time(&mut canvas, space_time, &panel, &place);
-    canvas.finish()
+    canvas.widened(size).finish()
 }
 
 /// The axes of places and times, and the title of the first.
@@ -245,7 +252,8 @@ struct FrontLayout {
 }
 
 impl FrontLayout {
-    fn of(map: &FrontMap, space_time: &SpaceTime) -> Self {
+    /// Panels in a picture that is at most this wide.
+    fn of(map: &FrontMap, space_time: &SpaceTime, whole: f64) -> Self {
         let lengths = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
         let units = lengths.map(unit_of);
         let sides = [0, 1].map(|axis| DrawnAxis::linear(0.0, lengths[axis] * units[axis].1));
@@ -267,13 +275,15 @@ impl FrontLayout {
             format!("y ({})", units[1].0),
             place,
         ];
-        let (map, space_time) = if is_above(ratio) {
+        let (map, space_time) = if is_above(ratio) || whole < MIN_BESIDE {
             let left = map_left.max(left);
             let widest = map_bar(HEIGHT_BELOW).room().max(bar(HEIGHT_BELOW).room());
-            let width = (TEXT_WIDTH - left - GAP - widest - MARGIN).round();
-            let height = (width * ratio.max(MIN_RATIO_ABOVE)).round();
+            let width = (whole - left - GAP - widest - MARGIN).round();
+            let ratio = ratio.clamp(MIN_RATIO_ABOVE, 1.0 / MIN_RATIO);
+            let height = (width * ratio).min(MAX_SIDE_LONG).round();
             let map_bar = map_bar(height);
-            let upper = Area::new(left, TOP + map_bar.upper_room(), width, height);
+            let map_width = (height / ratio).round();
+            let upper = Area::new(left, TOP + map_bar.upper_room(), map_width, height);
             let below = upper.bottom() + LOWER_ROOM + TOP;
             let lower = Area::new(left, below, width, HEIGHT_BELOW);
             (
@@ -291,7 +301,7 @@ impl FrontLayout {
             let first = panel(first, map_left, sides, map_bar(height));
             let x = (first.right() + GAP + left).round();
             let bar = bar(MAX_SIDE);
-            let width = TEXT_WIDTH - x - GAP - bar.room() - MARGIN;
+            let width = whole - x - GAP - bar.room() - MARGIN;
             let second = Area::new(x, TOP, width.min(1.5 * MAX_SIDE).round(), MAX_SIDE);
             (first, panel(second, left, axes, bar))
         };
@@ -433,7 +443,7 @@ mod tests {
             (1000, 300),
         ] {
             let (map, space_time) = (map(nx, ny), space_time(nx.min(1024), 90));
-            let layout = FrontLayout::of(&map, &space_time);
+            let layout = FrontLayout::of(&map, &space_time, TEXT_WIDTH);
             assert!(layout.width <= TEXT_WIDTH + 12.0, "{nx} x {ny}: {}", layout.width);
             for panel in [&layout.map, &layout.space_time] {
                 assert!(
@@ -442,7 +452,7 @@ mod tests {
                 );
                 assert!(panel.area.bottom() + LOWER_ROOM <= layout.height);
             }
-            let svg = front(&map, &space_time).unwrap().svg;
+            let svg = front(&map, &space_time, PictureSize::default()).unwrap().svg;
             assert!(!svg.contains("NaN"));
             // Both panels and their bars.
             assert_eq!(svg.matches("<image").count(), 4);
@@ -455,7 +465,7 @@ mod tests {
         let mut plain = marked.clone();
         plain.nucleations.clear();
         let lines = |map: &FrontMap| {
-            front(map, &space_time(40, 60))
+            front(map, &space_time(40, 60), PictureSize::default())
                 .unwrap()
                 .svg
                 .matches("<path")
@@ -475,7 +485,12 @@ mod tests {
             *share *= 0.25;
         }
         assert_eq!(share_bar(&shares, 100.0).range, [0.0, 0.25]);
-        let written = |map: &FrontMap, words: &str| front(map, &shares).unwrap().svg.contains(words);
+        let written = |map: &FrontMap, words: &str| {
+            front(map, &shares, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains(words)
+        };
         for words in [
             "filled circle: first nucleation site",
             "circles: the others",
@@ -491,11 +506,13 @@ mod tests {
         assert!(!written(&plain, "filled circle") && !written(&plain, "lines"));
         shares.shares.fill(0.0);
         assert_eq!(share_bar(&shares, 100.0).range, [0.0, 1.0]);
-        let svg = kymograph(&shares).unwrap().svg;
+        let svg = kymograph(&shares, PictureSize::default()).unwrap().svg;
         assert!(svg.contains("place along the drive") && svg.matches("<image").count() == 2);
         shares.shares.clear();
         assert_eq!(
-            kymograph(&shares).unwrap_err().to_string(),
+            kymograph(&shares, PictureSize::default())
+                .unwrap_err()
+                .to_string(),
             "there is no instant to draw"
         );
     }
@@ -523,7 +540,12 @@ mod tests {
         map.first_slips.fill(f32::NAN);
         space_time.shares.fill(f32::NAN);
         space_time.times = [3.0; 2];
-        assert!(!front(&map, &space_time).unwrap().svg.contains("NaN"));
+        assert!(
+            !front(&map, &space_time, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains("NaN")
+        );
     }
 
     /// One block that slips long after all others leaves the others their colours.
@@ -539,7 +561,9 @@ mod tests {
         let error = |change: &dyn Fn(&mut FrontMap, &mut SpaceTime)| {
             let (mut map, mut space_time) = (map(2, 3), space_time(2, 4));
             change(&mut map, &mut space_time);
-            front(&map, &space_time).unwrap_err().to_string()
+            front(&map, &space_time, PictureSize::default())
+                .unwrap_err()
+                .to_string()
         };
         assert_eq!(
             error(&|map, _| map.nx = 0),

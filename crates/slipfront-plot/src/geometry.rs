@@ -2,7 +2,7 @@
 
 pub(crate) type CanvasPoint = (f64, f64);
 
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Area {
     pub(crate) x: f64,
     pub(crate) y: f64,

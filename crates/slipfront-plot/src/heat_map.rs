@@ -9,7 +9,8 @@ use crate::geometry::{Align, Area};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::series::cross;
-use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_TICK, WHITE};
+use crate::size::PictureSize;
+use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_TEXT, WHITE};
 use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
 
@@ -56,7 +57,7 @@ pub struct HeatAxis {
     pub log: bool,
 }
 
-/// Draws a map, as wide as a journal's column (85 mm).
+/// Draws a map, usually as wide as a journal's column (85 mm).
 ///
 /// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values
 /// and half the median interval beyond them, so that values which differ by less look alike. A map of up to 8
@@ -65,9 +66,9 @@ pub struct HeatAxis {
 ///
 /// # Errors
 ///
-/// An axis without values, with a value that is not a number, or with a value twice; or another number of
-/// values than cells.
-pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
+/// An axis without values, with a value that is not a number, or with a value twice; another number of values
+/// than cells; a size that leaves no room for the cells.
+pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureError> {
     let (mut x, mut y) = (HeatCells::of(&map.x)?, HeatCells::of(&map.y)?);
     let values = in_order([&x, &y], &map.values)?;
     let half_widths = if map.half_widths.is_empty() {
@@ -85,36 +86,42 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let with_half = values.iter().flat_map(|value| [value - half, value + half]);
     let ranges = [range(with_half), range(half_widths.iter().copied())].map(<[f64; 2]>::from);
 
-    y.axis = y.axis.placed(TOP + HEIGHT, TOP);
-    let left = left_room(&y.ticks(Direction::Y).0);
+    let whole = size.roomy_width(COLUMN_WIDTH)?;
     let has_intervals = half_widths.iter().any(|half| !half.is_nan());
     let half_width = format!("half width, {}", map.value_title);
-    let bar = |name: &str, range| ColourBar::of(Text::fitted(name, HEIGHT), range, HEIGHT);
-    let bars = [bar(&map.value_title, ranges[0]), bar(&half_width, ranges[1])];
-    let shown = if has_intervals { &bars[..] } else { &bars[..1] };
-    let bar_room = shown.iter().map(ColourBar::room).fold(0.0, f64::max) + MARGIN;
-    let width = (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round();
-    let area = Area::new(left, TOP, width, HEIGHT);
-    x.axis = x.axis.placed(area.x, area.right());
-
+    let below = Note::of(&map.note, 0.0, whole).height;
+    let height_of = |panels: usize| size.panel(HEIGHT, panels as f64 * (TOP + LOWER_ROOM) + below, panels);
     let none = vec![f64::NAN; values.len()];
-    let with_halves = has_intervals.then(|| cell_texts(&x, &y, &values, &half_widths, ranges[0]));
-    let with_halves = with_halves.flatten();
-    let has_second = has_intervals && with_halves.is_none();
-    let texts = with_halves.or_else(|| cell_texts(&x, &y, &values, &none, ranges[0]));
-    let panel = area.bottom() + LOWER_ROOM;
-    let height = if has_second {
-        panel + TOP + HEIGHT + LOWER_ROOM
-    } else {
-        panel
+    let mut panels = 1;
+    let (area, bars, texts) = loop {
+        let height = height_of(panels)?;
+        y.axis = y.axis.placed(TOP + height, TOP);
+        let left = left_room(&y.ticks(Direction::Y).0);
+        let bar = |name: &str, range| ColourBar::of(Text::fitted(name, height), range, height);
+        let bars = [bar(&map.value_title, ranges[0]), bar(&half_width, ranges[1])];
+        let shown = if has_intervals { &bars[..] } else { &bars[..1] };
+        let bar_room = shown.iter().map(ColourBar::room).fold(0.0, f64::max) + MARGIN;
+        let width = (whole - left - GAP - bar_room).max(100.0).round();
+        let area = Area::new(left, TOP, width, height);
+        x.axis = x.axis.placed(area.x, area.right());
+        let texts = cell_texts(&x, &y, &values, &half_widths, ranges[0]);
+        if !has_intervals || texts.is_some() {
+            break (area, bars, texts);
+        }
+        if panels == 2 {
+            break (area, bars, cell_texts(&x, &y, &values, &none, ranges[0]));
+        }
+        // Half widths without room in the cells have a panel of their own.
+        panels = 2;
     };
-    let note = Note::of(&map.note, area.centre().0, COLUMN_WIDTH);
+    let panel = area.bottom() + LOWER_ROOM;
+    let note = Note::of(&map.note, area.centre().0, whole);
 
-    let mut canvas = Canvas::new(COLUMN_WIDTH, height + note.height);
+    let mut canvas = Canvas::sized(whole, panels as f64 * panel + note.height, size);
     let titles = [map.x.title.as_str(), &map.y.title];
     draw_panel(&mut canvas, area, [&x, &y], (&values, &bars[0]), texts, titles);
     draw_crosses(&mut canvas, [&x, &y], &crossed);
-    if has_second {
+    if panels == 2 {
         let area = Area {
             y: panel + TOP,
             ..area
@@ -257,7 +264,7 @@ impl HeatCells {
         let named = |digits: usize| {
             let written: Option<Vec<String>> = self.values.iter().map(|&v| short(v, digits)).collect();
             let written = written.filter(|texts| texts.windows(2).all(|pair| pair[0] != pair[1]))?;
-            let numbers = written.iter().map(|text| Text::number(text, SIZE_TICK));
+            let numbers = written.iter().map(|text| Text::number(text, SIZE_TEXT));
             let pixels = self.values.iter().map(|&value| self.axis.at(value));
             let ticks: Vec<Tick> = pixels.zip(numbers).collect();
             apart(&ticks, direction).then_some(ticks)
@@ -294,7 +301,7 @@ fn short(value: f64, digits: usize) -> Option<String> {
 
 /// Writes below the colour bar the meaning of grey.
 fn draw_blank(canvas: &mut Canvas, bar: Area) {
-    let text = Text::plain("none", SIZE_TICK);
+    let text = Text::plain("none", SIZE_TEXT);
     // Beside the axis' title: a number may reach as far as the bar.
     let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
     let patch = Area {
@@ -349,16 +356,16 @@ fn cell_texts(
         sizes.fold(f64::INFINITY, f64::min)
     };
     let (room_x, room_y) = (smallest(x.edges()) - 12.0, smallest(y.edges()) - 12.0);
-    let height = Text::plain("0", SIZE_TICK).height();
+    let height = Text::plain("0", SIZE_TEXT).height();
     // Two digits or so of the range, or one less.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
     let lines = |value: f64, half: f64, decimals| {
         let mut lines = Vec::new();
         if !value.is_nan() {
-            lines.push(Text::plain(&number(value, decimals), SIZE_TICK));
+            lines.push(Text::plain(&number(value, decimals), SIZE_TEXT));
         }
         if !half.is_nan() {
-            lines.push(Text::plain(&plus_minus(half, decimals), SIZE_TICK));
+            lines.push(Text::plain(&plus_minus(half, decimals), SIZE_TEXT));
         }
         lines
     };
@@ -460,13 +467,26 @@ mod tests {
         turned.x.values.reverse();
         turned.y.values.reverse();
         turned.values.reverse();
-        assert_eq!(heat_map(&map).unwrap(), heat_map(&turned).unwrap());
+        assert_eq!(
+            heat_map(&map, PictureSize::default()).unwrap(),
+            heat_map(&turned, PictureSize::default()).unwrap()
+        );
     }
 
     #[test]
     fn few_cells_have_numbers_and_many_have_none() {
-        assert!(heat_map(&map(6, 6)).unwrap().svg.contains(">17.5</text>"));
-        assert!(!heat_map(&map(6, 9)).unwrap().svg.contains(">17.5</text>"));
+        assert!(
+            heat_map(&map(6, 6), PictureSize::default())
+                .unwrap()
+                .svg
+                .contains(">17.5</text>")
+        );
+        assert!(
+            !heat_map(&map(6, 9), PictureSize::default())
+                .unwrap()
+                .svg
+                .contains(">17.5</text>")
+        );
     }
 
     /// Half widths stand below the numbers where there is room, else on a map of their own; nowhere if there
@@ -476,7 +496,7 @@ mod tests {
         let svg = |columns: usize, half: f64| {
             let mut map = map(columns, 3);
             map.half_widths = vec![half; 3 * columns];
-            heat_map(&map).unwrap().svg
+            heat_map(&map, PictureSize::default()).unwrap().svg
         };
         let title = ">half width, value</text>";
         let few = svg(3, 0.25);
@@ -491,7 +511,7 @@ mod tests {
         assert!(!none.contains('\u{b1}') && !none.contains(title) && !none.contains("NaN"));
         let mut short = map(2, 2);
         short.half_widths = vec![1.0; 3];
-        let said = heat_map(&short).unwrap_err().to_string();
+        let said = heat_map(&short, PictureSize::default()).unwrap_err().to_string();
         assert_eq!(said, "a map of 2 x 2 cells has 3 values");
     }
 
@@ -501,7 +521,10 @@ mod tests {
         let reaches_below = |half: f64| {
             let mut map = map(9, 2);
             map.half_widths = vec![half; 18];
-            heat_map(&map).unwrap().svg.contains(">\u{2212}20</text>")
+            heat_map(&map, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains(">\u{2212}20</text>")
         };
         assert!(!reaches_below(f64::NAN) && !reaches_below(0.1) && reaches_below(20.0));
         assert_eq!(median(&[3.0, f64::NAN, 1.0, 2.0]), 2.0);
@@ -511,23 +534,43 @@ mod tests {
     #[test]
     fn grey_is_explained_where_there_is_any() {
         let mut map = map(6, 6);
-        assert!(!heat_map(&map).unwrap().svg.contains(">none</text>"));
+        assert!(
+            !heat_map(&map, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains(">none</text>")
+        );
         map.values[7] = f64::NAN;
-        assert!(heat_map(&map).unwrap().svg.contains(">none</text>"));
+        assert!(
+            heat_map(&map, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains(">none</text>")
+        );
         map.values.fill(f64::INFINITY);
-        assert!(!heat_map(&map).unwrap().svg.contains("NaN"));
+        assert!(
+            !heat_map(&map, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains("NaN")
+        );
     }
 
     #[test]
     fn odd_maps_are_drawn_all_the_same() {
         for (columns, rows) in [(1, 1), (1, 40), (40, 1), (300, 700)] {
-            heat_map(&map(columns, rows)).unwrap();
+            heat_map(&map(columns, rows), PictureSize::default()).unwrap();
         }
         let mut odd = map(2, 2);
         odd.x.values = vec![1e-9, 12345.0];
         odd.y.values = vec![5e-324, 9e99];
         odd.values = vec![-9e99, 9e99, 5e-324, 0.0];
-        assert!(!heat_map(&odd).unwrap().svg.contains("NaN"));
+        assert!(
+            !heat_map(&odd, PictureSize::default())
+                .unwrap()
+                .svg
+                .contains("NaN")
+        );
     }
 
     #[test]
@@ -547,7 +590,7 @@ mod tests {
         let error = |change: &dyn Fn(&mut HeatMap)| {
             let mut map = map(2, 3);
             change(&mut map);
-            heat_map(&map).unwrap_err().to_string()
+            heat_map(&map, PictureSize::default()).unwrap_err().to_string()
         };
         let reasons = [
             error(&|m| m.x.values.clear()),

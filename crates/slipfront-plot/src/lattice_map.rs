@@ -6,9 +6,11 @@ use crate::color_image::{Image, level};
 use crate::geometry::{Align, Area, CanvasPoint};
 use crate::mask_outline::outline;
 use crate::picture::PictureError;
-use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, WHITE, WIDTH_MARK};
+use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_TEXT, WHITE, WIDTH_MARK};
 use crate::text::Text;
 
+/// Least width of maps beside each other in a picture whose width is asked for, 21 mm.
+pub(crate) const MIN_MAP: f64 = 250.0;
 /// Least thickness of a strip over its length.
 pub(crate) const MIN_RATIO: f64 = 1.0 / 6.0;
 /// Width of a stripe over the width of the outline that parts it.
@@ -17,8 +19,8 @@ const STRIPE_WIDTHS: f64 = 12.0;
 const NOTE_ABOVE: f64 = 22.0;
 const LABEL_ABOVE: f64 = 62.0;
 /// Room for both lines over a map, and for the second one.
-pub(crate) const TITLE_ROOM: f64 = LABEL_ABOVE + SIZE_LABEL as f64;
-pub(crate) const NOTE_ROOM: f64 = NOTE_ABOVE + SIZE_TICK as f64;
+pub(crate) const TITLE_ROOM: f64 = LABEL_ABOVE + SIZE_TEXT as f64;
+pub(crate) const NOTE_ROOM: f64 = NOTE_ABOVE + SIZE_TEXT as f64;
 
 /// The number of blocks, if a lattice has any and they can be counted.
 pub(crate) fn block_count(nx: usize, ny: usize) -> Result<usize, PictureError> {

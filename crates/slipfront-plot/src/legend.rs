@@ -4,7 +4,7 @@ use crate::canvas::Canvas;
 use crate::geometry::{Align, Area, CanvasPoint};
 use crate::series::marker;
 use crate::short_names::fitted_names;
-use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, SIZE_TICK, bar_colour, curve_style};
+use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, SIZE_TEXT, bar_colour, curve_style};
 use crate::text::Text;
 
 /// The names of several curves or bars, and before them the quantity of which they are values.
@@ -50,7 +50,7 @@ impl Legend {
         if names.is_empty() {
             return Self::default();
         }
-        let title = Text::shortened(title, SIZE_TICK, right - left);
+        let title = Text::shortened(title, SIZE_TEXT, right - left);
         let title_x = left;
         let (left, first) = match title.width() {
             0.0 => (left, 0),
@@ -59,7 +59,7 @@ impl Legend {
         };
         let room = right - left - SAMPLE_WIDTH - NAME_GAP;
         let whole: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
-        let texts = fitted_names(&whole, SIZE_TICK, room);
+        let texts = fitted_names(&whole, SIZE_TEXT, room);
         // Equal columns, so that names stand under each other.
         let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + SAMPLE_WIDTH + NAME_GAP + COLUMN_GAP;
         let columns = ((right - left + COLUMN_GAP) / widest).floor().max(1.0) as usize;

@@ -2,9 +2,9 @@
 //! the spread of slip. Pictures of a parametric study: response curves, heat maps, bars, all with their
 //! confidence intervals.
 //!
-//! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
-//! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the
-//! arguments only: no date, no random identifier.
+//! Every picture is drawn once, on a canvas, and comes out as SVG, PNG and PDF of the same physical size:
+//! unless another is asked for, a journal's column for curves, heat maps and bars, its text width for maps of
+//! stress. Bytes depend on the arguments only: no date, no random identifier.
 
 mod axis;
 mod bars;
@@ -28,11 +28,14 @@ mod heat_map;
 mod label_placement;
 mod lattice_map;
 mod legend;
+mod look;
 #[expect(unreachable_pub, reason = "a link to a file of slipfront, which exports it")]
 mod mask_outline;
 mod movie;
 mod movie_colours;
 mod note;
+mod pdf;
+mod pdf_font;
 mod picture;
 mod png_file;
 mod polar;
@@ -49,15 +52,17 @@ mod style;
 mod svg;
 mod text;
 mod ticks;
+mod truetype;
 
 pub use bars::{Bar, BarChart, BarGroup, bars};
 pub use cell_means::CellMeans;
 pub use field_maps::{FieldMap, FieldMaps, field_maps};
-pub use friction::{friction, friction_of_size};
+pub use friction::friction;
 pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, KineticLine};
 pub use front::{FrontMap, SpaceTime, front, kymograph};
 pub use gif_file::MovieGif;
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use look::{PictureFormat, PictureLook};
 pub use movie::{Movie, MovieFrame, MoviePictures, MovieSize};
 pub use picture::{Picture, PictureError};
 pub use polar::{Polar, polar};

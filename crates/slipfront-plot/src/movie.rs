@@ -18,7 +18,7 @@ use crate::picture::{PictureError, check_columns};
 use crate::raster::Pixels;
 use crate::series::segments;
 use crate::style::{
-    BLACK, CURVES, GREY, MARGIN, RADIUS_MARKER, SIZE_LABEL, SIZE_TICK, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
+    BLACK, CURVES, GREY, MARGIN, RADIUS_MARKER, SIZE_TEXT, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
 };
 use crate::text::{Text, number};
 use crate::ticks::{Direction, MAX_STEPS};
@@ -251,17 +251,17 @@ impl<'a> MoviePictures<'a> {
             letters => format!("{letters}: {time}"),
         };
         let friction = if frame.mu_star.is_finite() {
-            Text::plain(&format!("\u{3bc}* = {}", number(frame.mu_star, 3)), SIZE_TICK)
+            Text::plain(&format!("\u{3bc}* = {}", number(frame.mu_star, 3)), SIZE_TEXT)
         } else {
             Text::default()
         };
-        draw_titles(canvas, room, &Text::plain(&label, SIZE_LABEL), &friction);
+        draw_titles(canvas, room, &Text::plain(&label, SIZE_TEXT), &friction);
     }
 
     fn draw_bar(&self, canvas: &mut Canvas) {
         let (movie, bar) = (self.movie, self.layout.bar);
         colour_bar(canvas, bar, movie.range);
-        let title = Text::math(&movie.title, SIZE_LABEL);
+        let title = Text::math(&movie.title, SIZE_TEXT);
         let room = bar_room(movie.range, bar.height);
         let start = (bar.x + room - title.width()).min(bar.x);
         canvas.text(&title, (start, bar.y - 22.0), Align::Start, BLACK);
@@ -274,7 +274,7 @@ impl<'a> MoviePictures<'a> {
     fn draw_curve(&self, canvas: &mut Canvas) {
         let (movie, curve) = (self.movie, &self.movie.curve);
         let area = self.curve_area();
-        let title = Text::math(&movie.axes.friction, SIZE_LABEL);
+        let title = Text::math(&movie.axes.friction, SIZE_TEXT);
         left_side(
             canvas,
             area,
@@ -282,7 +282,7 @@ impl<'a> MoviePictures<'a> {
             &self.mu.ticks(Direction::Y, MAX_STEPS),
             &title,
         );
-        let title = Text::math(&movie.axes.x, SIZE_LABEL);
+        let title = Text::math(&movie.axes.x, SIZE_TEXT);
         lower_side(canvas, area, &self.x.ticks(Direction::X, MAX_STEPS), &title);
         let mut placer = Placer::new(area);
         for segment in segments(&curve.x, &curve.friction, &self.x, &self.mu) {
@@ -305,7 +305,7 @@ impl<'a> MoviePictures<'a> {
         let dots: Vec<CanvasPoint> = marks.iter().map(|(dot, _)| *dot).collect();
         for (dot, letters) in marks {
             canvas.dot(dot, RADIUS_MARKER, GREY);
-            let letter = Text::plain(&letters.join(", "), SIZE_TICK);
+            let letter = Text::plain(&letters.join(", "), SIZE_TEXT);
             if let Some(place) = placer.place(around(dot, (letter.width(), letter.height()), &dots)) {
                 if let Some([from, to]) = place.leader {
                     canvas.line(from, to, WIDTH_LEADER, GREY);

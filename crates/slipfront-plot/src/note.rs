@@ -2,7 +2,7 @@
 
 use crate::canvas::Canvas;
 use crate::geometry::Align;
-use crate::style::{GREY, MARGIN, SIZE_TICK};
+use crate::style::{GREY, MARGIN, SIZE_TEXT};
 use crate::text::Text;
 
 /// A note, centred below the panel.
@@ -16,10 +16,10 @@ pub(crate) struct Note {
 impl Note {
     /// A note around `middle` in a picture of this width; an empty one takes no room.
     pub(crate) fn of(text: &str, middle: f64, width: f64) -> Self {
-        let text = Text::shortened(text, SIZE_TICK, width - 2.0 * MARGIN);
+        let text = Text::shortened(text, SIZE_TEXT, width - 2.0 * MARGIN);
         let half = 0.5 * text.width();
         let height = if half > 0.0 {
-            f64::from(SIZE_TICK) + 8.0
+            f64::from(SIZE_TEXT) + 8.0
         } else {
             0.0
         };

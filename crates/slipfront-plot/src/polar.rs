@@ -11,15 +11,16 @@ use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::response::{Response, check_curves};
 use crate::series::{cross, interval, marker};
+use crate::size::PictureSize;
 use crate::style::{
-    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
+    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, Rgb, SIZE_TEXT, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
     curve_style,
 };
 use crate::text::{Text, number};
 use crate::ticks::{Direction, MAX_STEPS, round_values};
 
-/// Radius of the largest circle.
-const RADIUS: f64 = 380.0;
+/// Room beside the largest circle, on either side.
+const BESIDE: f64 = 122.0;
 /// Distance between that circle and the numbers of the directions.
 const GAP: f64 = 12.0;
 /// Distance from the largest circle to the axis of the radius below it.
@@ -48,14 +49,14 @@ pub struct Polar {
     pub curves: Vec<Response>,
 }
 
-/// Draws means around a centre with their confidence bands, as wide as a journal's column (85 mm). The centre
-/// is zero, unless all values are alike, and the note says what it is then. A curve whose directions go all
+/// Draws means around a centre with their confidence bands, usually as wide as a journal's column (85 mm).
+/// The centre is zero, unless all values are alike, and the note says what it is then. A curve whose directions go all
 /// the way round is closed, and has a gap where a value is missing or below zero.
 ///
 /// # Errors
 ///
-/// No curve, or a curve whose columns differ in length.
-pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
+/// No curve, a curve whose columns differ in length, or a size that leaves no room for the curves.
+pub fn polar(polar: &Polar, size: PictureSize) -> Result<Picture, PictureError> {
     check_curves(&polar.curves, "directions")?;
     let rounds: Vec<Round> = polar.curves.iter().map(Round::of).collect();
     let tops = rounds.iter().flat_map(|round| round.parts.iter().flatten());
@@ -67,31 +68,37 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
         .fold(largest, f64::min);
     let start = centre_value(smallest, largest);
 
-    let centre_x = (0.5 * COLUMN_WIDTH).round();
-    let [left, right] = [centre_x - RADIUS, centre_x + RADIUS];
+    let width = size.roomy_width(COLUMN_WIDTH)?;
+    let centre_x = (0.5 * width).round();
+    let widest = (0.5 * width - BESIDE).round();
+    let [left, right] = [centre_x - widest, centre_x + widest];
     let several = rounds.len() > 1;
     let named = polar.curves.iter().filter(|_| several);
     let names: Vec<_> = named
         .map(|curve| (curve.label.as_str(), LegendSample::Marker))
         .collect();
     let legend = Legend::of(&polar.legend_title, &names, left, right);
-    let numbers = f64::from(SIZE_TICK) + GAP + MARGIN;
-    let centre = (centre_x, legend.height + numbers + RADIUS);
+    let numbers = f64::from(SIZE_TEXT) + GAP + MARGIN;
+    let note = Note::of(&with_centre(&polar.note, start), centre_x, width);
+    let others = legend.height + numbers + BELOW + LOWER_ROOM + note.height;
+    let room = size.panel(2.0 * widest, others, 1)?;
+    let reach = widest.min(0.5 * room);
+    let centre = (centre_x, legend.height + numbers + 0.5 * room);
     // The axis of the radius, from the centre to the right, below the circles.
-    let side = Area::new(centre.0, centre.1 + RADIUS + BELOW, RADIUS, 0.0);
-    let radius = DrawnAxis::linear(start, largest + 0.05 * (largest - start)).placed(0.0, RADIUS);
-    let note = Note::of(&with_centre(&polar.note, start), centre.0, COLUMN_WIDTH);
+    let side = Area::new(centre.0, centre.1 + reach + BELOW, reach, 0.0);
+    let radius = DrawnAxis::linear(start, largest + 0.05 * (largest - start)).placed(0.0, reach);
 
-    let mut canvas = Canvas::new(COLUMN_WIDTH, side.y + LOWER_ROOM + note.height);
-    let ring = Ring { centre, radius };
+    let mut canvas = Canvas::sized(width, others + room, size);
+    let ring = Ring {
+        centre,
+        radius,
+        reach,
+    };
     ring.draw_grid(&mut canvas);
     legend.draw(&mut canvas);
     canvas.line((side.x, side.y), (side.right(), side.y), WIDTH_FRAME, BLACK);
     let ticks = radius.placed(side.x, side.right()).ticks(Direction::X, MAX_STEPS);
-    let title = Text::fitted(
-        &polar.value_title,
-        2.0 * (COLUMN_WIDTH - MARGIN - side.centre().0),
-    );
+    let title = Text::fitted(&polar.value_title, 2.0 * (width - MARGIN - side.centre().0));
     lower_side(&mut canvas, side, &ticks, &title);
     for (index, round) in rounds.iter().enumerate() {
         ring.draw_band(&mut canvas, round, curve_style(index).colour);
@@ -205,6 +212,8 @@ impl Round {
 struct Ring {
     centre: CanvasPoint,
     radius: DrawnAxis,
+    /// Radius of the largest circle.
+    reach: f64,
 }
 
 impl Ring {
@@ -227,13 +236,13 @@ impl Ring {
                 .collect()
         };
         for (radius, _) in self.radius.ticks(Direction::X, MAX_STEPS) {
-            if radius > 1.0 && radius < RADIUS - 1.0 {
+            if radius > 1.0 && radius < self.reach - 1.0 {
                 canvas.polyline(circle(radius), WIDTH_LEADER, BLANK);
             }
         }
         for degrees in (0..360).step_by(SPOKES) {
             let angle = degrees as f64;
-            canvas.line(self.centre, self.around(angle, RADIUS), WIDTH_LEADER, BLANK);
+            canvas.line(self.centre, self.around(angle, self.reach), WIDTH_LEADER, BLANK);
             if degrees % NUMBERED != 0 {
                 continue;
             }
@@ -242,8 +251,8 @@ impl Ring {
                 90 => "y ",
                 _ => "",
             };
-            let text = Text::plain(&format!("{axis}{degrees}\u{b0}"), SIZE_TICK);
-            let (x, y) = self.around(angle, RADIUS + GAP);
+            let text = Text::plain(&format!("{axis}{degrees}\u{b0}"), SIZE_TEXT);
+            let (x, y) = self.around(angle, self.reach + GAP);
             let (sine, cosine) = libm::sincos(angle.to_radians());
             // The side of the text that is nearest to the circle lies there.
             let align = match cosine {
@@ -254,7 +263,7 @@ impl Ring {
             let baseline = y + 0.5 * text.height() * (1.0 - sine);
             canvas.text(&text, (x, baseline), align, BLACK);
         }
-        canvas.polyline(circle(RADIUS), WIDTH_FRAME, BLACK);
+        canvas.polyline(circle(self.reach), WIDTH_FRAME, BLACK);
     }
 
     fn draw_band(&self, canvas: &mut Canvas, round: &Round, colour: Rgb) {
@@ -295,7 +304,7 @@ impl Ring {
                 if drawable(mean) && mean >= 0.0 {
                     self.at(degrees, mean)
                 } else {
-                    self.around(degrees, RADIUS)
+                    self.around(degrees, self.reach)
                 },
             );
         }
@@ -319,11 +328,14 @@ mod tests {
     }
 
     fn svg(curves: &[Response]) -> String {
-        let picture = polar(&Polar {
-            value_title: "friction".to_string(),
-            curves: curves.to_vec(),
-            ..Polar::default()
-        });
+        let picture = polar(
+            &Polar {
+                value_title: "friction".to_string(),
+                curves: curves.to_vec(),
+                ..Polar::default()
+            },
+            PictureSize::default(),
+        );
         let svg = picture.unwrap().svg;
         assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curves:?}");
         svg
@@ -364,6 +376,7 @@ mod tests {
         let ring = Ring {
             centre: (100.0, 100.0),
             radius: DrawnAxis::linear(0.0, 2.0).placed(0.0, 50.0),
+            reach: 50.0,
         };
         for (degrees, value, (x, y)) in [
             (0.0, 1.0, (125.0, 100.0)),
@@ -449,8 +462,10 @@ mod tests {
             curves,
             ..Polar::default()
         };
-        let said = polar(&of(vec![bad])).unwrap_err().to_string();
+        let said = polar(&of(vec![bad]), PictureSize::default())
+            .unwrap_err()
+            .to_string();
         assert_eq!(said, "curve `a` has 1 directions but 0 values of its low");
-        assert!(polar(&of(Vec::new())).is_err());
+        assert!(polar(&of(Vec::new()), PictureSize::default()).is_err());
     }
 }

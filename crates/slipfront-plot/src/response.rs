@@ -10,6 +10,7 @@ use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::{cross, error_bar, interval, marker, segments};
+use crate::size::PictureSize;
 use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_LEADER, curve_style};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
@@ -75,15 +76,15 @@ pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result
     })
 }
 
-/// Draws means with their confidence bands, as wide as a journal's column (85 mm).
+/// Draws means with their confidence bands, usually as wide as a journal's column (85 mm).
 ///
 /// The y axis starts where the values do, not at zero. A point without neighbours has an error bar in place
 /// of a band. Several curves have a legend above, and markers of different shapes.
 ///
 /// # Errors
 ///
-/// No curve, or a curve whose columns differ in length.
-pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
+/// No curve, a curve whose columns differ in length, or a size that leaves no room for the curves.
+pub fn response(responses: &Responses, size: PictureSize) -> Result<Picture, PictureError> {
     check_curves(&responses.curves, "points")?;
     let curves: Vec<Response> = responses.curves.iter().map(sorted).collect();
     let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
@@ -91,10 +92,11 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let ys: Vec<f64> = curves.iter().flat_map(values).collect();
     let y = DrawnAxis::around(&ys, responses.log_y, 0.06);
 
+    let width = size.roomy_width(COLUMN_WIDTH)?;
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
-    let right = COLUMN_WIDTH.round() - RIGHT;
+    let right = (width - RIGHT).round();
     let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
-    let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
+    let right = right_end(&x_ticks, left, right, width);
     let sample = |curve: &Response| {
         if curve.line {
             LegendSample::Line
@@ -105,12 +107,13 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let named = curves.iter().filter(|_| curves.len() > 1);
     let names: Vec<_> = named.map(|curve| (curve.label.as_str(), sample(curve))).collect();
     let legend = Legend::of(&responses.legend_title, &names, left, right);
-    let area = Area::new(left, MARGIN + legend.height, right - left, HEIGHT);
+    let note = Note::of(&responses.note, 0.5 * (left + right), width);
+    let top = MARGIN + legend.height;
+    let height = size.panel(HEIGHT, top + LOWER_ROOM + note.height, 1)?;
+    let area = Area::new(left, top, right - left, height);
     let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
 
-    let note = Note::of(&responses.note, area.centre().0, COLUMN_WIDTH);
-
-    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM + note.height);
+    let mut canvas = Canvas::sized(width, area.bottom() + LOWER_ROOM + note.height, size);
     draw_sides(&mut canvas, area, &x, &y, responses);
     note.draw(&mut canvas);
     legend.draw(&mut canvas);
@@ -264,7 +267,9 @@ mod tests {
     }
 
     fn svg(curves: &[Response]) -> String {
-        let svg = response(&responses(curves, false)).unwrap().svg;
+        let svg = response(&responses(curves, false), PictureSize::default())
+            .unwrap()
+            .svg;
         assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curves:?}");
         svg
     }
@@ -278,7 +283,10 @@ mod tests {
     fn the_same_curves_give_the_same_bytes_in_any_order_of_points() {
         let there = responses(&[curve("a", &[(1.0, 0.3), (2.0, 0.5), (4.0, 0.1)])], true);
         let back = responses(&[curve("a", &[(4.0, 0.1), (2.0, 0.5), (1.0, 0.3)])], true);
-        assert_eq!(response(&there).unwrap(), response(&back).unwrap());
+        assert_eq!(
+            response(&there, PictureSize::default()).unwrap(),
+            response(&back, PictureSize::default()).unwrap()
+        );
     }
 
     #[test]
@@ -300,7 +308,8 @@ mod tests {
             note: "95 % interval of the mean, n = 5".to_string(),
             ..plain.clone()
         };
-        let [plain, noted] = [plain, noted].map(|responses| response(&responses).unwrap().svg);
+        let [plain, noted] =
+            [plain, noted].map(|responses| response(&responses, PictureSize::default()).unwrap().svg);
         assert!(noted.contains(">95 % interval of the mean, n = 5</text>"));
         let texts = |svg: &str| svg.lines().filter(|line| line.contains("<text")).count();
         assert_eq!(texts(&noted), texts(&plain) + 1);
@@ -341,7 +350,7 @@ mod tests {
         );
         let mut both = responses(&[formula], true);
         both.log_y = true;
-        let logarithmic = response(&both).unwrap().svg;
+        let logarithmic = response(&both, PictureSize::default()).unwrap().svg;
         assert!(logarithmic.contains(">100</text>") && !logarithmic.contains("NaN"));
     }
 
@@ -381,7 +390,11 @@ mod tests {
         ];
         for curve in &odd {
             svg(std::slice::from_ref(curve));
-            response(&responses(std::slice::from_ref(curve), true)).unwrap();
+            response(
+                &responses(std::slice::from_ref(curve), true),
+                PictureSize::default(),
+            )
+            .unwrap();
         }
         svg(&odd);
     }
@@ -390,9 +403,13 @@ mod tests {
     fn columns_of_different_length_are_refused() {
         let mut bad = curve("a", &[(0.0, 0.0), (1.0, 1.0)]);
         bad.high.pop();
-        let error = response(&responses(&[bad], false)).unwrap_err().to_string();
+        let error = response(&responses(&[bad], false), PictureSize::default())
+            .unwrap_err()
+            .to_string();
         assert_eq!(error, "curve `a` has 2 points but 1 values of its high");
-        let error = response(&responses(&[], false)).unwrap_err().to_string();
+        let error = response(&responses(&[], false), PictureSize::default())
+            .unwrap_err()
+            .to_string();
         assert_eq!(error, "there is no curve to draw");
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::canvas::Canvas;
 use crate::geometry::Align;
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK};
+use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TEXT};
 use crate::text::Text;
 
 const COLUMNS: usize = 3;
@@ -34,7 +34,7 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
         return Err(PictureError::Nothing("outline"));
     }
     let room = ((COLUMN_WIDTH - 2.0 * MARGIN + GAP) / COLUMNS as f64 - GAP).round();
-    let label_room = 1.9 * f64::from(SIZE_TICK);
+    let label_room = 1.9 * f64::from(SIZE_TEXT);
     let scale = 0.47 * room / reach;
     // A row is no higher than its highest outline.
     let rows: Vec<f64> = shapes
@@ -56,8 +56,8 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
                 .iter()
                 .map(|[px, py]| (x + scale * px, y - scale * py));
             canvas.edged_area(points.collect(), CURVES[0], 0.25, CURVES[0]);
-            let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);
-            let baseline = top + height + f64::from(SIZE_TICK);
+            let label = Text::shortened(&shape.label, SIZE_TEXT, room + GAP);
+            let baseline = top + height + f64::from(SIZE_TEXT);
             canvas.text(&label, (x, baseline), Align::Middle, BLACK);
         }
         top += height + label_room;

@@ -1,24 +1,26 @@
 //! Size of a picture and of its letters, as a user asks for them.
 
 use crate::picture::PictureError;
-use crate::style::MM;
+use crate::style::{DPI, MM, SIZE_TEXT};
 
-/// Size of labels unless another is asked for, pt.
-const LABEL_PT: f64 = 8.0;
-/// Least width of a picture, and least height below its legend, in units of letters of the usual size: less
-/// leaves no room for a curve.
+/// Size of all text unless another is asked for, pt.
+const TEXT_PT: f64 = SIZE_TEXT as f64 / DPI * 72.0;
+/// Least width of a picture, and least heights of one panel and of two with all below them, in units of
+/// letters of the usual size: less leaves no room for a curve.
 const MIN_WIDTH: f64 = 500.0;
-const MIN_HEIGHT: f64 = 330.0;
+const MIN_PANEL: f64 = 160.0;
+const MIN_PANELS: f64 = 330.0;
 
-/// Size of a picture and of its letters; what is not given is as usual. Lines, marks and numbers grow and
-/// shrink with the letters.
+/// Size of a picture and of its letters; what is not given is as usual. Lines and marks grow and shrink with
+/// the letters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureSize {
     /// Width, mm.
     pub width_mm: Option<f64>,
     /// Height, mm.
     pub height_mm: Option<f64>,
-    /// Size of the labels, pt.
+    /// Size of all text, pt; of titles that have no room in it, seven eighths of that, and of subscripts
+    /// 0.72 of it.
     pub font_pt: Option<f64>,
 }
 
@@ -28,7 +30,7 @@ impl PictureSize {
 
     /// Factor of letters, lines and marks.
     pub(crate) fn scale(self) -> f64 {
-        self.font_pt.map_or(1.0, |pt| pt / LABEL_PT)
+        self.font_pt.map_or(1.0, |pt| pt / TEXT_PT)
     }
 
     /// Width of the canvas, before it is scaled, of a picture that is usually this wide.
@@ -41,32 +43,70 @@ impl PictureSize {
         Some(self.height_mm? * MM / self.scale())
     }
 
-    /// Refuses a width in which letters leave no room for curves.
+    /// Width of a picture that is usually this wide, before it is scaled.
+    ///
+    /// # Errors
+    /// [`PictureError::TooSmall`] for a width in which letters leave no room for curves, with the least width
+    /// for these letters.
+    pub(crate) fn roomy_width(self, usual: f64) -> Result<f64, PictureError> {
+        self.wide_enough(usual, MIN_WIDTH)
+    }
+
+    /// Width of a picture that is usually this wide and is at least so wide, before it is scaled.
     ///
     /// # Errors
     /// [`PictureError::TooSmall`], with the least width for these letters.
-    pub(crate) fn check_width(self, usual: f64) -> Result<(), PictureError> {
-        self.expect("width", self.width(usual), MIN_WIDTH)
+    pub(crate) fn wide_enough(self, usual: f64, least: f64) -> Result<f64, PictureError> {
+        let width = self.width(usual);
+        self.expect("width", width, least)?;
+        Ok(width)
     }
 
-    /// Refuses a height in which a legend of height `above` leaves no room for curves.
+    /// Height of each of `panels` that usually are this high, beside what takes `others` of the height.
+    ///
+    /// # Errors
+    /// [`PictureError::TooSmall`] for a height that leaves no room for curves, with the least height for
+    /// these letters.
+    pub(crate) fn panel(self, usual: f64, others: f64, panels: usize) -> Result<f64, PictureError> {
+        let Some(height) = self.height() else {
+            return Ok(usual);
+        };
+        let panels = panels as f64;
+        self.expect("height", height, others + panels * MIN_PANEL)?;
+        Ok((height - others) / panels)
+    }
+
+    /// Refuses a height in which a legend of height `above` leaves no room for curves in two panels.
     ///
     /// # Errors
     /// [`PictureError::TooSmall`], with the least height for these letters.
     pub(crate) fn check_height(self, above: f64) -> Result<(), PictureError> {
         let height = self.height().unwrap_or(f64::INFINITY);
-        self.expect("height", height, above + MIN_HEIGHT)
+        self.expect("height", height, above + MIN_PANELS)
+    }
+
+    /// Refuses a height of a picture of maps, which have the shape of the slider.
+    ///
+    /// # Errors
+    /// [`PictureError::HeightOfMaps`] if a height is given.
+    pub(crate) fn expect_no_height(self) -> Result<(), PictureError> {
+        match self.height_mm {
+            None => Ok(()),
+            Some(_) => Err(PictureError::HeightOfMaps),
+        }
     }
 
     fn expect(self, side: &'static str, found: f64, least: f64) -> Result<(), PictureError> {
-        if found >= least {
+        // Rounding of a height that is as others leave it.
+        if found >= least - 1e-6 {
             return Ok(());
         }
+        let mm = |pixels: f64| pixels * self.scale() / MM;
         Err(PictureError::TooSmall {
             side,
-            mm: (found * self.scale() / MM).round(),
-            least_mm: (least * self.scale() / MM).ceil(),
-            font_pt: self.font_pt.unwrap_or(LABEL_PT),
+            mm: mm(found).round(),
+            least_mm: mm(least).ceil(),
+            font_pt: self.font_pt.unwrap_or(TEXT_PT.round()),
         })
     }
 }

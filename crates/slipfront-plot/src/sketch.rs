@@ -6,7 +6,7 @@ use crate::canvas::Canvas;
 use crate::geometry::{Align, CanvasPoint};
 use crate::picture::{Picture, PictureError};
 use crate::style::{
-    BLACK, BLANK, COLUMN_WIDTH, CURVES, GREY, MARGIN, SIZE_LABEL, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK,
+    BLACK, BLANK, COLUMN_WIDTH, CURVES, GREY, MARGIN, SIZE_TEXT, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK,
 };
 use crate::text::Text;
 
@@ -64,7 +64,7 @@ pub fn sketch(sketch: &Sketch) -> Result<Picture, PictureError> {
         return Err(PictureError::Nothing("line"));
     }
     // Names stand on their points and may reach half of their width beyond the outermost line.
-    let edge = MARGIN + f64::from(SIZE_LABEL);
+    let edge = MARGIN + f64::from(SIZE_TEXT);
     let scale = (COLUMN_WIDTH - 2.0 * edge) / (right - left);
     let place = |&[x, y]: &[f64; 2]| (edge + scale * (x - left), edge + scale * (top - y));
     let mut canvas = Canvas::new(COLUMN_WIDTH, 2.0 * edge + scale * (top - bottom));
@@ -76,7 +76,7 @@ pub fn sketch(sketch: &Sketch) -> Result<Picture, PictureError> {
         );
     }
     for (name, at) in &sketch.labels {
-        let text = Text::math(name, SIZE_LABEL);
+        let text = Text::math(name, SIZE_TEXT);
         let (x, y) = place(at);
         canvas.text(&text, (x, y + 0.5 * text.height()), Align::Middle, BLACK);
     }

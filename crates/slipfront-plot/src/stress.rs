@@ -7,11 +7,12 @@ use crate::color_bar::{ABOVE, ColourBar};
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
 use crate::geometry::Area;
 use crate::lattice_map::{
-    Cells, MIN_RATIO, NOTE_ROOM, TITLE_ROOM, block_count, check_block_size, check_length, draw_titles,
-    unit_of,
+    Cells, MIN_MAP, MIN_RATIO, NOTE_ROOM, TITLE_ROOM, block_count, check_block_size, check_length,
+    draw_titles, unit_of,
 };
 use crate::picture::{Picture, PictureError};
-use crate::style::{MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
+use crate::size::PictureSize;
+use crate::style::{MARGIN, SIZE_TEXT, TEXT_WIDTH};
 use crate::text::{Text, number};
 use crate::ticks::{Direction, Tick};
 
@@ -62,8 +63,8 @@ pub struct StressMaps {
     pub is_torque: bool,
 }
 
-/// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the
-/// textured area outlined. A slider that is long along x has two maps in a row, or one; a slider that is long
+/// Draws the maps, three in a row, at most as wide as a journal's text (175 mm) or as wide as asked for, with
+/// fewer in a row where they would be small, all on one colour scale, the textured area outlined. A slider that is long along x has two maps in a row, or one; a slider that is long
 /// along y has all in one row.
 ///
 /// A slider more than twelve times as long as wide, six times along y, is drawn as if it were that long.
@@ -71,11 +72,12 @@ pub struct StressMaps {
 /// # Errors
 ///
 /// No map, a lattice without blocks, an array of the wrong length, a block size that is not a positive
-/// length.
-pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
+/// length; a height, or a width without room for a map.
+pub fn stress(maps: &StressMaps, size: PictureSize) -> Result<Picture, PictureError> {
     check(maps)?;
-    let layout = StressLayout::of(maps);
-    let mut canvas = Canvas::new(layout.width, layout.height);
+    size.expect_no_height()?;
+    let layout = StressLayout::of(maps, size.roomy_width(TEXT_WIDTH)?, size.width_mm.is_some());
+    let mut canvas = Canvas::sized(layout.width, layout.height, size);
     let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
     for (map, &area) in maps.maps.iter().zip(&layout.areas) {
         cells.draw(&mut canvas, area, &map.values, maps.range);
@@ -83,14 +85,14 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
         let room = layout.pitch_x - 0.5 * GAP;
         let [mut label, note] = titles(map, maps.is_torque, layout.is_wide);
         if label.width() > room {
-            label = Text::shortened(&map.label, SIZE_LABEL, room);
+            label = Text::shortened(&map.label, SIZE_TEXT, room);
         }
         draw_titles(&mut canvas, area, &label, &note);
     }
     layout.draw_axes(&mut canvas);
     let top = layout.areas[0].y;
     layout.bar.draw(&mut canvas, (layout.bar_x, top), top - ABOVE);
-    canvas.finish()
+    canvas.widened(size).finish()
 }
 
 fn check(maps: &StressMaps) -> Result<(), PictureError> {
@@ -134,7 +136,7 @@ impl Side {
         let (unit, factor) = unit_of(length);
         Self {
             axis: DrawnAxis::linear(0.0, length * factor),
-            title: Text::plain(&format!("{name} ({unit})"), SIZE_LABEL),
+            title: Text::plain(&format!("{name} ({unit})"), SIZE_TEXT),
         }
     }
 
@@ -145,7 +147,8 @@ impl Side {
 }
 
 impl StressLayout {
-    fn of(maps: &StressMaps) -> Self {
+    /// Maps in a picture of this width, or narrower ones if it is not asked for.
+    fn of(maps: &StressMaps, width: f64, is_asked: bool) -> Self {
         let [length_x, length_y] = [maps.nx, maps.ny].map(|count| count as f64 * maps.block_size);
         let sides = [Side::of("x", length_x), Side::of("y", length_y)];
         let ratio = length_y / length_x;
@@ -156,13 +159,10 @@ impl StressLayout {
             _ if ratio > LONG => maps.maps.len(),
             _ => 3,
         };
-        // As many in one row as in the others.
-        let rows = maps.maps.len().div_ceil(most);
-        let columns = maps.maps.len().div_ceil(rows);
         let (thinnest, max_width) = if is_wide {
             (MIN_RATIO_WIDE, f64::INFINITY)
         } else {
-            (MIN_RATIO, MAX_WIDTH)
+            (MIN_RATIO, if is_asked { f64::INFINITY } else { MAX_WIDTH })
         };
         let ratio = ratio.clamp(thinnest, 1.0 / MIN_RATIO);
 
@@ -172,8 +172,15 @@ impl StressLayout {
         // The last number below a map stands apart from the first one below the next.
         let numbers = sides[0].ticks(0.0, MAX_WIDTH, Direction::X);
         let gap = numbers.iter().map(|(_, text)| text.width()).fold(GAP, f64::max) + GAP;
-        let room = (TEXT_WIDTH - left - right - GAP + gap) / columns as f64;
-        let map_width = (room - gap).min(max_width).min(MAX_HEIGHT / ratio).round();
+        let room_of = |columns: usize| (width - left - right - GAP + gap) / columns as f64;
+        let width_of = |columns: usize| (room_of(columns) - gap).min(max_width).min(MAX_HEIGHT / ratio);
+        let is_small = |columns: &usize| is_asked && width_of(*columns) < MIN_MAP.min(MAX_HEIGHT / ratio);
+        let most = (1..=most).rev().find(|columns| !is_small(columns)).unwrap_or(1);
+        // As many in one row as in the others.
+        let rows = maps.maps.len().div_ceil(most);
+        let columns = maps.maps.len().div_ceil(rows);
+        let room = room_of(columns);
+        let map_width = width_of(columns).round();
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
         let lines = maps
@@ -246,12 +253,12 @@ fn titles(map: &StressMap, is_torque: bool, in_one: bool) -> [Text; 2] {
         String::new()
     };
     match in_one {
-        true if friction.is_empty() => [Text::default(), Text::plain(&time, SIZE_TICK)],
+        true if friction.is_empty() => [Text::default(), Text::plain(&time, SIZE_TEXT)],
         true => [
             Text::default(),
-            Text::plain(&format!("{time}, {friction}"), SIZE_TICK),
+            Text::plain(&format!("{time}, {friction}"), SIZE_TEXT),
         ],
-        false => [Text::plain(&time, SIZE_LABEL), Text::plain(&friction, SIZE_TICK)],
+        false => [Text::plain(&time, SIZE_TEXT), Text::plain(&friction, SIZE_TEXT)],
     }
 }
 
@@ -287,7 +294,7 @@ mod tests {
         maps.is_torque = true;
         (maps.value_title, maps.range) = ("\u{3c4}_f*".to_owned(), [0.0, 1.25]);
         maps.maps[0].values[2] = f32::NAN;
-        let svg = stress(&maps).unwrap().svg;
+        let svg = stress(&maps, PictureSize::default()).unwrap().svg;
         assert!(svg.contains(">torque \u{3bc}* = 0.500</text>") && !svg.contains("NaN"));
         assert!(svg.contains(">1.0</text>") && svg.contains(">f</text>"));
     }
@@ -303,7 +310,7 @@ mod tests {
             (400, 4, 6, 1),
             (4, 400, 6, 6),
         ] {
-            let layout = StressLayout::of(&maps(nx, ny, count));
+            let layout = StressLayout::of(&maps(nx, ny, count), TEXT_WIDTH, false);
             assert_eq!(layout.columns, columns, "{nx} x {ny}, {count}");
             let bottom = layout.areas[count - 1].bottom();
             assert_eq!(layout.height, bottom + LOWER_ROOM);
@@ -313,8 +320,8 @@ mod tests {
     #[test]
     fn the_same_maps_give_the_same_bytes() {
         assert_eq!(
-            stress(&maps(10, 10, 2)).unwrap(),
-            stress(&maps(10, 10, 2)).unwrap()
+            stress(&maps(10, 10, 2), PictureSize::default()).unwrap(),
+            stress(&maps(10, 10, 2), PictureSize::default()).unwrap()
         );
     }
 
@@ -329,11 +336,11 @@ mod tests {
             (300, 20, 2),
         ] {
             let maps = maps(nx, ny, count);
-            let layout = StressLayout::of(&maps);
+            let layout = StressLayout::of(&maps, TEXT_WIDTH, false);
             assert!(layout.width <= TEXT_WIDTH + 6.0, "{nx} x {ny}: {}", layout.width);
             let last = layout.areas[count - 1];
             assert!(last.bottom() < layout.height && last.width >= 40.0 && last.height >= 40.0);
-            stress(&maps).unwrap();
+            stress(&maps, PictureSize::default()).unwrap();
         }
     }
 
@@ -342,13 +349,13 @@ mod tests {
         let mut blank = maps(4, 4, 1);
         blank.maps[0].values.fill(f32::NAN);
         blank.maps[0].mu_star = f64::NAN;
-        let svg = stress(&blank).unwrap().svg;
+        let svg = stress(&blank, PictureSize::default()).unwrap().svg;
         assert!(svg.contains(">A: t* = 0.0</text>") && !svg.contains("NaN"));
     }
 
     #[test]
     fn a_large_lattice_stays_a_small_file() {
-        let picture = stress(&maps(1000, 600, 1)).unwrap();
+        let picture = stress(&maps(1000, 600, 1), PictureSize::default()).unwrap();
         assert!(picture.svg.len() < 300_000, "{}", picture.svg.len());
     }
 
@@ -357,7 +364,7 @@ mod tests {
         let error = |change: &dyn Fn(&mut StressMaps)| {
             let mut maps = maps(2, 3, 1);
             change(&mut maps);
-            stress(&maps).unwrap_err().to_string()
+            stress(&maps, PictureSize::default()).unwrap_err().to_string()
         };
         assert_eq!(error(&|m| m.nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");
         assert_eq!(

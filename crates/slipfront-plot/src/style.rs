@@ -9,10 +9,10 @@ pub(crate) const COLUMN_WIDTH: f64 = 85.0 * MM;
 /// Width of a journal's text, 175 mm.
 pub(crate) const TEXT_WIDTH: f64 = 175.0 * MM;
 
-/// Size of titles and labels: 8 pt.
-pub(crate) const SIZE_LABEL: u32 = 33;
-/// Size of numbers along an axis: 7 pt.
-pub(crate) const SIZE_TICK: u32 = 29;
+/// Size of all text: 8 pt.
+pub(crate) const SIZE_TEXT: u32 = 33;
+/// Size of a title that has no room in the usual one: 7 pt.
+pub(crate) const SIZE_NARROW: u32 = 29;
 
 /// Width of a curve: 0.9 pt.
 pub(crate) const WIDTH_CURVE: f64 = 3.75;

@@ -11,20 +11,19 @@ use crate::font::WOFF2;
 use crate::geometry::{Area, CanvasPoint};
 use crate::picture::PictureError;
 use crate::png_file;
-use crate::style::{DPI, Rgb};
+use crate::style::Rgb;
 
 /// The canvas as an SVG document with a physical size, its font and its images.
 pub(crate) fn svg(canvas: &Canvas) -> Result<String, PictureError> {
-    let (width, height) = (canvas.width, canvas.height);
+    let [width, height] = [canvas.width, canvas.height].map(length);
+    let [width_mm, height_mm] = canvas.millimetres();
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}mm\" height=\"{:.2}mm\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width_mm:.2}mm\" height=\"{height_mm:.2}mm\" \
          viewBox=\"0 0 {width} {height}\" \
          font-family=\"'DejaVu Sans',Verdana,sans-serif\" stroke-linejoin=\"round\">\n\
          <style>@font-face{{font-family:'DejaVu Sans';\
          src:url('data:font/woff2;base64,{}') format('woff2');}}</style>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
-        canvas.scale * width / DPI * 25.4,
-        canvas.scale * height / DPI * 25.4,
         BASE64.encode(WOFF2),
     );
     for image in &canvas.images {
@@ -97,21 +96,10 @@ fn image_tag(image: &Image) -> Result<String, PictureError> {
     ))
 }
 
-/// An image as a PNG of its own, in which a pixel is repeated so often that a viewer's smoothing blurs its
-/// edge only.
+/// An image as a PNG of its own.
 fn image_png(image: &Image) -> Result<Vec<u8>, PictureError> {
-    let rows = image.rows();
-    let repeat = (400 / image.columns.max(rows)).max(1);
-    let mut pixels = Vec::with_capacity(image.levels.len() * repeat * repeat);
-    for row in image.levels.chunks_exact(image.columns) {
-        let start = pixels.len();
-        pixels.extend(row.iter().flat_map(|&level| std::iter::repeat_n(level, repeat)));
-        for _ in 1..repeat {
-            pixels.extend_from_within(start..start + image.columns * repeat);
-        }
-    }
-    let palette = Some(palette().concat());
-    png_file::encode(image.columns * repeat, rows * repeat, &pixels, palette)
+    let (columns, rows, levels) = image.repeated();
+    png_file::encode(columns, rows, &levels, Some(palette().concat()))
 }
 
 /// The data of a path through points: after the first pair of coordinates, each is the end of a line.

@@ -1,7 +1,7 @@
 //! Short texts with subscripts, and their widths.
 
 use crate::font::advance;
-use crate::style::{SIZE_LABEL, SIZE_TICK};
+use crate::style::{SIZE_NARROW, SIZE_TEXT};
 
 /// Height of capitals and digits over the font size.
 pub(crate) const CAP_HEIGHT: f64 = 0.729;
@@ -81,13 +81,13 @@ impl Text {
         }
     }
 
-    /// A text no wider than `room`: as a label, else in the size of numbers, else cut.
+    /// A title no wider than `room`: in the size of all text, else in the size of titles without room, else cut.
     pub(crate) fn fitted(text: &str, room: f64) -> Self {
-        let label = Self::plain(text, SIZE_LABEL);
-        if label.width() <= room {
-            label
+        let whole = Self::plain(text, SIZE_TEXT);
+        if whole.width() <= room {
+            whole
         } else {
-            Self::shortened(text, SIZE_TICK, room)
+            Self::shortened(text, SIZE_NARROW, room)
         }
     }
 

@@ -1,7 +1,7 @@
 //! Round numbers along an axis, as many as keep apart.
 
 use crate::axis::DrawnAxis;
-use crate::style::SIZE_TICK;
+use crate::style::SIZE_TEXT;
 use crate::text::{MINUS, Text, number};
 
 /// A tick: its pixel along the side, and its number.
@@ -71,7 +71,7 @@ impl DrawnAxis {
         let (lo, hi) = (value(self.lo), value(self.hi));
         let (step, values) = round_values(lo, hi, most);
         let power = power_of(lo.abs().max(hi.abs()));
-        let text = |value| Text::number(&written(value, step, power), SIZE_TICK);
+        let text = |value| Text::number(&written(value, step, power), SIZE_TEXT);
         let ticks = values.into_iter().map(|value| (self.at(value), text(value)));
         ticks.filter(|(at, _)| at.is_finite()).collect()
     }
@@ -85,7 +85,7 @@ impl DrawnAxis {
             } else {
                 format!("{digit}e{power}").replace('-', MINUS)
             };
-            (at, Text::number(&written, SIZE_TICK))
+            (at, Text::number(&written, SIZE_TEXT))
         };
         ticks.iter().map(tick).collect()
     }
@@ -222,13 +222,13 @@ mod tests {
             ["10\u{2212}8", "10\u{2212}6", "10\u{2212}4", "10\u{2212}2", "100"]
         );
         // Too short for 1, 2, 5.
-        assert_eq!(around(&[0.3, 0.4], true, 500.0)[1], "0.32");
+        assert_eq!(around(&[0.3, 0.4], true, 560.0)[1], "0.32");
     }
 
     #[test]
     fn small_and_large_numbers_share_a_power_of_ten() {
         assert_eq!(
-            around(&[0.0, 1e-9], false, 800.0)[..2],
+            around(&[0.0, 1e-9], false, 1000.0)[..2],
             ["0", "0.2\u{d7}10\u{2212}9"]
         );
         assert_eq!(around(&[12345.0, 12349.0], false, 800.0)[0], "12345");

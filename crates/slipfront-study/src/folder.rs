@@ -153,7 +153,18 @@ pub(crate) fn stage(
     if !rows.is_empty() {
         batch.write(anisotropy, |file| Ok(tables::anisotropy(&rows, file)?))?;
     }
-    pictures::draw(plan, results, |name, picture| {
+    stage_pictures(plan, results, batch, stop)
+}
+
+/// Writes the pictures of a study to a batch of files, in the look that the batch has, until a stop.
+pub(crate) fn stage_pictures(
+    plan: &Plan,
+    results: &StudyResults,
+    batch: &mut Batch,
+    stop: &AtomicBool,
+) -> Result<(), StudyError> {
+    let look = batch.look().clone();
+    pictures::draw(plan, results, &look, |name, picture| {
         if stop.load(Ordering::Relaxed) {
             return Err(StudyError::Interrupted);
         }

@@ -17,21 +17,23 @@ use crate::study_results::StudyResults;
 use crate::summary_values::needs_transition;
 use slipfront_base::number_format::four_digits;
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
+    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, PictureLook, PictureSize, Polar,
+    Response, Responses,
 };
 
 /// Note that coverages are meshed ones, for which a legend of several axes has no room.
 const AS_MESHED: &str = "A* as meshed";
 
-/// Draws the pictures of a study and hands each on with the name of its files. The budget limits the number
-/// of pictures in memory at once.
+/// Draws the pictures of a study that are asked for, and hands each on with the name of its files. The budget
+/// limits the number of pictures in memory at once.
 pub(crate) fn draw(
     plan: &Plan,
     results: &StudyResults,
+    look: &PictureLook,
     mut hand_on: impl FnMut(String, Picture) -> Result<(), StudyError>,
 ) -> Result<(), StudyError> {
-    if let Some(Ok((over, combinations))) = polar(&plan.axes) {
-        let drawn = friction_polar(plan, results, over, &combinations);
+    if let Some(Ok((over, combinations))) = polar(&plan.axes).filter(|_| look.draws(POLAR)) {
+        let drawn = friction_polar(plan, results, over, &combinations, look.size);
         if let Some(picture) = drawn.transpose() {
             let name = POLAR.to_owned();
             hand_on(
@@ -42,10 +44,12 @@ pub(crate) fn draw(
     }
     for quantity in measured_quantities(plan, results) {
         let measured = PlottedQuantity::of(plan, results, quantity);
-        for some in planned(&plan.axes, quantity).chunks(PICTURES_AT_ONCE) {
+        let mut asked = planned(&plan.axes, quantity);
+        asked.retain(|picture| look.draws(&picture.name));
+        for some in asked.chunks(PICTURES_AT_ONCE) {
             let drawn: Vec<_> = some
                 .par_iter()
-                .map(|picture| measured.draw(&picture.kind))
+                .map(|picture| measured.draw(&picture.kind, look.size))
                 .collect();
             for (PlannedPicture { name, .. }, drawn) in some.iter().zip(drawn) {
                 let name = name.clone();
@@ -113,11 +117,13 @@ impl<'a> PlottedQuantity<'a> {
         }
     }
 
-    fn draw(&self, kind: &PictureKind) -> Result<Picture, PictureError> {
+    fn draw(&self, kind: &PictureKind, size: PictureSize) -> Result<Picture, PictureError> {
         match kind {
-            PictureKind::Bars => self.bars(),
-            PictureKind::Curves { x, fixed, varied } => self.curves(*x, fixed, varied),
-            PictureKind::Map { x, y } => self.map(*x, *y),
+            PictureKind::Bars => slipfront_plot::bars(&self.bars(), size),
+            PictureKind::Curves { x, fixed, varied } => {
+                slipfront_plot::response(&self.curves(*x, fixed, varied), size)
+            }
+            PictureKind::Map { x, y } => slipfront_plot::heat_map(&self.map(*x, *y), size),
         }
     }
 
@@ -175,12 +181,12 @@ impl<'a> PlottedQuantity<'a> {
         level_with_symbol(&self.axes[axis], self.shown(axis, level, held))
     }
 
-    fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Result<Picture, PictureError> {
+    fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Responses {
         let curves = combinations(self.axes, varied).into_iter();
         let curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
         // What covers no block has no place on a logarithmic scale.
         let has_place = curves.iter().flat_map(|curve| &curve.x).all(|&x| x > 0.0);
-        slipfront_plot::response(&Responses {
+        Responses {
             x_title: self.axis_title(x),
             log_x: self.axes[x].spacing == Spacing::Logarithmic && has_place,
             log_y: false,
@@ -191,7 +197,7 @@ impl<'a> PlottedQuantity<'a> {
             },
             note: self.note_at(fixed, varied),
             curves,
-        })
+        }
     }
 
     /// The note on the intervals, after the levels that all curves of a picture have in common.
@@ -237,7 +243,7 @@ impl<'a> PlottedQuantity<'a> {
         response
     }
 
-    fn map(&self, x: usize, y: usize) -> Result<Picture, PictureError> {
+    fn map(&self, x: usize, y: usize) -> HeatMap {
         let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
         let (mut means, mut half_widths, mut crossed) = (Vec::new(), Vec::new(), Vec::new());
         // A map is drawn for two axes alone.
@@ -262,7 +268,7 @@ impl<'a> PlottedQuantity<'a> {
             };
             HeatAxis { title, values, log }
         };
-        slipfront_plot::heat_map(&HeatMap {
+        HeatMap {
             x: heat_axis(x, &columns),
             y: heat_axis(y, &rows),
             value_title: title(self.quantity),
@@ -270,7 +276,7 @@ impl<'a> PlottedQuantity<'a> {
             half_widths,
             crossed,
             note: self.note.clone(),
-        })
+        }
     }
 
     /// The mean meshed coverages of the lines of a map over two axes; none if this is no axis of coverages,
@@ -293,7 +299,7 @@ impl<'a> PlottedQuantity<'a> {
     }
 
     /// Bars for the names of one axis, or in groups for two.
-    fn bars(&self) -> Result<Picture, PictureError> {
+    fn bars(&self) -> BarChart {
         let bar = |axis: usize, levels: &[usize]| {
             let [mean, low, high] = self.at(levels);
             Bar {
@@ -317,13 +323,13 @@ impl<'a> PlottedQuantity<'a> {
             levels(0).map(group).collect()
         };
         let legend = self.axes.get(1).map(axis_symbol);
-        slipfront_plot::bars(&BarChart {
+        BarChart {
             y_title: title(self.quantity),
             x_title: axis_title(&self.axes[0]),
             legend_title: legend.unwrap_or_default(),
             note: self.note.clone(),
             groups,
-        })
+        }
     }
 }
 
@@ -334,6 +340,7 @@ fn friction_polar(
     results: &StudyResults,
     over: usize,
     combinations: &[Levels],
+    size: PictureSize,
 ) -> Result<Option<Picture>, PictureError> {
     let measured = measured_quantities(plan, results);
     let measured: Vec<PlottedQuantity> = FRICTION
@@ -361,7 +368,7 @@ fn friction_polar(
         measured.iter().map(curve).collect::<Vec<_>>()
     });
     let note = note_on_intervals(plan.settings.confidence(), &counts, without_transition);
-    let picture = slipfront_plot::polar(&Polar {
+    let polar = Polar {
         value_title: "friction \u{3bc}*".to_owned(),
         legend_title: match plan.axes.iter().enumerate().find(|(axis, _)| *axis != over) {
             Some((other, _)) if plan.axes.len() == 2 => measured[0].axis_symbol(other),
@@ -373,8 +380,8 @@ fn friction_polar(
             note
         },
         curves: curves.collect(),
-    });
-    picture.map(Some)
+    };
+    slipfront_plot::polar(&polar, size).map(Some)
 }
 
 /// Note on the intervals around means of `counts` values, and on the number of runs that are left out.

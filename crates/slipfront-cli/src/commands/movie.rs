@@ -10,19 +10,24 @@ use slipfront_base::disk::{folder_of, is_same, write_atomic};
 use slipfront_base::number_format::{count, four_digits};
 use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_case::arrays::extension;
-use slipfront_case::case::mapped_field;
-use slipfront_case::case_file::CaseFile;
+use slipfront_case::case::{MAX_PICTURES, mapped_field};
+use slipfront_case::case_file::{CaseFile, Snapshots};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
-use slipfront_plot::{MoviePictures, MovieSize};
+use slipfront_plot::{Movie, MoviePictures, MovieSize};
 use slipfront_run::names::MOVIE;
+use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::pictures::movie::MoviePace;
 use slipfront_run::pictures::{self, movie};
 use slipfront_run::run_files::RunFiles;
+use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
 use slipfront_run::verify::{expect_as_written, inspect};
 
-use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run, within};
+use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run};
+use crate::bounds::within;
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::print_stderr::print_stderr;
+use crate::run_again::{RunAgain, case_to_run, of_file};
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
@@ -31,14 +36,19 @@ use crate::threads::set_threads;
 /// An animated GIF, beside the friction curve with a mark at the instant
 #[derive(Args)]
 #[command(after_help = "Examples:
-  slipfront run cases/circle.toml -o results/circle --set output.snapshots={every=1.5}
   slipfront movie results/circle
+  slipfront movie results/circle --frames 300
   slipfront movie results/circle --seconds 8 --size 1600x800 -o circle.gif
   slipfront movie results/circle --field displacement_x -o circle.mp4    where ffmpeg is installed")]
 pub(crate) struct MovieCommand {
     /// Run folder
     #[arg(value_name = "DIR")]
     folder: PathBuf,
+    /// Least number of snapshots, at equal distances in time beside the instants A-F. If the run has kept
+    /// fewer, its case is run again with this many, in the folder for temporary files (TMPDIR) [default: 100, or
+    /// those that the run has kept if its case names `output.snapshots` or has `output.movie`]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_FRAMES))]
+    frames: Option<u16>,
     /// The field that is shown [default: that of the maps in stress.png]
     #[arg(long, value_parser = known_field)]
     field: Option<Field>,
@@ -59,6 +69,11 @@ pub(crate) struct MovieCommand {
     #[arg(long)]
     force: bool,
 }
+
+/// Number of snapshots of a run that is made again for its movie, unless another is asked for.
+const FRAMES: u16 = 100;
+/// Largest number of snapshots that can be asked for: beside them there are the start and the instants A-F.
+const MOST_FRAMES: i64 = MAX_PICTURES as i64 - 7;
 
 /// Size of a movie in pixels.
 #[derive(Clone, Copy, ValueEnum)]
@@ -123,7 +138,23 @@ impl MovieCommand {
             return Err(refused(sentence));
         }
         expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
-        let movie = movie::of_run(RunFiles::Folder(folder), self.field).map_err(Failure::input)?;
+        let kept = movie::of_run(RunFiles::Folder(folder), self.field).map_err(Failure::input)?;
+        let n_kept = kept.as_ref().map_or(0, |movie| movie.frames.len());
+        let more = self.case_of_more(&run, n_kept).map_err(Failure::input)?;
+        let movie = match more {
+            Some((case, frames)) => {
+                print_stderr(&format!(
+                    "{} has kept {}: its case is run again for {frames}",
+                    folder.display(),
+                    count(n_kept, "snapshot")
+                ));
+                let signals = Signals::catch().map_err(Failure::running)?;
+                let movie = self.of_more(case, &signals)?;
+                Failure::if_stopped(&signals)?;
+                movie
+            }
+            None => kept,
+        };
         let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
         let delays = movie::delays(&movie, self.pace()).map_err(Failure::input)?;
         let bytes = if is_mp4 {
@@ -149,6 +180,40 @@ impl MovieCommand {
 }
 
 impl MovieCommand {
+    /// The case of a run with more snapshots than it has kept, and their number, if the movie needs more.
+    fn case_of_more(
+        &self,
+        run: &Inspection,
+        kept: usize,
+    ) -> Result<Option<(CaseFile, u16)>, RunPictureError> {
+        let case = match &run.case {
+            Ok(case) => case,
+            Err(CaseDefect::NotResolved(case)) => case,
+            Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => return Ok(None),
+        };
+        let is_open = case.output.snapshots == Snapshots::Auto && !case.output.movie;
+        let frames = self.frames.or(is_open.then_some(FRAMES));
+        let Some(frames) = frames.filter(|frames| kept < usize::from(*frames)) else {
+            return Ok(None);
+        };
+        let mut case = case.clone();
+        let spacing = movie::spacing(RunFiles::Folder(&self.folder), frames.into())?;
+        case.output.snapshots = Snapshots::Every(spacing);
+        case.output.fields = vec![self.field.unwrap_or(mapped_field(&case))];
+        // The memory for drawing it counts, too.
+        case.output.movie = true;
+        Ok(Some((case, frames)))
+    }
+
+    /// The movie of a case that is run again.
+    fn of_more(&self, case: CaseFile, signals: &Signals) -> Result<Option<Movie>, Failure> {
+        let folder = &self.folder;
+        let field = case.output.fields.first().copied();
+        let case = case_to_run(folder, signals, false, |watch| of_file(case, folder, watch))?;
+        let again = RunAgain::run(case, folder, signals, false)?;
+        movie::of_run(RunFiles::Folder(again.made.path()), field).map_err(Failure::input)
+    }
+
     fn size(&self) -> MovieSize {
         match self.size {
             SizeName::Small => MovieSize::Small,
@@ -171,8 +236,8 @@ impl MovieCommand {
         let kept = case.iter().flat_map(|case| &case.output.fields);
         let names: Vec<&str> = kept.map(|field| field_info(*field).name).collect();
         format!(
-            "{} has kept no snapshots of {}: name a field that it has with --field (its case keeps {}), or run its case again with \
-             snapshots",
+            "{} has kept no snapshots of {}: name a field that it has with --field (its case keeps {}), or let its case be run \
+             again with --frames",
             self.folder.display(),
             field_info(field).name,
             names.join(", ")
@@ -185,12 +250,7 @@ fn refused(sentence: String) -> Failure {
 }
 
 /// The movie of a run folder as an MP4 file, made by ffmpeg.
-fn mp4(
-    run: &Path,
-    movie: &slipfront_plot::Movie,
-    size: MovieSize,
-    delays: &[u16],
-) -> Result<Vec<u8>, Failure> {
+fn mp4(run: &Path, movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec<u8>, Failure> {
     let failed = |error: std::io::Error| Failure::running(anyhow::anyhow!("cannot make the movie: {error}"));
     // An MP4 file that begins with its index, which players want, cannot be written through a pipe.
     let signals = Signals::catch().map_err(failed)?;
@@ -227,7 +287,7 @@ fn mp4(
 /// Hands all pictures to ffmpeg, each as many times as its duration, and waits for its end.
 fn feed(
     mut child: Child,
-    movie: &slipfront_plot::Movie,
+    movie: &Movie,
     pictures: &MoviePictures,
     delays: &[u16],
     signals: &Signals,

@@ -1,14 +1,11 @@
 //! Command `slipfront verify`: the files of results folders, compared with what was written there.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::Args;
 use serde_json::{Value, json};
-use slipfront::Execution;
 use slipfront_base::number_format::count;
 use slipfront_base::text::truncated;
-use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_calibrate::CALIBRATIONS;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_design::DESIGNS;
@@ -18,22 +15,18 @@ use slipfront_run::manifest::Manifest;
 use slipfront_run::pictures;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
-use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
-use slipfront_run::running::Running;
-use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, verify_run};
+use slipfront_run::verify::{Verdict, differences, inspect, verify_run};
 use slipfront_study::is_of_figures;
 use slipfront_study::project_folder::Extent;
 use slipfront_study::verify::{has_records, verify};
 
 use crate::failure::Failure;
-use crate::make_case::make_case;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
-use crate::progress::run::RunProgress;
-use crate::ranks::CommandRanks;
 use crate::report::text_of;
+use crate::run_again::{RunAgain, case_to_run, of_file};
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
@@ -183,51 +176,19 @@ impl VerifyCommand {
     /// Runs the case of a folder again beside it, and adds the differences.
     fn repeat(&self, run: &Inspection, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         let (started, folder) = (clock::now(), run.path.as_path());
-        let case = folder.join("case.toml");
-        // A user may hand over a case through a pipe; in a folder of results it would be waited for.
-        if !case.is_file() {
-            let sentence = format!(
-                "{} is not a regular file: there is nothing to repeat",
-                case.display()
-            );
-            return Err(Failure::input(anyhow::anyhow!(sentence)));
-        }
-        let case = make_case(
-            &CommandRanks::alone(),
-            signals,
-            self.quiet,
-            |watch, _| match &run.case {
-                Ok(file) => Case::to_run(file.clone(), "case", folder, watch, Ranks::ALONE),
-                Err(CaseDefect::NotResolved(file)) => {
-                    Case::to_run(*file.clone(), "case", folder, watch, Ranks::ALONE)
-                }
-                // It says why there is none.
-                Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => {
-                    Case::load(&case, &[], watch, Ranks::ALONE)
-                }
-            },
-        );
-        let case = Arc::new(case?);
-        let again =
-            TemporaryFolder::new(folder).map_err(|error| Failure::input(VerifyError::Temporary(error)))?;
-        case.budget
-            .check_disk(&case.file, again.path(), 0, false)
-            .map_err(Failure::input)?;
-        let mut running = Running::start(&case, None, Execution::on_threads(rayon::current_num_threads()));
-        let mut progress = RunProgress::new(&running, self.quiet);
-        let reason = loop {
-            if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {
-                break reason;
+        let case = case_to_run(folder, signals, self.quiet, |watch| match &run.case {
+            Ok(file) => of_file(file.clone(), folder, watch),
+            Err(CaseDefect::NotResolved(file)) => of_file(*file.clone(), folder, watch),
+            // It says why there is none.
+            Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => {
+                Case::load(&folder.join("case.toml"), &[], watch, Ranks::ALONE)
             }
-            progress.show(&running.snapshot());
-            Failure::if_stopped(signals)?;
-        };
-        progress.finish();
-        let mut record = running.record(reason);
-        let made = again.path().join("run");
-        let mut made = RunFolder::prepare(&made, false, &case.inputs).map_err(Failure::running)?;
-        results::write_case(&case, &mut made).map_err(Failure::running)?;
-        results::write(&case, &mut record, &mut made).map_err(Failure::running)?;
+        })?;
+        let RunAgain {
+            case,
+            made,
+            temporary: _temporary,
+        } = RunAgain::run(case, folder, signals, self.quiet)?;
         let before = run.manifest().ok();
         let now = complete_as(before, &case, made, started).map_err(Failure::running)?;
         verdict

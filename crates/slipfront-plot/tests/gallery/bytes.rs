@@ -5,8 +5,8 @@
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,
-    KineticLine, Picture, Polar, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps,
-    friction, heat_map, polar, response, shapes, stress,
+    KineticLine, Picture, PictureSize, Polar, Response, Responses, Shape, StressMap, StressMaps, bars,
+    field_maps, friction, heat_map, polar, response, shapes, stress,
 };
 
 /// The first digits of the hashes of both files.
@@ -161,18 +161,25 @@ fn outlines() -> [Shape; 1] {
 #[test]
 fn every_kind_of_picture_has_its_bytes() {
     let found = [
-        ("friction", friction(&[curve()], &FrictionAxes::default())),
+        (
+            "friction",
+            friction(&[curve()], &FrictionAxes::default(), PictureSize::default()),
+        ),
         (
             "frictions",
-            friction(&[curve(), curve()], &FrictionAxes::default()),
+            friction(
+                &[curve(), curve()],
+                &FrictionAxes::default(),
+                PictureSize::default(),
+            ),
         ),
-        ("stress", stress(&stress_maps())),
-        ("fields", field_maps(&maps())),
-        ("response", response(&responses())),
-        ("bars", bars(&chart())),
-        ("heat map", heat_map(&heat())),
+        ("stress", stress(&stress_maps(), PictureSize::default())),
+        ("fields", field_maps(&maps(), PictureSize::default())),
+        ("response", response(&responses(), PictureSize::default())),
+        ("bars", bars(&chart(), PictureSize::default())),
+        ("heat map", heat_map(&heat(), PictureSize::default())),
         ("shapes", shapes(&outlines())),
-        ("polar", polar(&around())),
+        ("polar", polar(&around(), PictureSize::default())),
     ]
     .map(|(name, picture)| {
         let [svg, png] = digests(&picture.unwrap());

@@ -14,8 +14,8 @@ use std::path::Path;
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap,
-    KineticLine, Picture, PictureError, PictureSize, Polar, Response, Responses, Shape, Sketch, Stroke,
-    StrokeStyle, bars, field_maps, friction, friction_of_size, front, heat_map, kymograph, polar, response,
+    KineticLine, Picture, PictureError, PictureFormat, PictureSize, Polar, Response, Responses, Shape,
+    Sketch, Stroke, StrokeStyle, bars, field_maps, friction, front, heat_map, kymograph, polar, response,
     shapes, sketch, stress,
 };
 
@@ -25,13 +25,39 @@ use runs::*;
 const UM: f64 = 1e-6;
 const INSTANTS: [&str; 6] = ["A", "B", "C", "D", "E", "F"];
 
+/// Width and letters of a figure in a journal's column.
+const COLUMN: PictureSize = PictureSize {
+    width_mm: Some(89.0),
+    height_mm: None,
+    font_pt: Some(8.0),
+};
+
+/// Checks a picture in its usual size and in a column, if that has room for it, and writes it if a folder is
+/// set; returns the page of the usual size.
+fn check(name: &str, draw: impl Fn(PictureSize) -> Result<Picture, PictureError>) -> Page {
+    match draw(COLUMN) {
+        Ok(picture) => {
+            let page = check_one(&format!("{name}-column"), picture);
+            let width = page.width * 8.0 / 7.92 / 300.0 * 25.4;
+            assert!((width - 89.0).abs() < 1e-3, "{name} is {width} mm wide");
+        }
+        Err(PictureError::TooSmall { .. }) => {}
+        Err(error) => panic!("{name} in a column: {error}"),
+    }
+    check_one(
+        name,
+        draw(PictureSize::default()).unwrap_or_else(|error| panic!("{name}: {error}")),
+    )
+}
+
 /// Checks a picture, and writes it if a folder is set.
-fn check(name: &str, picture: Result<Picture, PictureError>) -> Page {
-    let picture = picture.unwrap_or_else(|error| panic!("{name}: {error}"));
+fn check_one(name: &str, picture: Picture) -> Page {
     if let Some(folder) = std::env::var_os("SLIPFRONT_GALLERY") {
         std::fs::create_dir_all(&folder).unwrap();
-        std::fs::write(Path::new(&folder).join(format!("{name}.png")), &picture.png).unwrap();
-        std::fs::write(Path::new(&folder).join(format!("{name}.svg")), &picture.svg).unwrap();
+        for format in PictureFormat::ALL {
+            let path = Path::new(&folder).join(format!("{name}.{}", format.ending()));
+            std::fs::write(path, picture.file(format)).unwrap();
+        }
     }
     let page = Page::of(&picture.svg);
     assert!(!page.texts.is_empty(), "{name} has no text");
@@ -40,8 +66,8 @@ fn check(name: &str, picture: Result<Picture, PictureError>) -> Page {
     page
 }
 
-fn star(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
-    friction(curves, &FrictionAxes::default())
+fn star(curves: &[FrictionCurve]) -> impl Fn(PictureSize) -> Result<Picture, PictureError> {
+    |size| friction(curves, &FrictionAxes::default(), size)
 }
 
 #[test]
@@ -92,7 +118,8 @@ fn a_run() {
         kinetic: "F_k".to_owned(),
         unit: " \u{b5}N".to_owned(),
     };
-    check("run-newtons", friction(&[with_uncertainty(fast())], &newtons));
+    let fast = [with_uncertainty(fast())];
+    check("run-newtons", |size| friction(&fast, &newtons, size));
 }
 
 /// The legend of an overlay, name after name.
@@ -157,7 +184,8 @@ fn overlays() {
             height_mm: Some(height),
             font_pt: Some(font),
         };
-        check(name, friction_of_size(&speeds, &FrictionAxes::default(), size));
+        let drawn = friction(&speeds, &FrictionAxes::default(), size);
+        check_one(name, drawn.unwrap_or_else(|error| panic!("{name}: {error}")));
     }
     // A legend of thirty names takes the whole height.
     let low = PictureSize {
@@ -165,7 +193,7 @@ fn overlays() {
         ..PictureSize::default()
     };
     let many: Vec<FrictionCurve> = (0..30).map(|k| at_speed(&format!("run {k}"), 0.1)).collect();
-    let said = friction_of_size(&many, &FrictionAxes::default(), low)
+    let said = friction(&many, &FrictionAxes::default(), low)
         .unwrap_err()
         .to_string();
     assert!(
@@ -210,7 +238,7 @@ fn stress_on_every_shape() {
             stress_maps(30, 30, UM, SMOOTH, &["t* = 0.0", "t* = 2000.5", "t* = 12345.6"]),
         ),
     ] {
-        check(name, stress(&maps));
+        check(name, |size| stress(&maps, size));
     }
     let torque = slipfront_plot::StressMaps {
         is_torque: true,
@@ -218,7 +246,7 @@ fn stress_on_every_shape() {
         range: [-1.3e-7, 2.6e-7],
         ..maps(40, 40, SMOOTH)
     };
-    check("stress-torque", stress(&torque));
+    check("stress-torque", |size| stress(&torque, size));
 }
 
 #[test]
@@ -239,8 +267,10 @@ fn fronts_on_every_shape() {
         ),
         ("front-200x50", front_of(200, 50, UM, SMOOTH, 2)),
     ] {
-        check(name, front(&map, &space_time));
-        check(&name.replace("front", "kymograph"), kymograph(&space_time));
+        check(name, |size| front(&map, &space_time, size));
+        check(&name.replace("front", "kymograph"), |size| {
+            kymograph(&space_time, size)
+        });
     }
 }
 
@@ -264,40 +294,37 @@ fn curve(label: &str, level: f64, line: bool) -> Response {
 
 #[test]
 fn responses() {
-    let drawn = |titles: [&str; 3], labels: &[&str]| {
+    let drawn = |titles: [&str; 3], labels: &[&str], size: PictureSize| {
         let labels = labels.iter().enumerate();
-        response(&Responses {
-            x_title: titles[0].to_owned(),
-            log_x: true,
-            y_title: titles[1].to_owned(),
-            legend_title: titles[2].to_owned(),
-            note: NOTE.to_owned(),
-            curves: labels
-                .map(|(k, label)| curve(label, 1.0 + 0.1 * k as f64, k == 1))
-                .collect(),
-            ..Responses::default()
-        })
+        response(
+            &Responses {
+                x_title: titles[0].to_owned(),
+                log_x: true,
+                y_title: titles[1].to_owned(),
+                legend_title: titles[2].to_owned(),
+                note: NOTE.to_owned(),
+                curves: labels
+                    .map(|(k, label)| curve(label, 1.0 + 0.1 * k as f64, k == 1))
+                    .collect(),
+                ..Responses::default()
+            },
+            size,
+        )
     };
     let titles = ["drive speed V*", "static friction \u{3bc}\u{209b}*", "P"];
-    check("response", drawn(titles, &[""]));
-    check(
-        "response-pressures",
-        drawn(titles, &["50 kPa", "100 kPa", "1 MPa"]),
-    );
+    check("response", |size| drawn(titles, &[""], size));
+    check("response-pressures", |size| {
+        drawn(titles, &["50 kPa", "100 kPa", "1 MPa"], size)
+    });
     let nine = ["10", "[20, 10]", "30", "40", "50", "[60, 10]", "70", "80", "90"];
-    check(
-        "response-nine",
-        drawn(
-            ["V*", "reduction of \u{3bc}\u{209b}* (%)", "blocks along a side"],
-            &nine,
-        ),
-    );
+    let reductions = ["V*", "reduction of \u{3bc}\u{209b}* (%)", "blocks along a side"];
+    check("response-nine", |size| drawn(reductions, &nine, size));
     let precursors = [
         "tangential over normal force F\u{209c}/F\u{2099} after the event",
         "length over that of the slider L\u{209a}/L",
         "",
     ];
-    check("precursors", drawn(precursors, &["events", "exact"]));
+    check("precursors", |size| drawn(precursors, &["events", "exact"], size));
 }
 
 /// Friction around the directions: equal in all, larger along one axis, with wide intervals, without a value
@@ -318,27 +345,34 @@ fn polars() {
         }
     };
     let twofold = |degrees: f64| 0.65 + 0.15 * (2.0 * (degrees - 60.0).to_radians()).cos();
-    let drawn = |legend_title: &str, curves: Vec<Response>| {
-        polar(&Polar {
-            value_title: "friction \u{3bc}*".to_owned(),
-            legend_title: legend_title.to_owned(),
-            note: NOTE.to_owned(),
-            curves,
-        })
+    let drawn = |legend_title: &str, curves: &[Response], size: PictureSize| {
+        polar(
+            &Polar {
+                value_title: "friction \u{3bc}*".to_owned(),
+                legend_title: legend_title.to_owned(),
+                note: NOTE.to_owned(),
+                curves: curves.to_vec(),
+            },
+            size,
+        )
     };
     let [statics, kinetics] = ["\u{3bc}\u{209b}*", "\u{3bc}\u{2096}*"];
     let isotropic = around(statics, &|_| 0.8, 0.01);
-    check("polar-isotropic", drawn("", vec![isotropic.clone()]));
+    check("polar-isotropic", |size| {
+        drawn("", std::slice::from_ref(&isotropic), size)
+    });
     let pair = vec![
         around(statics, &twofold, 0.02),
         around(kinetics, &|_| 0.45, 0.005),
     ];
-    check("polar-twofold", drawn("", pair));
+    check("polar-twofold", |size| drawn("", &pair, size));
     let wide = vec![around(statics, &twofold, 0.9), around(kinetics, &|_| 0.45, 0.6)];
-    check("polar-wide", drawn("", wide));
+    check("polar-wide", |size| drawn("", &wide, size));
     let mut missing = around(statics, &twofold, 0.05);
     missing.mean[3] = f64::NAN;
-    check("polar-missing", drawn("", vec![missing]));
+    check("polar-missing", |size| {
+        drawn("", std::slice::from_ref(&missing), size)
+    });
     let names = [
         "P = 50 kPa, grooves",
         "P = 50 kPa, dimple",
@@ -351,12 +385,13 @@ fn polars() {
             around(&format!("{name}, {kinetics}"), &|_| 0.45, 0.005),
         ]
     });
-    check("polar-eight", drawn("", named.collect()));
+    let named: Vec<Response> = named.collect();
+    check("polar-eight", |size| drawn("", &named, size));
 }
 
 #[test]
 fn bar_charts() {
-    let chart = |groups: &[&str], names: &[&str]| {
+    let chart = |groups: &[&str], names: &[&str], size: PictureSize| {
         let bar = |(k, label): (usize, &&str)| Bar {
             label: (*label).to_owned(),
             mean: 0.8 + 0.01 * k as f64,
@@ -368,25 +403,29 @@ fn bar_charts() {
             label: (*label).to_owned(),
             bars: names.iter().enumerate().map(bar).collect(),
         };
-        bars(&BarChart {
-            y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
-            x_title: "blocks along a side".to_owned(),
-            legend_title: "load pressure P".to_owned(),
-            groups: groups.iter().map(group).collect(),
-            note: NOTE.to_owned(),
-        })
+        bars(
+            &BarChart {
+                y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
+                x_title: "blocks along a side".to_owned(),
+                legend_title: "load pressure P".to_owned(),
+                groups: groups.iter().map(group).collect(),
+                note: NOTE.to_owned(),
+            },
+            size,
+        )
     };
-    check("bars", chart(&[""], &["10", "[20, 10]", "[10, 20]"]));
-    check(
-        "bars-groups",
-        chart(&["10", "[20, 10]"], &["50 kPa", "100 kPa", "1 MPa"]),
-    );
+    check("bars", |size| chart(&[""], &["10", "[20, 10]", "[10, 20]"], size));
+    check("bars-groups", |size| {
+        chart(&["10", "[20, 10]"], &["50 kPa", "100 kPa", "1 MPa"], size)
+    });
     let names: Vec<String> = (0..30)
         .map(|k| format!("a surface with a long name {k}"))
         .collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    check("bars-many", chart(&[""], &names));
-    check("bars-long-legend", chart(&["circle", "groove"], &names[..9]));
+    check("bars-many", |size| chart(&[""], &names, size));
+    check("bars-long-legend", |size| {
+        chart(&["circle", "groove"], &names[..9], size)
+    });
 }
 
 #[test]
@@ -396,23 +435,26 @@ fn heat_maps() {
         values,
         log: true,
     };
-    let map = |columns: usize, rows: usize, scale: f64, half: f64| {
+    let map = |columns: usize, rows: usize, scale: f64, half: f64, size: PictureSize| {
         let values = |count: usize| (0..count).map(|k| 0.01 * 1.5f64.powi(k as i32)).collect();
-        heat_map(&HeatMap {
-            x: axis("drive speed V*", values(columns)),
-            y: axis("texture coverage A* of texture 2 (%)", values(rows)),
-            value_title: "static friction \u{3bc}\u{209b}*".to_owned(),
-            values: (0..columns * rows).map(|k| scale * (k % 7) as f64).collect(),
-            half_widths: (0..columns * rows).map(|k| half * (1 + k % 3) as f64).collect(),
-            crossed: (0..columns * rows).map(|k| k == 1).collect(),
-            note: NOTE.to_owned(),
-        })
+        heat_map(
+            &HeatMap {
+                x: axis("drive speed V*", values(columns)),
+                y: axis("texture coverage A* of texture 2 (%)", values(rows)),
+                value_title: "static friction \u{3bc}\u{209b}*".to_owned(),
+                values: (0..columns * rows).map(|k| scale * (k % 7) as f64).collect(),
+                half_widths: (0..columns * rows).map(|k| half * (1 + k % 3) as f64).collect(),
+                crossed: (0..columns * rows).map(|k| k == 1).collect(),
+                note: NOTE.to_owned(),
+            },
+            size,
+        )
     };
-    check("heat-map", map(3, 3, 0.1, f64::NAN));
-    check("heat-map-intervals", map(3, 3, 0.1, 0.02));
-    check("heat-map-unresolved", map(3, 3, 0.01, 0.2));
-    check("heat-map-8", map(8, 8, 0.01, 0.002));
-    check("heat-map-40", map(40, 25, 1e-7, 1e-8));
+    check("heat-map", |size| map(3, 3, 0.1, f64::NAN, size));
+    check("heat-map-intervals", |size| map(3, 3, 0.1, 0.02, size));
+    check("heat-map-unresolved", |size| map(3, 3, 0.01, 0.2, size));
+    check("heat-map-8", |size| map(8, 8, 0.01, 0.002, size));
+    check("heat-map-40", |size| map(40, 25, 1e-7, 1e-8, size));
 }
 
 #[test]
@@ -426,38 +468,33 @@ fn pictures_of_the_paper() {
         textured: (0..nx * ny).map(|k| CIRCLE(k % nx, k / nx)).collect(),
         marks: vec![[0, 0]],
     };
-    let maps = |columns: usize, maps: Vec<FieldMap>| {
-        field_maps(&FieldMaps {
-            value_title: "static coefficient \u{3bc}_s".to_owned(),
-            range: [0.0, 1.0],
-            columns,
-            maps,
-        })
+    let maps = |columns: usize, maps: &[FieldMap], size: PictureSize| {
+        field_maps(
+            &FieldMaps {
+                value_title: "static coefficient \u{3bc}_s".to_owned(),
+                range: [0.0, 1.0],
+                columns,
+                maps: maps.to_vec(),
+            },
+            size,
+        )
     };
-    check(
-        "fields",
-        maps(
-            3,
-            vec![
-                map("25 x 25", 25, 25),
-                map("50 x 50", 50, 50),
-                map("a long name of a map", 25, 25),
-            ],
-        ),
-    );
-    check("fields-wide", maps(1, vec![map("400 x 4", 400, 4)]));
-    check(
-        "fields-tall",
-        maps(6, (0..6).map(|k| map(&format!("map {k}"), 4, 400)).collect()),
-    );
+    let three = [
+        map("25 x 25", 25, 25),
+        map("50 x 50", 50, 50),
+        map("a long name of a map", 25, 25),
+    ];
+    check("fields", |size| maps(3, &three, size));
+    let wide = [map("400 x 4", 400, 4)];
+    check("fields-wide", |size| maps(1, &wide, size));
+    let tall: Vec<FieldMap> = (0..6).map(|k| map(&format!("map {k}"), 4, 400)).collect();
+    check("fields-tall", |size| maps(6, &tall, size));
     let triangle = |label: &str| Shape {
         label: label.to_owned(),
         points: vec![[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]],
     };
-    check(
-        "shapes",
-        shapes(&["s = 2, w = 0.1", "a shape with a long name", "c", "d"].map(triangle)),
-    );
+    let four = ["s = 2, w = 0.1", "a shape with a long name", "c", "d"].map(triangle);
+    check_one("shapes", shapes(&four).unwrap());
     let line = Stroke {
         style: StrokeStyle::Arrow,
         points: vec![[0.0, 0.0], [2.0, 1.0]],
@@ -466,5 +503,5 @@ fn pictures_of_the_paper() {
         strokes: vec![line],
         labels: vec![("k_1".to_owned(), [0.5, 0.5]), ("x".to_owned(), [2.0, 0.0])],
     };
-    check("sketch", sketch(&drawn));
+    check_one("sketch", sketch(&drawn).unwrap());
 }

@@ -90,7 +90,7 @@ impl FrictionLook {
         for (curve, name) in curves.iter_mut().zip(&self.names) {
             name.clone_into(&mut curve.label);
         }
-        plot::friction_of_size(&curves, &axes, self.size).map_err(|source| RunPictureError::Picture {
+        plot::friction(&curves, &axes, self.size).map_err(|source| RunPictureError::Picture {
             name: "friction",
             source,
         })
@@ -292,11 +292,15 @@ fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
 }
 
 /// Draws the friction curve of a run against t*.
-pub(super) fn of_run(run: RunFiles) -> Result<Picture, RunPictureError> {
+pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Picture, RunPictureError> {
     let runs = [DrawnRun::read(run)?];
     let (scale, _) = dimensionless(&runs, Some(Against::Time))?;
     let curves = scale.curves(&runs);
-    FrictionLook::default().draw(scale, curves)
+    let look = FrictionLook {
+        size,
+        ..FrictionLook::default()
+    };
+    look.draw(scale, curves)
 }
 
 /// The curve of mu* against t* with all marks that a summary has, without its points.

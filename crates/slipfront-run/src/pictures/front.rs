@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use slipfront_case::case_file::Motion;
-use slipfront_plot::{self as plot, CellMeans, FrontMap, Picture, SpaceTime};
+use slipfront_plot::{self as plot, CellMeans, FrontMap, Picture, PictureSize, SpaceTime};
 
 use super::error::RunPictureError;
 use crate::fields::{self, KymographData};
@@ -16,7 +16,7 @@ use crate::summary::{Summary, summary_of};
 const MIN_INSTANTS: usize = 32;
 
 /// Draws the spread of slip in a run with a transition.
-pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>, RunPictureError> {
     let summary = summary_of(&run.file(SUMMARY)?)?;
     let kymograph = run.found(KYMOGRAPH)?.filter(|_| summary.transition);
     let Some(kymograph) = kymograph else {
@@ -39,7 +39,7 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
     };
     let rows = rows_of_the_front(&kymograph.time_star, &summary);
     let space_time = space_time(&kymograph, rows, &summary);
-    let drawn = plot::front(&map, &space_time).map(Some);
+    let drawn = plot::front(&map, &space_time, size).map(Some);
     drawn.map_err(|source| RunPictureError::Picture {
         name: "front",
         source,
@@ -50,11 +50,11 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
 ///
 /// # Errors
 /// When the files cannot be read, or none is a kymograph.
-pub fn draw_kymograph(run: RunFiles) -> Result<Picture, RunPictureError> {
+pub fn draw_kymograph(run: RunFiles, size: PictureSize) -> Result<Picture, RunPictureError> {
     let summary = summary_of(&run.file(SUMMARY)?)?;
     let kymograph = fields::read_kymograph(run.file(KYMOGRAPH)?)?;
     let rows = 0..kymograph.time_star.len();
-    let drawn = plot::kymograph(&space_time(&kymograph, rows, &summary));
+    let drawn = plot::kymograph(&space_time(&kymograph, rows, &summary), size);
     drawn.map_err(|source| RunPictureError::Picture {
         name: "the kymograph",
         source,

@@ -7,7 +7,7 @@ use slipfront_base::number_format::{in_print, si_prefix};
 use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
 use slipfront_case::case_file::{CaseFile, Motion};
 use slipfront_case::field_info::field_info;
-use slipfront_plot::{self as plot, CellMeans, Picture, SLIDING_SHARE, StressMap, StressMaps};
+use slipfront_plot::{self as plot, CellMeans, Picture, PictureSize, SLIDING_SHARE, StressMap, StressMaps};
 
 use super::error::RunPictureError;
 use super::files::case_of;
@@ -60,17 +60,17 @@ impl<'a> MuStar<'a> {
 }
 
 /// Draws the maps of the stress of a run; none if it kept no such field.
-pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>, RunPictureError> {
     let case = case_of(run)?;
-    draw_maps(run, case.as_ref(), field_of_maps(case.as_ref()))
+    draw_maps(run, case.as_ref(), field_of_maps(case.as_ref()), size)
 }
 
 /// Draws the maps of a field of a run from its files, which must be there and undamaged.
 ///
 /// # Errors
-/// When the files cannot be read, or hold no such maps.
-pub fn draw_field(run: RunFiles, field: Field) -> Result<Picture, RunPictureError> {
-    draw_maps(run, case_of(run)?.as_ref(), field)?.ok_or_else(|| RunPictureError::NoMaps {
+/// When the files cannot be read, or hold no such maps; when the size leaves no room for them.
+pub fn draw_field(run: RunFiles, field: Field, size: PictureSize) -> Result<Picture, RunPictureError> {
+    draw_maps(run, case_of(run)?.as_ref(), field, size)?.ok_or_else(|| RunPictureError::NoMaps {
         path: run.path().join(FIELDS),
         field: field_info(field).name,
     })
@@ -175,6 +175,7 @@ fn draw_maps(
     run: RunFiles,
     case: Option<&CaseFile>,
     field: Field,
+    size: PictureSize,
 ) -> Result<Option<Picture>, RunPictureError> {
     let fields = fields::read_maps::<CellMeans>(run.file(FIELDS)?, field, |labels| {
         fields::few_of(labels, MAX_MAPS)
@@ -208,7 +209,7 @@ fn draw_maps(
         range: scale.range,
         is_torque: motion == Some(Motion::Rotation),
     };
-    let drawn = plot::stress(&maps).map(Some);
+    let drawn = plot::stress(&maps, size).map(Some);
     drawn.map_err(|source| RunPictureError::Picture {
         name: field_info(field).name,
         source,

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 use slipfront::parallel::*;
 use slipfront_case::case::{Case, PICTURES};
-use slipfront_plot::{MovieSize, Picture};
+use slipfront_plot::{MovieSize, Picture, PictureLook, PictureSize};
 
 use self::error::RunPictureError;
 use self::files::found;
@@ -100,9 +100,11 @@ fn each_file(
     with_movie: bool,
     mut take: impl FnMut(&str, &[u8]) -> Result<(), RunPictureError>,
 ) -> Result<(), RunPictureError> {
-    for (name, picture) in draw(run)? {
-        take(&format!("{name}.svg"), picture.svg.as_bytes())?;
-        take(&format!("{name}.png"), &picture.png)?;
+    let look = PictureLook::default();
+    for (name, picture) in draw(run, &look)? {
+        for format in &look.formats {
+            take(&format!("{name}.{}", format.ending()), &picture.file(*format))?;
+        }
     }
     if with_movie && let Some(movie) = movie::of_run(run, None)? {
         let delays = movie::delays(&movie, MoviePace::Usual)?;
@@ -111,12 +113,22 @@ fn each_file(
     Ok(())
 }
 
-/// Draws the pictures of a run from its files, which must be there and undamaged.
-pub fn draw(run: RunFiles) -> Result<Vec<(&'static str, Picture)>, RunPictureError> {
+/// Draws the pictures of a run from its files, which must be there and undamaged; each with its name.
+///
+/// # Errors
+/// When a file of the run cannot be read or drawn, and when the size leaves no room for a picture.
+pub fn draw(run: RunFiles, look: &PictureLook) -> Result<Vec<(&'static str, Picture)>, RunPictureError> {
     let mut pictures = Vec::new();
+    let asked = RunPicture::ALL
+        .into_iter()
+        .filter(|picture| look.draws(picture.name()));
+    let asked: Vec<RunPicture> = asked.collect();
     // The budget of a run has room for two at once.
-    for two in RunPicture::ALL.chunks(2) {
-        let drawn: Vec<_> = two.par_iter().map(|picture| draw_one(*picture, run)).collect();
+    for two in asked.chunks(2) {
+        let drawn: Vec<_> = two
+            .par_iter()
+            .map(|picture| draw_one(*picture, run, look.size))
+            .collect();
         for (picture, drawn) in two.iter().zip(drawn) {
             pictures.extend(drawn?.map(|drawn| (picture.name(), drawn)));
         }
@@ -125,12 +137,16 @@ pub fn draw(run: RunFiles) -> Result<Vec<(&'static str, Picture)>, RunPictureErr
 }
 
 /// Draws a picture from the files of a run; none if the run has kept no data for it.
-fn draw_one(picture: RunPicture, run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+fn draw_one(
+    picture: RunPicture,
+    run: RunFiles,
+    size: PictureSize,
+) -> Result<Option<Picture>, RunPictureError> {
     match picture {
-        RunPicture::Friction => friction::of_run(run).map(Some),
-        RunPicture::Stress => maps::of_run(run),
-        RunPicture::Front => front::of_run(run),
-        RunPicture::Precursors => precursors::of_run(run),
+        RunPicture::Friction => friction::of_run(run, size).map(Some),
+        RunPicture::Stress => maps::of_run(run, size),
+        RunPicture::Front => front::of_run(run, size),
+        RunPicture::Precursors => precursors::of_run(run, size),
     }
 }
 

@@ -105,6 +105,20 @@ pub fn of_run(run: RunFiles, field: Option<Field>) -> Result<Option<Movie>, RunP
     }))
 }
 
+/// Spacing in t* at which a run has at least this many snapshots from its start to its end, but one a step at
+/// most.
+///
+/// # Errors
+/// When the series cannot be read, or has no rows.
+pub fn spacing(run: RunFiles, snapshots: usize) -> Result<f64, RunPictureError> {
+    let end = |row: SeriesRow| (row.step, row.drive_time_star.unwrap_or(row.time_star));
+    let rows = series::read_rows(&run.file(SERIES)?, SERIES, end)?;
+    let Some((steps, end)) = rows.last().copied().filter(|(steps, _)| *steps > 0) else {
+        return Err(not_drawn(PictureError::Nothing("step")));
+    };
+    Ok((end / snapshots.max(1) as f64).max(end / steps as f64))
+}
+
 /// Duration of each picture of a movie, in hundredths of a second.
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 use slipfront::exact_solutions::precursor_load;
 use slipfront::{Edge, Edges};
 use slipfront_case::case_file::{CaseFile, KineticFriction};
-use slipfront_plot::{self as plot, Picture, Response, Responses};
+use slipfront_plot::{self as plot, Picture, PictureSize, Response, Responses};
 
 use super::error::RunPictureError;
 use super::files::case_of;
@@ -13,7 +13,7 @@ use crate::run_files::RunFiles;
 /// Draws the reach of the events of slip of a slider driven at an edge, against the load after them; none for
 /// another run. An event counts if it is longer than all before: a shorter one slips over the part that these
 /// have left behind.
-pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> {
+pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>, RunPictureError> {
     let Some(file) = run.found(FILE)? else {
         return Ok(None);
     };
@@ -40,12 +40,15 @@ pub(super) fn of_run(run: RunFiles) -> Result<Option<Picture>, RunPictureError> 
         let points = lengths.map(|length| (precursor_load(length, mu_kinetic, slope), length));
         curves.push(curve("exact", points.collect(), true));
     }
-    let drawn = plot::response(&Responses {
-        x_title: "tangential over normal force F\u{209c}/F\u{2099} after the event".to_owned(),
-        y_title: "length over that of the slider L\u{209a}/L".to_owned(),
-        curves,
-        ..Responses::default()
-    });
+    let drawn = plot::response(
+        &Responses {
+            x_title: "tangential over normal force F\u{209c}/F\u{2099} after the event".to_owned(),
+            y_title: "length over that of the slider L\u{209a}/L".to_owned(),
+            curves,
+            ..Responses::default()
+        },
+        size,
+    );
     drawn.map(Some).map_err(|source| RunPictureError::Picture {
         name: "precursors",
         source,

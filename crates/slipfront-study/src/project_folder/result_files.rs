@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use slipfront_base::disk::{
     folder_of, found_at, is_same, make_folders, open_regular, remove_if_there, sync_folder, write_beside,
 };
-use slipfront_plot::Picture;
+use slipfront_plot::{Picture, PictureError, PictureLook, PictureSize};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::{ManifestFile, is_one_of};
 use slipfront_run::program;
@@ -37,6 +37,8 @@ pub struct ResultFiles {
     /// Names of files of the user in the folder, which the results are made from as well: they are neither
     /// replaced nor removed.
     kept: Vec<String>,
+    /// The look of the pictures.
+    look: PictureLook,
 }
 
 impl ResultFiles {
@@ -49,7 +51,14 @@ impl ResultFiles {
             force,
             given: Vec::new(),
             kept: Vec::new(),
+            look: PictureLook::default(),
         }
+    }
+
+    /// The files with pictures of another look than the usual one.
+    #[must_use]
+    pub fn with_look(self, look: PictureLook) -> Self {
+        Self { look, ..self }
     }
 
     /// Refuses a folder with files that were edited since they were written, before work begins whose results
@@ -196,15 +205,38 @@ impl Batch {
         Ok(())
     }
 
-    /// Writes a picture in both its formats.
+    /// The look of the pictures.
+    pub fn look(&self) -> &PictureLook {
+        &self.files.look
+    }
+
+    /// Draws a picture in the size that is asked for, and writes it in its formats; a picture that is not
+    /// among those asked for is passed over.
+    ///
+    /// # Errors
+    /// When the picture cannot be drawn, or the system refuses to write.
+    pub fn draw(
+        &mut self,
+        name: &str,
+        draw: impl FnOnce(PictureSize) -> Result<Picture, PictureError>,
+    ) -> Result<(), StudyError> {
+        if !self.look().draws(name) {
+            return Ok(());
+        }
+        let picture = draw(self.look().size).map_err(StudyError::picture(name))?;
+        self.write_picture(name, &picture)
+    }
+
+    /// Writes a picture in its formats.
     ///
     /// # Errors
     /// When the system refuses to write.
     pub fn write_picture(&mut self, name: &str, picture: &Picture) -> Result<(), StudyError> {
-        self.write(&format!("{name}.svg"), |file| {
-            file.write_all(picture.svg.as_bytes())
-        })?;
-        self.write(&format!("{name}.png"), |file| file.write_all(&picture.png))
+        for format in self.look().formats.clone() {
+            let file = format!("{name}.{}", format.ending());
+            self.write(&file, |to| to.write_all(&picture.file(format)))?;
+        }
+        Ok(())
     }
 
     /// Lets a file be replaced although it was edited.

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
 use slipfront_base::number_format::{are, count};
 use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_plot::PictureLook;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::program;
 use slipfront_run::verify::{Verdict, VerifyError, description_in, differences, unlisted_files};
@@ -21,7 +22,7 @@ use crate::error::{StudyError, of_others};
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum VerifyStudyError {
     #[error(
-        "the study in {path} lacks {}{}: finish it, or merge it with its other shards, and verify it then",
+        "the study in {path} lacks {}{}: finish it first, or merge it with its other shards",
         count(*runs, "run"),
         of_others(*others)
     )]
@@ -30,7 +31,7 @@ pub enum VerifyStudyError {
         runs: usize,
         others: usize,
     },
-    #[error("the {what} in {path} was not finished: run it again to go on with it, and verify it then")]
+    #[error("the {what} in {path} was not finished: run it again to go on with it first")]
     UnfinishedSearch { what: &'static str, path: PathBuf },
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -54,9 +55,17 @@ pub enum Extent {
 pub struct Derivation {
     /// The kind.
     pub kind: &'static ProjectKind,
-    /// Finds the results of a folder again in another one, until a stop, from a copy of its journal; returns
-    /// the numbers of runs there before and after, since runs that the journal lacks are made.
-    pub find_again: fn(folder: &Path, other: &Path, stop: &AtomicBool) -> Result<[usize; 2], StudyError>,
+    /// Names, without their ending, of images in the folder that are no pictures of results.
+    pub no_pictures: &'static [&'static str],
+    /// Finds the results of a folder again in another one, with pictures of this look, until a stop, from a
+    /// copy of its journal; returns the numbers of runs there before and after, since runs that the journal
+    /// lacks are made.
+    pub find_again: fn(
+        folder: &Path,
+        other: &Path,
+        look: &PictureLook,
+        stop: &AtomicBool,
+    ) -> Result<[usize; 2], StudyError>,
 }
 
 /// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the
@@ -145,7 +154,7 @@ fn derive_from_runs(
     // Opening a pipe would wait without end.
     let file = folder.join(derivation.kind.file);
     open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
-    let [kept, all] = (derivation.find_again)(folder, temporary.path(), stop)?;
+    let [kept, all] = (derivation.find_again)(folder, temporary.path(), &PictureLook::default(), stop)?;
     if all > kept {
         let sentence = format!("{} not in the journal, and made again", are(all - kept, "run"));
         verdict.notes.push(sentence);

@@ -1,0 +1,170 @@
+//! The folders of `slipfront plot`: those that pictures are drawn of, and that in which they are written.
+
+use std::path::Path;
+
+use slipfront_base::disk::{make_folders, read_limited, write_atomic};
+use slipfront_base::machine::available_of;
+use slipfront_base::number_format::byte_size;
+use slipfront_case::arrays::extension;
+use slipfront_case::case::PROGRAM;
+use slipfront_plot::PictureFormat;
+use slipfront_run::names::MANIFEST;
+use slipfront_run::run_folder::inspection::Inspection;
+use slipfront_study::verify::has_records;
+
+use crate::failure::Failure;
+use crate::print::print_message;
+use crate::signals::Signals;
+
+/// Files of pictures: their names and contents.
+pub(super) type PictureFiles = Vec<(String, Vec<u8>)>;
+
+/// Writes pictures to a folder, until a stop, and prints their names; `own` is the run in the folder whose
+/// pictures they are.
+pub(super) fn write(
+    out: &Path,
+    files: &PictureFiles,
+    own: Option<&Inspection>,
+    force: bool,
+    signals: &Signals,
+) -> Result<(), Failure> {
+    if own.is_none() {
+        refuse_other_run(out)?;
+    }
+    if !force {
+        refuse_to_replace(out, files, own)?;
+    }
+    let failed = |error: std::io::Error| {
+        Failure::running(anyhow::anyhow!(
+            "cannot write pictures to {}: {error}",
+            out.display()
+        ))
+    };
+    make_folders(out).map_err(failed)?;
+    let mut written = String::new();
+    for (name, bytes) in files {
+        Failure::if_stopped(signals)?;
+        let path = out.join(name);
+        write_atomic(&path, bytes).map_err(failed)?;
+        written += &format!("{}\n", path.display());
+    }
+    print_message(&written);
+    Ok(())
+}
+
+/// Refuses the name of a picture where a folder for several is asked for, unless there is such a folder.
+pub(super) fn expect_a_folder(out: &Path) -> Result<(), Failure> {
+    let is_picture = PictureFormat::ALL
+        .iter()
+        .any(|format| format.ending() == extension(out));
+    if !is_picture || out.is_dir() {
+        return Ok(());
+    }
+    let folder = out.with_extension("");
+    Err(Failure::input(anyhow::anyhow!(
+        "--out names a folder, in which pictures have names of their own, and {} is that of a picture: write --out {}",
+        out.display(),
+        folder.display()
+    )))
+}
+
+/// Refuses pictures for which there is no memory: `bytes` beside the program.
+pub(in crate::commands) fn expect_memory(bytes: f64) -> Result<(), Failure> {
+    let needed = PROGRAM + bytes;
+    let available = available_of(needed);
+    if needed <= available {
+        return Ok(());
+    }
+    Err(Failure::input(anyhow::anyhow!(
+        "this takes about {} of memory where {} are available to this process: give it more, in a queue for \
+         example with `--mem`",
+        byte_size(needed),
+        byte_size(available)
+    )))
+}
+
+pub(in crate::commands) fn expect_results(folder: &Path) -> Result<(), Failure> {
+    if folder.is_file() {
+        return Err(Failure::input(anyhow::anyhow!(
+            "{} is a file: name the folder of a finished run; a measured record goes with `plot --data`",
+            folder.display()
+        )));
+    }
+    let path = folder.join("summary.json");
+    let sentence = match path.try_exists() {
+        Ok(true) => return Ok(()),
+        Ok(false) if has_records(folder) => format!(
+            "{} is the folder of a study: name the folder of a run, such as one in its folder runs/",
+            folder.display()
+        ),
+        Ok(false) if !folder.exists() => missing_folder(folder),
+        Ok(false) => format!(
+            "{} holds no summary.json: name the folder of a run that is finished",
+            folder.display()
+        ),
+        Err(error) => format!("cannot read {}: {error}", path.display()),
+    };
+    Err(Failure::input(anyhow::anyhow!(sentence)))
+}
+
+/// The sentence about a folder that is not there, with the one among the results that was probably meant.
+fn missing_folder(folder: &Path) -> String {
+    let among_results = Path::new("results").join(folder);
+    let meant = if among_results.is_dir() {
+        format!(": did you mean {}?", among_results.display())
+    } else {
+        String::new()
+    };
+    format!("there is no folder {}{meant}", folder.display())
+}
+
+/// Refuses a folder of a run to which these pictures do not belong.
+pub(in crate::commands) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
+    let manifest = out.join(MANIFEST);
+    let sentence = match manifest.try_exists() {
+        Ok(false) => return Ok(()),
+        Ok(true) => format!(
+            "{} holds a run, and these are not its pictures: choose another folder with --out",
+            out.display()
+        ),
+        Err(error) => format!("cannot read {}: {error}", manifest.display()),
+    };
+    Err(Failure::input(anyhow::anyhow!(sentence)))
+}
+
+/// Refuses to replace files where the pictures go, unless they are equal, or pictures that the run in the
+/// folder has drawn there, if the new ones are its `own`.
+fn refuse_to_replace(out: &Path, files: &PictureFiles, own: Option<&Inspection>) -> Result<(), Failure> {
+    for (name, bytes) in files {
+        let is_same = |path: &Path| read_limited(path, bytes.len() as u64).is_ok_and(|found| found == *bytes);
+        if let Some(sentence) = in_the_way(out, name, own)?
+            && !is_same(&out.join(name))
+        {
+            return Err(Failure::input(anyhow::anyhow!(sentence)));
+        }
+    }
+    Ok(())
+}
+
+/// Reason for which a file cannot replace another, unless the run in the folder has drawn that one and the
+/// new file is its `own`.
+pub(in crate::commands) fn in_the_way(
+    out: &Path,
+    name: &str,
+    own: Option<&Inspection>,
+) -> Result<Option<String>, Failure> {
+    let path = out.join(name);
+    if path.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    let is_drawn = own.map(|run| run.has_written(name)).transpose();
+    let what = match is_drawn.map_err(Failure::input)? {
+        Some(true) => return Ok(None),
+        Some(false) => "is not as the run has drawn it",
+        None => "exists",
+    };
+    Ok(Some(format!(
+        "{} {what}: choose another place with --out, or replace it with --force",
+        path.display()
+    )))
+}

@@ -1,0 +1,245 @@
+//! Options of the picture of friction: its axes, its names, and a measured record over the curves.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use slipfront_base::number_format::{count, four_digits, with_si_prefix};
+use slipfront_plot::{Picture, PictureSize};
+use slipfront_run::instrument::{Instrument, InstrumentKeys};
+use slipfront_run::measured::{Column, Correction, Measure, MeasuredError, MeasuredRecord};
+use slipfront_run::pictures::friction::{
+    Against, AxisUnits, Fit, FrictionLook, OverlaidRecord, Overlay, overlay, overlay_measured,
+};
+
+use crate::failure::Failure;
+use crate::print::print_message;
+use crate::table_args::TableArgs;
+
+/// The picture of friction.
+#[derive(Args)]
+pub(super) struct FrictionArgs {
+    /// Draw friction alone, in these units
+    #[arg(long)]
+    units: Option<UnitsName>,
+    /// Draw friction alone, against this [default: time, or where runs of different materials can be
+    /// compared]
+    #[arg(long)]
+    against: Option<AgainstName>,
+    /// Draw friction alone, with this name of a run in the legend; once for each folder, and a last time for
+    /// the record of --data
+    #[arg(long = "name", value_name = "TEXT", conflicts_with = "field")]
+    names: Vec<String>,
+    /// Draw friction alone, with this title of the horizontal axis; a character after _ is a subscript
+    #[arg(long, value_name = "TEXT", conflicts_with = "field")]
+    x_label: Option<String>,
+    /// Draw friction alone, with this title of the axis of friction
+    #[arg(long, value_name = "TEXT", conflicts_with = "field")]
+    y_label: Option<String>,
+    /// A measured record to draw with the curves, in SI units: a table of text (.csv)
+    #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
+    data: Option<PathBuf>,
+    /// Column of times of the record, or of displacements with `--against displacement`: name or number from
+    /// 1
+    #[arg(long, value_name = "COLUMN", requires = "data")]
+    x: Option<String>,
+    /// Column of forces of the record, or of coefficients if its unit is 1
+    #[arg(long, value_name = "COLUMN", requires = "data")]
+    y: Option<String>,
+    /// Unit of the column of times or displacements [default: that in its header]
+    #[arg(long, value_name = "UNIT", requires = "data")]
+    x_unit: Option<String>,
+    /// Unit of the column of forces [default: that in its header]
+    #[arg(long, value_name = "UNIT", requires = "data")]
+    y_unit: Option<String>,
+    #[command(flatten)]
+    table: TableArgs,
+    /// Factor of the forces: -1 turns their sign
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        requires = "data",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
+    y_factor: f64,
+    /// Number added to the forces after that, in N or 1
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        requires = "data",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    y_offset: f64,
+    /// Number added to the record's times or displacements, in s or m [default: what fits the first run
+    /// best, if nothing else fits about as well]
+    #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
+    shift: Option<f64>,
+    /// Draw the curves as an instrument writes them, and compare the record with that: the table
+    /// `[instrument]` of this file, such as a calibration file. Marks of instants and peaks, which are
+    /// those of friction itself, are left out
+    #[arg(long, value_name = "FILE", requires = "data")]
+    instrument: Option<PathBuf>,
+}
+
+/// Units of the axes.
+#[derive(Clone, Copy, ValueEnum)]
+enum UnitsName {
+    /// Dimensionless
+    Star,
+    /// Newtons, and seconds or metres
+    Si,
+}
+
+/// The horizontal axis.
+#[derive(Clone, Copy, ValueEnum)]
+enum AgainstName {
+    /// Time
+    Time,
+    /// Path of the drive
+    Displacement,
+}
+
+impl FrictionArgs {
+    /// Whether an option asks for the picture of friction, where a run has others.
+    pub(super) fn is_asked_for(&self) -> bool {
+        self.option().is_some()
+    }
+
+    /// An option that asks for the picture of friction; none if there is none.
+    pub(super) fn option(&self) -> Option<&'static str> {
+        let options = [
+            ("--units", self.units.is_some()),
+            ("--against", self.against.is_some()),
+            ("--name", !self.names.is_empty()),
+            ("--x-label", self.x_label.is_some()),
+            ("--y-label", self.y_label.is_some()),
+            ("--data", self.data.is_some()),
+        ];
+        options
+            .iter()
+            .find(|(_, is_given)| *is_given)
+            .map(|(option, _)| *option)
+    }
+
+    /// Draws friction alone, and prints what there is to say of it.
+    pub(super) fn draw(&self, folders: &[PathBuf], size: PictureSize) -> Result<Picture, Failure> {
+        let Overlay { picture, note, fit } = self.overlay(folders, size)?;
+        if let Some(note) = note {
+            print_message(&format!("note: {note}\n"));
+        }
+        if let (Some(fit), Some(data)) = (fit, &self.data) {
+            print_message(&fit_report(folders, &fit, data));
+        }
+        Ok(picture)
+    }
+
+    fn look(&self, size: PictureSize) -> FrictionLook {
+        FrictionLook {
+            names: self.names.clone(),
+            x_label: self.x_label.clone(),
+            y_label: self.y_label.clone(),
+            size,
+        }
+    }
+
+    /// Refuses names of which there are not as many as runs, or one more for a record.
+    pub(super) fn expect_names(&self, runs: usize) -> Result<(), Failure> {
+        let given = self.names.len();
+        let most = runs + usize::from(self.data.is_some());
+        if given == 0 || (runs..=most).contains(&given) {
+            return Ok(());
+        }
+        Err(Failure::input(anyhow::anyhow!(
+            "{} for {}: give --name once for each, in their order",
+            count(given, "name"),
+            count(runs, "run")
+        )))
+    }
+
+    fn against(&self) -> Option<Against> {
+        self.against.map(|name| match name {
+            AgainstName::Time => Against::Time,
+            AgainstName::Displacement => Against::Displacement,
+        })
+    }
+
+    /// Friction alone, on the axes that were asked for, with a measured record if there is one.
+    fn overlay(&self, folders: &[PathBuf], size: PictureSize) -> Result<Overlay, Failure> {
+        let look = self.look(size);
+        let drawn = match (self.units, &self.data) {
+            (Some(UnitsName::Star), Some(_)) => {
+                let sentence = "a measured record has units, and is drawn in them: leave `--units star` out";
+                return Err(Failure::input(anyhow::anyhow!(sentence)));
+            }
+            (_, Some(path)) => {
+                let mut measured = self.measured(path).map_err(Failure::input)?;
+                measured.instrument = self.instrument(measured.record.of)?;
+                for note in measured.record.notes() {
+                    print_message(&format!("note: {note}\n"));
+                }
+                overlay_measured(folders, self.against().unwrap_or_default(), &measured, &look)
+            }
+            (Some(UnitsName::Si), None) => overlay(folders, AxisUnits::Si, self.against(), &look),
+            (_, None) => overlay(folders, AxisUnits::Star, self.against(), &look),
+        };
+        drawn.map_err(Failure::input)
+    }
+
+    fn measured(&self, path: &Path) -> Result<OverlaidRecord, MeasuredError> {
+        let column = |name: &Option<String>, unit: &Option<String>| Column {
+            name: name.clone().unwrap_or_default(),
+            unit: unit.clone(),
+        };
+        let (x, y) = (column(&self.x, &self.x_unit), column(&self.y, &self.y_unit));
+        let along = match self.against() {
+            Some(Against::Displacement) => Measure::Displacement,
+            Some(Against::Time) | None => Measure::Time,
+        };
+        let mut record = MeasuredRecord::read(path, [&x, &y], along, self.table.options())?;
+        record.correct(&Correction {
+            y_factor: self.y_factor,
+            y_offset: self.y_offset,
+            ..Correction::default()
+        });
+        Ok(OverlaidRecord {
+            label: path.display().to_string(),
+            record,
+            shift: self.shift,
+            instrument: None,
+        })
+    }
+
+    /// The instrument that wrote a record of this quantity.
+    fn instrument(&self, friction: Measure) -> Result<Option<Instrument>, Failure> {
+        let Some(path) = &self.instrument else {
+            return Ok(None);
+        };
+        let keys = InstrumentKeys::load(path).map_err(Failure::input)?;
+        let made = keys.instrument(friction);
+        let named = made.map_err(|error| Failure::input(anyhow::anyhow!("{}: {error}", path.display())));
+        named.map(Some)
+    }
+}
+
+/// The fit of a measured record to each run, in words.
+fn fit_report(folders: &[PathBuf], fit: &Fit, data: &Path) -> String {
+    let [x, y] = fit.measures.map(Measure::unit);
+    let quantity = |value: f64, unit: &str| match unit {
+        "1" => four_digits(value),
+        unit => with_si_prefix(value, unit),
+    };
+    let mut text = format!("{}: shifted by {}\n", data.display(), quantity(fit.shift, x));
+    for (folder, misfit) in folders.iter().zip(&fit.misfits) {
+        let misfit = misfit.map_or("too little in common for a misfit".to_owned(), |misfit| {
+            format!(
+                "RMS misfit {} over {} of {}",
+                quantity(misfit.rms, y),
+                misfit.points,
+                count(fit.points, "point")
+            )
+        });
+        text += &format!("  {}: {misfit}\n", folder.display());
+    }
+    text
+}

@@ -1,0 +1,104 @@
+//! Options on the look of pictures: their size, the formats of their files, and which of them are drawn.
+
+use clap::{Args, ValueEnum};
+use slipfront_case::case_file::nearest;
+use slipfront_plot::{PictureFormat, PictureLook, PictureSize};
+
+use crate::bounds::within;
+use crate::failure::Failure;
+
+/// The look of pictures.
+#[derive(Args)]
+pub(super) struct LookArgs {
+    /// Width of the pictures in mm [default: 85 of curves, maps over two axes and bars, at most 175 of maps of
+    /// the slider]
+    #[arg(long, value_name = "MM", value_parser = millimetres)]
+    width: Option<f64>,
+    /// Height of the pictures in mm; of maps of the slider it follows from the width
+    #[arg(long, value_name = "MM", value_parser = millimetres)]
+    height: Option<f64>,
+    /// Size of all text in pt: titles, numbers and legends alike [default: 8]. Subscripts have 0.72 of it, and a
+    /// title that is too long for its axis seven eighths of it; lines and marks grow with it
+    #[arg(long, value_name = "PT", value_parser = points)]
+    font_size: Option<f64>,
+    /// Formats of the files, such as pdf or svg,png. PDF has its font inside. For EPS, convert the PDF: pdftops
+    /// -eps NAME.pdf
+    #[arg(
+        long = "format",
+        value_name = "FORMAT",
+        value_delimiter = ',',
+        default_value = "svg,png"
+    )]
+    formats: Vec<FormatName>,
+    /// Draw this picture alone, by the name of its files without an ending
+    #[arg(long, value_name = "NAME", conflicts_with = "field")]
+    picture: Option<String>,
+}
+
+/// Format of a file.
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatName {
+    Svg,
+    Png,
+    Pdf,
+}
+
+/// A side of a picture in mm.
+fn millimetres(text: &str) -> Result<f64, String> {
+    within(text, 20.0, PictureSize::MAX_MM, "mm")
+}
+
+/// A size of letters in pt.
+fn points(text: &str) -> Result<f64, String> {
+    within(text, 3.0, 40.0, "pt")
+}
+
+impl LookArgs {
+    pub(super) fn size(&self) -> PictureSize {
+        PictureSize {
+            width_mm: self.width,
+            height_mm: self.height,
+            font_pt: self.font_size,
+        }
+    }
+
+    pub(super) fn look(&self) -> PictureLook {
+        let formats = self.formats.iter().map(|format| match format {
+            FormatName::Svg => PictureFormat::Svg,
+            FormatName::Png => PictureFormat::Png,
+            FormatName::Pdf => PictureFormat::Pdf,
+        });
+        PictureLook {
+            size: self.size(),
+            formats: formats.collect(),
+            only: self.picture.clone(),
+        }
+    }
+
+    /// Name of the only picture that is asked for.
+    pub(super) fn picture(&self) -> Option<&str> {
+        self.picture.as_deref()
+    }
+
+    /// Refuses a picture that is none of these.
+    pub(super) fn expect_one_of(&self, names: &[&str]) -> Result<(), Failure> {
+        let Some(asked) = self.picture().filter(|asked| !names.contains(asked)) else {
+            return Ok(());
+        };
+        let near = match nearest(asked, names) {
+            Some(near) => format!(": did you mean {near}? The name"),
+            None => ": the name".to_owned(),
+        };
+        let shown = names.iter().take(MOST_NAMES).copied();
+        let more =
+            (names.len() > MOST_NAMES).then(|| format!("or one of {} others", names.len() - MOST_NAMES));
+        let list: Vec<String> = shown.map(str::to_owned).chain(more).collect();
+        Err(Failure::input(anyhow::anyhow!(
+            "there is no picture {asked}{near} can be {}",
+            list.join(", ")
+        )))
+    }
+}
+
+/// Largest number of names of pictures that a message lists.
+const MOST_NAMES: usize = 20;

@@ -1,0 +1,195 @@
+//! `slipfront plot`: pictures again, from the files of runs and of studies.
+
+mod files;
+mod friction;
+mod look;
+mod project;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use slipfront_base::disk::is_same;
+use slipfront_case::field_info::{FIELDS, field_info, field_named};
+use slipfront_plot::{PictureLook, PictureSize};
+use slipfront_run::names::RunPicture;
+use slipfront_run::pictures;
+use slipfront_run::run_files::RunFiles;
+use slipfront_run::run_folder::inspection::Inspection;
+use slipfront_run::verify::{expect_as_written, inspect};
+
+use self::files::{PictureFiles, expect_a_folder, write};
+pub(super) use self::files::{expect_memory, expect_results, in_the_way, refuse_other_run};
+use self::friction::FrictionArgs;
+use self::look::LookArgs;
+use crate::failure::Failure;
+use crate::signals::Signals;
+use crate::threads::set_threads;
+
+/// Draw the pictures of a run or a study in the size and format of a journal, or compare the curves of runs
+///
+/// The pictures of a run, a study, a convergence, a design or a calibration are drawn again from what the folder has
+/// recorded. The axes of friction are of your choice, and measured records may be drawn over the curves
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront plot results/baseline
+  slipfront plot results/baseline --width 89 --font-size 8 --format pdf -o figures
+  slipfront plot results/coverage --width 89 --font-size 8 --format pdf -o figures
+  slipfront plot results/coverage --picture static_reduction_percent --width 60 --height 45 -o inset
+  slipfront plot results/circle results/groove_across -o results/overlay
+  slipfront plot results/circle --units si --against displacement -o results/newtons
+  slipfront plot results/circle --data force.csv --x time_s --y force_n
+  slipfront plot results/circle --data force.csv --x time_s --y force_n --instrument rig.toml
+  slipfront plot results/a results/b --width 120 --height 90 --font-size 10 --name smooth --name textured -o both
+  slipfront plot results/circle --field traction -o results/traction
+  slipfront plot results/circle --field kymograph -o results/kymograph
+
+Formats are svg, png (300 dots per inch) and pdf, each with the font inside. For EPS, convert the PDF: pdftops -eps friction.pdf")]
+pub(crate) struct PlotCommand {
+    /// Folders of runs, or one of a study, a convergence, a design or a calibration
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    #[command(flatten)]
+    look: LookArgs,
+    /// Draw maps of this field of one run alone; kymograph is the share of sliding blocks against place and
+    /// time, over the whole run
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FIELDS.map(|info| info.name).into_iter().chain([KYMOGRAPH])), conflicts_with_all = ["units", "against", "data", "names", "x_label", "y_label"])]
+    field: Option<String>,
+    #[command(flatten)]
+    friction: FrictionArgs,
+    /// Folder for the pictures [default: the folder's own for all its pictures in their usual size;
+    /// results/overlay for others]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace pictures that stand there
+    #[arg(long)]
+    force: bool,
+}
+
+/// The kymograph as `--field` names it, and its picture.
+const KYMOGRAPH: &str = "kymograph";
+
+/// Folder for pictures that are not those of a folder of results.
+const ELSEWHERE: &str = "results/overlay";
+
+impl PlotCommand {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
+        self.out.as_deref().map_or(Ok(()), expect_a_folder)?;
+        let look = self.look.look();
+        if let Some(project) = project::of(&self.folders)? {
+            self.refuse_options_of_runs()?;
+            let names: Vec<&str> = project.names.iter().map(String::as_str).collect();
+            self.look.expect_one_of(&names)?;
+            // A signal ends the work and not the process, so that nothing of it is left in the folder for
+            // temporary files.
+            let signals = Signals::catch().map_err(Failure::running)?;
+            let drawn = project.draw(&look, &signals.stop);
+            Failure::if_stopped(&signals)?;
+            let files = drawn.map_err(Failure::input)?;
+            return write(&self.place(&look), &files, None, self.force, &signals);
+        }
+        let runs = self.runs()?;
+        self.friction.expect_names(runs.len())?;
+        expect_memory(pictures::memory(&self.folders).map_err(Failure::input)?)?;
+        let files = self.draw_runs(&look)?;
+        let out = self.place(&look);
+        let own = match runs.as_slice() {
+            [run] if self.draws_as_usual(&look) && is_same(&run.path, &out) => Some(run),
+            _ => None,
+        };
+        // Not before: until here a signal ends the process, and nothing is left behind.
+        let signals = Signals::catch().map_err(Failure::running)?;
+        write(&out, &files, own, self.force, &signals)
+    }
+
+    /// The folders, which are those of runs.
+    fn runs(&self) -> Result<Vec<Inspection>, Failure> {
+        let run = |folder: &PathBuf| {
+            expect_results(folder)?;
+            let run = inspect(folder).map_err(Failure::input)?;
+            expect_as_written(&run, pictures::is_drawn_from).map_err(Failure::input)?;
+            Ok(run)
+        };
+        self.folders.iter().map(run).collect()
+    }
+
+    /// Refuses options that ask for pictures of runs.
+    fn refuse_options_of_runs(&self) -> Result<(), Failure> {
+        let field = self.field.as_ref().map(|_| "--field");
+        let Some(option) = field.or_else(|| self.friction.option()) else {
+            return Ok(());
+        };
+        Err(Failure::input(anyhow::anyhow!(
+            "{option} is for pictures of runs, and {} is no folder of a run: leave it out, or name a run, such as one in the folder's \
+             runs/",
+            self.folders[0].display()
+        )))
+    }
+
+    /// Draws the pictures of the runs that are asked for.
+    fn draw_runs(&self, look: &PictureLook) -> Result<PictureFiles, Failure> {
+        let drawn = match (self.field.as_deref(), self.folders.as_slice()) {
+            (Some(name), [folder]) => {
+                let run = RunFiles::Folder(folder);
+                let (name, picture) = match field_named(name) {
+                    Some(field) => (
+                        field_info(field).name,
+                        pictures::draw_field(run, field, look.size),
+                    ),
+                    None => (KYMOGRAPH, pictures::draw_kymograph(run, look.size)),
+                };
+                vec![(name, picture.map_err(Failure::input)?)]
+            }
+            (Some(_), _) => {
+                let sentence = "--field draws the maps of one run: name one folder";
+                return Err(Failure::input(anyhow::anyhow!(sentence)));
+            }
+            (None, [folder]) if !self.friction.is_asked_for() => {
+                self.look.expect_one_of(&RunPicture::ALL.map(RunPicture::name))?;
+                let drawn = pictures::draw(RunFiles::Folder(folder), look).map_err(Failure::input)?;
+                self.expect_drawn(folder, drawn.is_empty())?;
+                drawn
+            }
+            (None, folders) => {
+                let friction = RunPicture::Friction.name();
+                self.look.expect_one_of(&[friction])?;
+                vec![(friction, self.friction.draw(folders, look.size)?)]
+            }
+        };
+        let files = drawn.iter().flat_map(|(name, picture)| {
+            let file = |format: &slipfront_plot::PictureFormat| {
+                let name = format!("{name}.{}", format.ending());
+                (name, picture.file(*format).into_owned())
+            };
+            look.formats.iter().map(file)
+        });
+        Ok(files.collect())
+    }
+
+    /// Refuses a run that has kept nothing for the picture that is asked for.
+    fn expect_drawn(&self, folder: &Path, is_empty: bool) -> Result<(), Failure> {
+        match self.look.picture() {
+            Some(name) if is_empty => Err(Failure::input(anyhow::anyhow!(
+                "{} has no picture {name}: the run has kept nothing that it could show",
+                folder.display()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the pictures are those that stand in the folder of results.
+    fn draws_as_usual(&self, look: &PictureLook) -> bool {
+        let is_own = self.field.is_none() && !self.friction.is_asked_for() && self.folders.len() == 1;
+        is_own && look.size == PictureSize::default()
+    }
+
+    /// Folder for the pictures.
+    fn place(&self, look: &PictureLook) -> PathBuf {
+        let usual = || match self.folders.as_slice() {
+            [folder] if self.draws_as_usual(look) => folder.clone(),
+            _ => PathBuf::from(ELSEWHERE),
+        };
+        self.out.clone().unwrap_or_else(usual)
+    }
+}

@@ -1,0 +1,36 @@
+//! Pictures of folders of studies, convergences, designs and calibrations.
+
+use std::path::PathBuf;
+
+use slipfront_calibrate::CALIBRATIONS;
+use slipfront_design::DESIGNS;
+use slipfront_study::project_folder::Derivation;
+use slipfront_study::{PicturesOf, is_of_figures, pictures_of};
+
+use crate::failure::Failure;
+
+/// Kinds of projects beside studies.
+static OTHERS: [Derivation; 2] = [DESIGNS, CALIBRATIONS];
+
+/// The project whose folder is named; none if all folders are of runs.
+pub(super) fn of(folders: &[PathBuf]) -> Result<Option<PicturesOf<'_>>, Failure> {
+    for folder in folders {
+        if is_of_figures(folder) {
+            return Err(Failure::input(anyhow::anyhow!(
+                "{} holds the figures of the paper, which have the sizes of its print: `slipfront paper` draws them",
+                folder.display()
+            )));
+        }
+        let Some(found) = pictures_of(folder, &OTHERS).map_err(Failure::input)? else {
+            continue;
+        };
+        if folders.len() > 1 {
+            return Err(Failure::input(anyhow::anyhow!(
+                "{} is no folder of a run, and curves are drawn over each other of runs alone: name it by itself",
+                folder.display()
+            )));
+        }
+        return Ok(Some(found));
+    }
+    Ok(None)
+}

@@ -1,0 +1,212 @@
+//! A canvas as a PDF of one page of its physical size: lines and areas as paths, text as text in the embedded
+//! font, maps as images. The page has no ground, which is the paper.
+
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use pdf_writer::types::LineJoinStyle;
+use pdf_writer::{Content, Filter, Finish as _, Name, Pdf, Rect, Ref, Str};
+
+use crate::canvas::{Canvas, Element, Primitive};
+use crate::color_image::palette;
+use crate::geometry::CanvasPoint;
+use crate::pdf_font::{FontObjects, PdfFont};
+use crate::style::DPI;
+
+/// Points in an inch.
+const POINTS: f64 = 72.0;
+/// Distance of the control points of a quarter of a circle from its ends, over the radius.
+const QUARTER: f64 = 0.552_284_75;
+/// Name of the font on the page.
+const FONT: Name = Name(b"F");
+
+/// The objects of the file before those of its images.
+const CATALOG: Ref = Ref::new(1);
+const PAGES: Ref = Ref::new(2);
+const PAGE: Ref = Ref::new(3);
+const CONTENT: Ref = Ref::new(4);
+const OBJECTS: FontObjects = FontObjects {
+    font: Ref::new(5),
+    glyphs: Ref::new(6),
+    descriptor: Ref::new(7),
+    file: Ref::new(8),
+    characters: Ref::new(9),
+};
+const FIRST_IMAGE: i32 = 10;
+
+/// The canvas as the bytes of a PDF file.
+pub(crate) fn pdf(canvas: &Canvas) -> Vec<u8> {
+    let [width, height] = canvas.millimetres().map(|mm| (mm / 25.4 * POINTS) as f32);
+    let font = PdfFont::of(canvas);
+    let opacities = opacities(canvas);
+    let mut pdf = Pdf::new();
+    pdf.catalog(CATALOG).pages(PAGES);
+    pdf.pages(PAGES).kids([PAGE]).count(1);
+    let mut page = pdf.page(PAGE);
+    page.media_box(Rect::new(0.0, 0.0, width, height))
+        .parent(PAGES)
+        .contents(CONTENT);
+    let mut resources = page.resources();
+    resources.fonts().pair(FONT, OBJECTS.font);
+    let mut images = resources.x_objects();
+    for index in 0..canvas.images.len() {
+        images.pair(Name(image_name(index).as_bytes()), image_object(index));
+    }
+    images.finish();
+    let mut states = resources.ext_g_states();
+    for (index, opacity) in opacities.iter().enumerate() {
+        states
+            .insert(Name(state_name(index).as_bytes()))
+            .start::<pdf_writer::writers::ExtGraphicsState<'_>>()
+            .non_stroking_alpha(*opacity as f32);
+    }
+    states.finish();
+    resources.finish();
+    page.finish();
+    font.write(&mut pdf, &OBJECTS, packed);
+    for (index, image) in canvas.images.iter().enumerate() {
+        let (columns, rows, levels) = image.repeated();
+        let levels = packed(&levels);
+        let mut object = pdf.image_xobject(image_object(index), &levels);
+        object.filter(Filter::FlateDecode);
+        object
+            .width(columns as i32)
+            .height(rows as i32)
+            .bits_per_component(8)
+            .color_space()
+            .indexed(Name(b"DeviceRGB"), 255, &palette().concat());
+    }
+    let content = content(canvas, height, &font, &opacities);
+    pdf.stream(CONTENT, &packed(&content)).filter(Filter::FlateDecode);
+    pdf.finish()
+}
+
+/// The contents of a stream, compressed.
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
+    // Memory takes whatever is written to it.
+    let written = packer.write_all(bytes).and_then(|()| packer.finish());
+    written.unwrap_or_default()
+}
+
+/// The opacities of areas, each once.
+fn opacities(canvas: &Canvas) -> Vec<f64> {
+    let mut opacities: Vec<f64> = canvas.elements.iter().map(|element| element.opacity).collect();
+    opacities.sort_unstable_by(f64::total_cmp);
+    opacities.dedup();
+    opacities
+}
+
+fn image_object(index: usize) -> Ref {
+    Ref::new(FIRST_IMAGE + index as i32)
+}
+
+fn image_name(index: usize) -> String {
+    format!("I{index}")
+}
+
+fn state_name(index: usize) -> String {
+    format!("S{index}")
+}
+
+/// What the page of this height shows.
+fn content(canvas: &Canvas, height: f32, font: &PdfFont, opacities: &[f64]) -> Vec<u8> {
+    let mut content = Content::new();
+    // From pixels, y downwards, to points, y upwards.
+    let scale = (canvas.scale * POINTS / DPI) as f32;
+    content.transform([scale, 0.0, 0.0, -scale, 0.0, height]);
+    content.set_line_join(LineJoinStyle::RoundJoin);
+    for (index, image) in canvas.images.iter().enumerate() {
+        let [x, y, width, height] = image.area.sides().map(|side| side as f32);
+        content.save_state();
+        content.transform([width, 0.0, 0.0, -height, x, y + height]);
+        content.x_object(Name(image_name(index).as_bytes()));
+        content.restore_state();
+    }
+    for element in &canvas.elements {
+        let state = opacities.iter().position(|opacity| *opacity == element.opacity);
+        content.set_parameters(Name(state_name(state.unwrap_or_default()).as_bytes()));
+        draw(&mut content, element, font);
+    }
+    content.finish().into_vec()
+}
+
+fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
+    let [red, green, blue] = element.colour.map(|channel| f32::from(channel) / 255.0);
+    if let Primitive::Line { .. } = element.primitive {
+        content.set_stroke_rgb(red, green, blue);
+    } else {
+        content.set_fill_rgb(red, green, blue);
+    }
+    match &element.primitive {
+        Primitive::Line {
+            points,
+            width,
+            closed,
+            dashes,
+        } => {
+            content.set_line_width(*width as f32);
+            content.set_dash_pattern(dashes.iter().map(|&length| length as f32), 0.0);
+            path(content, points);
+            if *closed {
+                content.close_path();
+            }
+            content.stroke();
+        }
+        Primitive::Polygon(points) => {
+            path(content, points);
+            content.close_path().fill_nonzero();
+        }
+        Primitive::Rectangle(area) => {
+            let [x, y, width, height] = area.sides().map(|side| side as f32);
+            content.rect(x, y, width, height).fill_nonzero();
+        }
+        Primitive::Disc { centre, radius } => disc(content, *centre, *radius),
+        Primitive::Letters {
+            text,
+            size,
+            at,
+            upwards,
+        } => {
+            let (x, y) = (at.0 as f32, at.1 as f32);
+            // Directions of the line and of what stands on it, y downwards.
+            let [along, above] = if *upwards {
+                [[0.0, -1.0], [-1.0, 0.0]]
+            } else {
+                [[1.0, 0.0], [0.0, -1.0]]
+            };
+            content.begin_text().set_font(FONT, *size as f32);
+            content.set_text_matrix([along[0], along[1], above[0], above[1], x, y]);
+            content.show(Str(&font.encoded(text))).end_text();
+        }
+    }
+}
+
+/// A path through points; those that are no numbers are left out.
+fn path(content: &mut Content, points: &[CanvasPoint]) {
+    let points = points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+    for (index, &(x, y)) in points.enumerate() {
+        if index == 0 {
+            content.move_to(x as f32, y as f32);
+        } else {
+            content.line_to(x as f32, y as f32);
+        }
+    }
+}
+
+/// A filled circle, in four curves.
+fn disc(content: &mut Content, (x, y): CanvasPoint, radius: f64) {
+    let at = |across: f64, down: f64| [(x + radius * across) as f32, (y + radius * down) as f32];
+    let [start_x, start_y] = at(1.0, 0.0);
+    content.move_to(start_x, start_y);
+    for [across, down] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
+        // The next quarter ends a right angle further on.
+        let [next_across, next_down] = [-down, across];
+        let [x1, y1] = at(across + QUARTER * next_across, down + QUARTER * next_down);
+        let [x2, y2] = at(next_across + QUARTER * across, next_down + QUARTER * down);
+        let [x3, y3] = at(next_across, next_down);
+        content.cubic_to(x1, y1, x2, y2, x3, y3);
+    }
+    content.fill_nonzero();
+}

@@ -1,0 +1,131 @@
+//! Pictures of the folder of a study or of another project, drawn again in a look that is asked for, from the
+//! runs that the folder has recorded. The folder stays as it is.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use slipfront_base::disk::read_limited;
+use slipfront_base::unfinished::TemporaryFolder;
+use slipfront_plot::{PictureFormat, PictureLook};
+use slipfront_run::folder_error::FolderError;
+use slipfront_run::verify::VerifyError;
+
+use crate::error::StudyError;
+use crate::execute::collect;
+use crate::folder::{StudyFolder, stage_pictures, study_of};
+use crate::plan::Plan;
+use crate::project_folder::{Checksums, Derivation, Others, VerifyStudyError};
+use crate::study_file::STUDIES;
+
+/// Largest number of bytes of a picture.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// Files of pictures: their names and contents.
+type PictureFiles = Vec<(String, Vec<u8>)>;
+
+/// The folder of a finished study, or of another finished project.
+pub struct PicturesOf<'f> {
+    folder: &'f Path,
+    /// The kind of the project; none for a study.
+    derivation: Option<&'f Derivation>,
+    /// Names of its pictures, without their endings.
+    pub names: Vec<String>,
+}
+
+/// The pictures of a folder if it is that of a study, or of a project of one of these `others`.
+///
+/// # Errors
+/// When the results of the folder are not complete, or its list cannot be read.
+pub fn pictures_of<'f>(
+    folder: &'f Path,
+    others: &'f [Derivation],
+) -> Result<Option<PicturesOf<'f>>, VerifyStudyError> {
+    let derivation = others.iter().find(|other| other.kind.is_in(folder));
+    let kind = match derivation {
+        Some(derivation) => derivation.kind,
+        None if STUDIES.is_in(folder) => &STUDIES,
+        None => return Ok(None),
+    };
+    let list = Checksums::read(folder)?.unwrap_or_default();
+    if !list.is_complete {
+        return Err(VerifyStudyError::UnfinishedSearch {
+            what: kind.name,
+            path: folder.to_owned(),
+        });
+    }
+    let no_pictures = derivation.map_or(&[][..], |derivation| derivation.no_pictures);
+    let names = list.files.iter().map(|file| file.name.as_str());
+    Ok(Some(PicturesOf {
+        folder,
+        derivation,
+        names: names
+            .filter_map(|name| picture_name(name, PictureFormat::Svg, no_pictures))
+            .collect(),
+    }))
+}
+
+/// The name of the picture of which a file is in this format; none for other files.
+fn picture_name(file: &str, format: PictureFormat, no_pictures: &[&str]) -> Option<String> {
+    let name = file.strip_suffix(format.ending())?.strip_suffix('.')?;
+    let is_one = !name.contains('/') && !no_pictures.contains(&name);
+    is_one.then(|| name.to_owned())
+}
+
+impl PicturesOf<'_> {
+    /// Draws the pictures from the recorded runs, and returns their files.
+    ///
+    /// # Errors
+    /// When runs are missing, a picture cannot be drawn, or the system refuses to read or to write; after a
+    /// stop.
+    pub fn draw(&self, look: &PictureLook, stop: &AtomicBool) -> Result<PictureFiles, VerifyStudyError> {
+        let temporary = TemporaryFolder::new(self.folder).map_err(VerifyError::Temporary)?;
+        match self.derivation {
+            None => self.draw_study(temporary.path(), look, stop)?,
+            Some(derivation) => {
+                (derivation.find_again)(self.folder, temporary.path(), look, stop)?;
+            }
+        }
+        let no_pictures = self
+            .derivation
+            .map_or(&[][..], |derivation| derivation.no_pictures);
+        let is_picture = |name: &str| {
+            let mut formats = look.formats.iter();
+            formats.any(|format| picture_name(name, *format, no_pictures).is_some())
+        };
+        let listed = Checksums::read(temporary.path())?.unwrap_or_default().files;
+        let pictures = listed.into_iter().filter(|file| is_picture(&file.name));
+        pictures
+            .map(|file| {
+                let path = temporary.path().join(&file.name);
+                let bytes = read_limited(&path, MAX_BYTES).map_err(FolderError::read(&path))?;
+                Ok((file.name, bytes))
+            })
+            .collect()
+    }
+
+    /// Draws the pictures of a study in another folder.
+    fn draw_study(
+        &self,
+        other: &Path,
+        look: &PictureLook,
+        stop: &AtomicBool,
+    ) -> Result<(), VerifyStudyError> {
+        let file = study_of(self.folder)?;
+        let plan = Plan::new(&file, None)?;
+        plan.check_memory(0)?;
+        let mut again = StudyFolder::open(other, &file, false)?;
+        again.files = again.files.with_look(look.clone());
+        again.records.merge(self.folder)?;
+        let results = collect(&plan, &again.records).map_err(|error| match error {
+            StudyError::Missing { runs, others } => VerifyStudyError::Unfinished {
+                path: self.folder.to_owned(),
+                runs,
+                others,
+            },
+            error => error.into(),
+        })?;
+        let mut batch = again.files.begin();
+        stage_pictures(&plan, &results, &mut batch, stop)?;
+        Ok(batch.place(Others::Go)?)
+    }
+}
