@@ -9,7 +9,7 @@ use crate::text::{CAP_HEIGHT, Text};
 const MAX_LINES: usize = 3;
 const LINE: f64 = 1.25 * SIZE_TEXT as f64;
 /// Lengths of upright names: they are broken at the first of these if they can, and cut at the last.
-const LENGTHS: [f64; 2] = [320.0, 480.0];
+const LENGTHS: [f64; 2] = [365.0, 550.0];
 /// Distance between the panel and the names.
 const GAP: f64 = 14.0;
 /// Distance between two names.

@@ -70,7 +70,13 @@ pub fn field_maps(maps: &FieldMaps, size: PictureSize) -> Result<Picture, Pictur
     let whole = size.roomy_width(TEXT_WIDTH)?;
     let is_asked = size.width_mm.is_some();
     let room_of = |columns: usize| (whole - 2.0 * MARGIN - bar_width) / columns as f64;
-    let is_small = |columns: &usize| is_asked && room_of(*columns) - GAP < MIN_MAP;
+    let labels = maps
+        .maps
+        .iter()
+        .flat_map(|map| [&map.label, &map.note])
+        .map(|text| Text::plain(text, SIZE_TEXT).width());
+    let least = MIN_MAP.max(labels.fold(0.0, f64::max));
+    let is_small = |columns: &usize| is_asked && room_of(*columns) - GAP < least;
     let most = maps.columns.clamp(1, maps.maps.len());
     let columns = (1..=most).rev().find(|columns| !is_small(columns)).unwrap_or(1);
     let rows = maps.maps.len().div_ceil(columns);

@@ -2,6 +2,12 @@
 
 pub(crate) type CanvasPoint = (f64, f64);
 
+/// A length in hundredths of a pixel, which is less than a micrometre on paper.
+pub(crate) fn length(pixels: f64) -> f64 {
+    // Adding zero makes a negative zero positive.
+    (pixels * 100.0).round() / 100.0 + 0.0
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Area {
     pub(crate) x: f64,

@@ -10,7 +10,7 @@ use pdf_writer::{Content, Filter, Finish as _, Name, Pdf, Rect, Ref, Str};
 
 use crate::canvas::{Canvas, Element, Primitive};
 use crate::color_image::palette;
-use crate::geometry::CanvasPoint;
+use crate::geometry::{CanvasPoint, length};
 use crate::pdf_font::{FontObjects, PdfFont};
 use crate::style::DPI;
 
@@ -82,6 +82,11 @@ pub(crate) fn pdf(canvas: &Canvas) -> Vec<u8> {
     pdf.finish()
 }
 
+/// A coordinate of the canvas as it is written.
+fn rounded(pixels: f64) -> f32 {
+    length(pixels) as f32
+}
+
 /// The contents of a stream, compressed.
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
@@ -118,15 +123,19 @@ fn content(canvas: &Canvas, height: f32, font: &PdfFont, opacities: &[f64]) -> V
     content.transform([scale, 0.0, 0.0, -scale, 0.0, height]);
     content.set_line_join(LineJoinStyle::RoundJoin);
     for (index, image) in canvas.images.iter().enumerate() {
-        let [x, y, width, height] = image.area.sides().map(|side| side as f32);
+        let [x, y, width, height] = image.area.sides().map(rounded);
         content.save_state();
         content.transform([width, 0.0, 0.0, -height, x, y + height]);
         content.x_object(Name(image_name(index).as_bytes()));
         content.restore_state();
     }
+    let mut opacity = 1.0;
     for element in &canvas.elements {
-        let state = opacities.iter().position(|opacity| *opacity == element.opacity);
-        content.set_parameters(Name(state_name(state.unwrap_or_default()).as_bytes()));
+        if element.opacity != opacity {
+            opacity = element.opacity;
+            let state = opacities.iter().position(|known| *known == opacity);
+            content.set_parameters(Name(state_name(state.unwrap_or_default()).as_bytes()));
+        }
         draw(&mut content, element, font);
     }
     content.finish().into_vec()
@@ -147,7 +156,7 @@ fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
             dashes,
         } => {
             content.set_line_width(*width as f32);
-            content.set_dash_pattern(dashes.iter().map(|&length| length as f32), 0.0);
+            content.set_dash_pattern(dashes.iter().map(|&dash| rounded(dash)), 0.0);
             path(content, points);
             if *closed {
                 content.close_path();
@@ -159,7 +168,7 @@ fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
             content.close_path().fill_nonzero();
         }
         Primitive::Rectangle(area) => {
-            let [x, y, width, height] = area.sides().map(|side| side as f32);
+            let [x, y, width, height] = area.sides().map(rounded);
             content.rect(x, y, width, height).fill_nonzero();
         }
         Primitive::Disc { centre, radius } => disc(content, *centre, *radius),
@@ -169,7 +178,7 @@ fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
             at,
             upwards,
         } => {
-            let (x, y) = (at.0 as f32, at.1 as f32);
+            let (x, y) = (rounded(at.0), rounded(at.1));
             // Directions of the line and of what stands on it, y downwards.
             let [along, above] = if *upwards {
                 [[0.0, -1.0], [-1.0, 0.0]]
@@ -188,16 +197,16 @@ fn path(content: &mut Content, points: &[CanvasPoint]) {
     let points = points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
     for (index, &(x, y)) in points.enumerate() {
         if index == 0 {
-            content.move_to(x as f32, y as f32);
+            content.move_to(rounded(x), rounded(y));
         } else {
-            content.line_to(x as f32, y as f32);
+            content.line_to(rounded(x), rounded(y));
         }
     }
 }
 
 /// A filled circle, in four curves.
 fn disc(content: &mut Content, (x, y): CanvasPoint, radius: f64) {
-    let at = |across: f64, down: f64| [(x + radius * across) as f32, (y + radius * down) as f32];
+    let at = |across: f64, down: f64| [rounded(x + radius * across), rounded(y + radius * down)];
     let [start_x, start_y] = at(1.0, 0.0);
     content.move_to(start_x, start_y);
     for [across, down] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
@@ -209,4 +218,92 @@ fn disc(content: &mut Content, (x, y): CanvasPoint, radius: f64) {
         content.cubic_to(x1, y1, x2, y2, x3, y3);
     }
     content.fill_nonzero();
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read as _;
+
+    use flate2::read::ZlibDecoder;
+
+    use super::*;
+    use crate::color_image::Image;
+    use crate::geometry::{Align, Area};
+    use crate::size::PictureSize;
+    use crate::style::{BLACK, CURVES};
+    use crate::text::Text;
+
+    /// The streams of a file, inflated.
+    fn streams(file: &[u8]) -> Vec<String> {
+        let place = |from: usize, words: &[u8]| {
+            let found = file[from..].windows(words.len()).position(|at| at == words);
+            found.map(|at| from + at)
+        };
+        let mut streams = Vec::new();
+        let mut from = 0;
+        while let Some(start) = place(from, b">>\nstream\n").map(|at| at + 10) {
+            let mut inflated = Vec::new();
+            let mut stream = ZlibDecoder::new(&file[start..]);
+            stream.read_to_end(&mut inflated).unwrap();
+            streams.push(String::from_utf8_lossy(&inflated).into_owned());
+            from = place(start, b"endstream").unwrap();
+        }
+        streams
+    }
+
+    fn canvas(size: PictureSize) -> Canvas {
+        let mut canvas = Canvas::sized(size.width(1000.0), 300.0, size);
+        canvas.line((1.0, 2.0), (3.25, 4.0), 2.0, BLACK);
+        canvas.fill(Area::new(10.0, 20.0, 30.0, 40.0), CURVES[0], 0.25);
+        canvas.text(&Text::math("\u{3bc}_s", 33), (50.0, 60.0), Align::Start, BLACK);
+        canvas.text_upwards(&Text::plain("\u{4e00}", 33), (70.0, 80.0), Align::Start, BLACK);
+        canvas.images.push(Image {
+            area: Area::new(100.0, 110.0, 120.0, 130.0),
+            columns: 2,
+            levels: vec![0, 254],
+        });
+        canvas
+    }
+
+    #[test]
+    fn the_page_has_the_size_that_is_asked_for() {
+        let size = PictureSize {
+            width_mm: Some(89.0),
+            font_pt: Some(8.0),
+            ..PictureSize::default()
+        };
+        let file = pdf(&canvas(size));
+        let text = String::from_utf8_lossy(&file);
+        assert!(text.starts_with("%PDF-1.7") && text.ends_with("%%EOF"));
+        // 89 mm are 252.283 points; 300 pixels in which 33 are 8 pt, 72.727.
+        assert!(text.contains("/MediaBox [0 0 252.28346 72.72727]"), "{text}");
+        let content = streams(&file).pop().unwrap();
+        assert!(
+            content.starts_with("0.24242425 0 0 -0.24242425 0 72.72727 cm\n1 j\n"),
+            "{content}"
+        );
+    }
+
+    #[test]
+    fn everything_is_drawn_where_it_is() {
+        let streams = streams(&pdf(&canvas(PictureSize::default())));
+        let content = streams.last().unwrap();
+        for drawn in [
+            "2 w\n[] 0 d\n1 2 m\n3.25 4 l\nS\n",
+            "/S0 gs\n0 0.44705883 0.69803923 rg\n10 20 30 40 re\nf\n/S1 gs\n",
+            "120 0 0 -130 100 240 cm\n/I0 Do\n",
+            "BT\n/F 33 Tf\n1 0 0 -1 50 60 Tm\n",
+            "BT\n/F 33 Tf\n0 -1 -1 0 70 80 Tm\n",
+        ] {
+            assert!(content.contains(drawn), "{drawn} in {content}");
+        }
+        // Characters are found again, also one that the font lacks.
+        let characters = streams
+            .iter()
+            .find(|stream| stream.contains("beginbfchar"))
+            .unwrap();
+        for pair in ["<0001> <0073>", "<0002> <03BC>", "<0003> <4E00>"] {
+            assert!(characters.contains(pair), "{characters}");
+        }
+    }
 }

@@ -174,7 +174,15 @@ impl StressLayout {
         let gap = numbers.iter().map(|(_, text)| text.width()).fold(GAP, f64::max) + GAP;
         let room_of = |columns: usize| (width - left - right - GAP + gap) / columns as f64;
         let width_of = |columns: usize| (room_of(columns) - gap).min(max_width).min(MAX_HEIGHT / ratio);
-        let is_small = |columns: &usize| is_asked && width_of(*columns) < MIN_MAP.min(MAX_HEIGHT / ratio);
+        let lines = maps
+            .maps
+            .iter()
+            .flat_map(|map| titles(map, maps.is_torque, is_wide));
+        let title = lines.map(|line| line.width()).fold(0.0, f64::max);
+        let is_small = |columns: &usize| {
+            let least = MIN_MAP.min(MAX_HEIGHT / ratio);
+            is_asked && (width_of(*columns) < least || room_of(*columns) < title + GAP)
+        };
         let most = (1..=most).rev().find(|columns| !is_small(columns)).unwrap_or(1);
         // As many in one row as in the others.
         let rows = maps.maps.len().div_ceil(most);
@@ -183,11 +191,7 @@ impl StressLayout {
         let map_width = width_of(columns).round();
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
-        let lines = maps
-            .maps
-            .iter()
-            .flat_map(|map| titles(map, maps.is_torque, is_wide));
-        let widest = lines.map(|line| line.width()).fold(map_width, f64::max);
+        let widest = title.max(map_width);
         let pitch_x = (widest + GAP).min(room).max(map_width + gap).round();
         let overhang = 0.5 * (widest.min(pitch_x - GAP) - map_width);
         let first_x = left.max(MARGIN + overhang).round();

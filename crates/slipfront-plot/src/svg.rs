@@ -8,7 +8,7 @@ use base64::prelude::BASE64_STANDARD as BASE64;
 use crate::canvas::{Canvas, Element, Primitive};
 use crate::color_image::{Image, palette};
 use crate::font::WOFF2;
-use crate::geometry::{Area, CanvasPoint};
+use crate::geometry::{Area, CanvasPoint, length};
 use crate::picture::PictureError;
 use crate::png_file;
 use crate::style::Rgb;
@@ -115,12 +115,6 @@ fn path_data(points: &[CanvasPoint]) -> String {
 fn sides(area: &Area) -> String {
     let [x, y, width, height] = area.sides().map(length);
     format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
-}
-
-/// A length in hundredths of a pixel, which is less than a micrometre on paper.
-fn length(pixels: f64) -> f64 {
-    // Adding zero makes a negative zero positive.
-    (pixels * 100.0).round() / 100.0 + 0.0
 }
 
 fn hex([red, green, blue]: Rgb) -> String {

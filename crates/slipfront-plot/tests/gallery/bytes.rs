@@ -1,17 +1,17 @@
 //! A picture of every kind has the same bytes on every machine.
 //!
-//! The digests change with the look of the pictures, and with the version of the crate that compresses the
-//! PNG.
+//! The digests change with the look of the pictures, and with the version of the crates that compress PNG and
+//! PDF.
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,
-    KineticLine, Picture, PictureSize, Polar, Response, Responses, Shape, StressMap, StressMaps, bars,
-    field_maps, friction, heat_map, polar, response, shapes, stress,
+    KineticLine, Picture, PictureFormat, PictureSize, Polar, Response, Responses, Shape, StressMap,
+    StressMaps, bars, field_maps, friction, heat_map, polar, response, shapes, stress,
 };
 
-/// The first digits of the hashes of both files.
-fn digests(picture: &Picture) -> [String; 2] {
-    [picture.svg.as_bytes(), &picture.png[..]].map(|bytes| blake3::hash(bytes).to_hex()[..16].to_string())
+/// The first digits of the hashes of all files.
+fn digests(picture: &Picture) -> [String; 3] {
+    PictureFormat::ALL.map(|format| blake3::hash(&picture.file(format)).to_hex()[..16].to_string())
 }
 
 /// Numbers that look random and are made from whole numbers alone.
@@ -160,30 +160,24 @@ fn outlines() -> [Shape; 1] {
 
 #[test]
 fn every_kind_of_picture_has_its_bytes() {
+    let usual = PictureSize::default();
     let found = [
-        (
-            "friction",
-            friction(&[curve()], &FrictionAxes::default(), PictureSize::default()),
-        ),
+        ("friction", friction(&[curve()], &FrictionAxes::default(), usual)),
         (
             "frictions",
-            friction(
-                &[curve(), curve()],
-                &FrictionAxes::default(),
-                PictureSize::default(),
-            ),
+            friction(&[curve(), curve()], &FrictionAxes::default(), usual),
         ),
-        ("stress", stress(&stress_maps(), PictureSize::default())),
-        ("fields", field_maps(&maps(), PictureSize::default())),
-        ("response", response(&responses(), PictureSize::default())),
-        ("bars", bars(&chart(), PictureSize::default())),
-        ("heat map", heat_map(&heat(), PictureSize::default())),
+        ("stress", stress(&stress_maps(), usual)),
+        ("fields", field_maps(&maps(), usual)),
+        ("response", response(&responses(), usual)),
+        ("bars", bars(&chart(), usual)),
+        ("heat map", heat_map(&heat(), usual)),
         ("shapes", shapes(&outlines())),
-        ("polar", polar(&around(), PictureSize::default())),
+        ("polar", polar(&around(), usual)),
     ]
     .map(|(name, picture)| {
-        let [svg, png] = digests(&picture.unwrap());
-        format!("{name}: {svg} {png}")
+        let digests = digests(&picture.unwrap());
+        format!("{name}: {}", digests.join(" "))
     });
     assert_eq!(found.join("\n"), EXPECTED.trim());
 }

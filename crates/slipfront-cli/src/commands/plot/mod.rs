@@ -11,7 +11,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use slipfront_base::disk::is_same;
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
-use slipfront_plot::{PictureLook, PictureSize};
+use slipfront_plot::{PictureFormat, PictureLook, PictureSize};
 use slipfront_run::names::RunPicture;
 use slipfront_run::pictures;
 use slipfront_run::run_files::RunFiles;
@@ -158,7 +158,7 @@ impl PlotCommand {
             }
         };
         let files = drawn.iter().flat_map(|(name, picture)| {
-            let file = |format: &slipfront_plot::PictureFormat| {
+            let file = move |format: &PictureFormat| {
                 let name = format!("{name}.{}", format.ending());
                 (name, picture.file(*format).into_owned())
             };
