@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
 use crate::category_axis::{CategoryAxis, MIN_SLOT};
-use crate::frame::{left_room, left_side};
+use crate::frame::{left_room, left_side, upright_room};
 use crate::geometry::Area;
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
@@ -104,7 +104,7 @@ pub fn bars(chart: &BarChart, size: PictureSize) -> Result<Picture, PictureError
 
     let mut canvas = Canvas::sized(whole, area.bottom() + names.height + note.height, size);
     note.draw(&mut canvas);
-    let title = Text::fitted(&chart.y_title, height);
+    let title = Text::fitted(&chart.y_title, upright_room(area, canvas.height));
     left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     legend.draw(&mut canvas);
     names.draw(&mut canvas, area);

@@ -7,7 +7,7 @@ use crate::cell_means::CellMeans;
 use crate::color_bar::{ABOVE, ColourBar};
 use crate::geometry::Area;
 use crate::lattice_map::{
-    Cells, MARK, MIN_MAP, TITLE_ROOM, block_count, check_length, circle, draw_titles, place,
+    Cells, LINE, MARK, MIN_MAP, TITLE_ROOM, block_count, check_length, circle, draw_titles, place,
 };
 use crate::picture::{Picture, PictureError};
 use crate::size::PictureSize;
@@ -70,22 +70,19 @@ pub fn field_maps(maps: &FieldMaps, size: PictureSize) -> Result<Picture, Pictur
     let whole = size.roomy_width(TEXT_WIDTH)?;
     let is_asked = size.width_mm.is_some();
     let room_of = |columns: usize| (whole - 2.0 * MARGIN - bar_width) / columns as f64;
-    let labels = maps
-        .maps
-        .iter()
-        .flat_map(|map| [&map.label, &map.note])
-        .map(|text| Text::plain(text, SIZE_TEXT).width());
-    let least = MIN_MAP.max(labels.fold(0.0, f64::max));
-    let is_small = |columns: &usize| is_asked && room_of(*columns) - GAP < least;
+    let is_small = |columns: &usize| is_asked && room_of(*columns) - GAP < MIN_MAP;
     let most = maps.columns.clamp(1, maps.maps.len());
     let columns = (1..=most).rev().find(|columns| !is_small(columns)).unwrap_or(1);
     let rows = maps.maps.len().div_ceil(columns);
     let max_width = if is_asked { f64::INFINITY } else { MAX_WIDTH };
     let width = (room_of(columns) - GAP).min(max_width).round();
     let height = (width * (first.ny as f64 / first.nx as f64).clamp(0.2, 5.0)).round();
-    let pitch = height + TITLE_ROOM + GAP;
+    let titles: Vec<Titles> = maps.maps.iter().map(|map| Titles::of(map, width)).collect();
+    let lines = titles.iter().map(|titles| titles.label.len()).max().unwrap_or(1);
+    let title_room = TITLE_ROOM + LINE * lines.saturating_sub(1) as f64;
+    let pitch = height + title_room + GAP;
     let bar = bar_of((rows - 1) as f64 * pitch + height);
-    let top = MARGIN + TITLE_ROOM + bar.upper_room();
+    let top = MARGIN + title_room + bar.upper_room();
     let area = |index: usize| {
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
         Area::new(MARGIN + column * (width + GAP), top + row * pitch, width, height)
@@ -93,10 +90,11 @@ pub fn field_maps(maps: &FieldMaps, size: PictureSize) -> Result<Picture, Pictur
     let lowest = area((rows - 1) * columns).bottom();
     let bar_x = area(columns - 1).right() + GAP;
     let mut canvas = Canvas::sized(bar_x + bar.room() + MARGIN, lowest + MARGIN, size);
-    for (index, map) in maps.maps.iter().enumerate() {
+    for (index, (map, titles)) in maps.maps.iter().zip(&titles).enumerate() {
         draw_map(&mut canvas, map, area(index), maps.range);
+        draw_titles(&mut canvas, area(index), &titles.label, &titles.note);
     }
-    bar.draw(&mut canvas, (bar_x, top), top - TITLE_ROOM - ABOVE);
+    bar.draw(&mut canvas, (bar_x, top), top - title_room - ABOVE);
     canvas.widened(size).finish()
 }
 
@@ -124,9 +122,25 @@ fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
         circle(canvas, place(area, centre), MARK);
     }
     canvas.frame(area);
-    let fitted = |text: &str, size| Text::shortened(text, size, area.width + 0.6 * GAP);
-    let (label, note) = (fitted(&map.label, SIZE_TEXT), fitted(&map.note, SIZE_TEXT));
-    draw_titles(canvas, area, &label, &note);
+}
+
+/// Lines over a map.
+struct Titles {
+    label: Vec<Text>,
+    note: Text,
+}
+
+impl Titles {
+    /// The lines over a map of this width: the label in two at most.
+    fn of(map: &FieldMap, width: f64) -> Self {
+        let room = width + 0.6 * GAP;
+        let shortened = |text: &str| Text::shortened(text, SIZE_TEXT, room);
+        let label = Text::wrapped(&map.label, SIZE_TEXT, room, 2);
+        Self {
+            label: label.unwrap_or_else(|| vec![shortened(&map.label)]),
+            note: shortened(&map.note),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -37,6 +37,13 @@ pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f6
     ticks.iter().map(end).fold(right, f64::min).floor()
 }
 
+/// Length of a title along the left side of `area` that neither leaves a picture of this height nor its middle,
+/// which is that of the side.
+pub(crate) fn upright_room(area: Area, height: f64) -> f64 {
+    let middle = area.centre().1;
+    (2.0 * middle.min(height - middle) - MARGIN).max(area.height)
+}
+
 /// Draws the left side of `area`, with the title along `edge`, where the room left of the panel begins.
 pub(crate) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tick], title: &Text) {
     for (y, text) in ticks {

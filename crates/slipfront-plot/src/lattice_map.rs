@@ -18,6 +18,8 @@ const STRIPE_WIDTHS: f64 = 12.0;
 /// Heights of the second and the first line over a map.
 const NOTE_ABOVE: f64 = 22.0;
 const LABEL_ABOVE: f64 = 62.0;
+/// Distance of a line of a label from the next one.
+pub(crate) const LINE: f64 = 40.0;
 /// Room for both lines over a map, and for the second one.
 pub(crate) const TITLE_ROOM: f64 = LABEL_ABOVE + SIZE_TEXT as f64;
 pub(crate) const NOTE_ROOM: f64 = NOTE_ABOVE + SIZE_TEXT as f64;
@@ -139,11 +141,14 @@ fn length(points: &[CanvasPoint]) -> f64 {
     points.windows(2).map(step).sum()
 }
 
-/// Writes two lines over a map.
-pub(crate) fn draw_titles(canvas: &mut Canvas, area: Area, label: &Text, note: &Text) {
+/// Writes the lines of a label and a note over a map.
+pub(crate) fn draw_titles(canvas: &mut Canvas, area: Area, label: &[Text], note: &Text) {
     let (middle, _) = area.centre();
     let has_note = note.width() > 0.0;
     let label_above = if has_note { LABEL_ABOVE } else { NOTE_ABOVE };
-    canvas.text(label, (middle, area.y - label_above), Align::Middle, BLACK);
+    for (above, line) in label.iter().rev().enumerate() {
+        let baseline = area.y - label_above - LINE * above as f64;
+        canvas.text(line, (middle, baseline), Align::Middle, BLACK);
+    }
     canvas.text(note, (middle, area.y - NOTE_ABOVE), Align::Middle, BLACK);
 }

@@ -255,7 +255,7 @@ impl<'a> MoviePictures<'a> {
         } else {
             Text::default()
         };
-        draw_titles(canvas, room, &Text::plain(&label, SIZE_TEXT), &friction);
+        draw_titles(canvas, room, &[Text::plain(&label, SIZE_TEXT)], &friction);
     }
 
     fn draw_bar(&self, canvas: &mut Canvas) {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
-use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks, upright_room};
 use crate::geometry::Area;
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
@@ -181,7 +181,7 @@ fn values(curve: &Response) -> impl Iterator<Item = f64> {
 
 /// Draws ticks, numbers and titles, and a line at zero.
 fn draw_sides(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, responses: &Responses) {
-    let title = Text::fitted(&responses.y_title, area.height);
+    let title = Text::fitted(&responses.y_title, upright_room(area, canvas.height));
     left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     short_ticks(canvas, area, Direction::Y, &y.short_ticks());
     short_ticks(canvas, area, Direction::X, &x.short_ticks());

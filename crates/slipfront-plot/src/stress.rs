@@ -87,7 +87,7 @@ pub fn stress(maps: &StressMaps, size: PictureSize) -> Result<Picture, PictureEr
         if label.width() > room {
             label = Text::shortened(&map.label, SIZE_TEXT, room);
         }
-        draw_titles(&mut canvas, area, &label, &note);
+        draw_titles(&mut canvas, area, &[label], &note);
     }
     layout.draw_axes(&mut canvas);
     let top = layout.areas[0].y;

@@ -308,7 +308,7 @@ fn holds_pictures_alone(folder: &Path) -> bool {
         .peekable();
     let is_picture = |name: &PathBuf| {
         let ending = name.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| ["svg", "png", "gif", "mp4"].contains(&ending))
+        ending.is_some_and(|ending| ["svg", "png", "pdf", "eps", "gif", "mp4"].contains(&ending))
     };
     names.peek().is_some() && names.all(|name| is_picture(&name))
 }
