@@ -183,13 +183,13 @@ fn every_kind_of_picture_has_its_bytes() {
 }
 
 const EXPECTED: &str = "
-friction: 7916a16eac823a06 6e36789aa0cadfc9
-frictions: a801ec10e573e7f0 dcbfe507f0f93c5f
-stress: 26592f410e944d4d 16e64b56a97b1662
-fields: fd950b5a47a2df03 e57b6172f8ad223d
-response: ba4e4a0d0d72a45c 555ac14d0b627db3
-bars: ec38e49d1f4e2ea0 223f61650297411f
-heat map: 44f526d6ddb16eb7 208f875d32cac2e7
-shapes: 60442453361eadd4 1a6b0ca345f59c48
-polar: 254c6d494ee4a309 e1f0ef3e06fb7d07
+friction: 61dde05f8ddeb593 97e9cbcc14675bcf 464ecb59304ef20b
+frictions: e0998bb174c82c0b 92705be814979c6a a2ea6b02dd212f34
+stress: 33379bb9212d2609 a159bf1d283af5e0 c5074221ac21d6ee
+fields: d25152f096b25773 f5e58bc886dfb1d1 ea87eda60829c128
+response: 1b573b472bfe0dfc 84d077c6d265d28f 4d12e80c1db9e19b
+bars: 82087f4aa4ed0db9 dc7fa4afcb1428f1 0546b010b23b54b0
+heat map: b2e573807d214cf7 376253a239b62456 34bcd6aee09a2f23
+shapes: b6b81f6588f9a32e c5c68e6afd4ad939 a9e9f8ccf05c4053
+polar: 3a8196aba6026a31 d137745d0935360e b90bc3990e5f1dbe
 ";
