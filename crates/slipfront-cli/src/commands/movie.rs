@@ -199,9 +199,11 @@ impl MovieCommand {
         let mut case = case.clone();
         let spacing = movie::spacing(RunFiles::Folder(&self.folder), frames.into())?;
         case.output.snapshots = Snapshots::Every(spacing);
-        case.output.fields = vec![self.field.unwrap_or(mapped_field(&case))];
-        // The memory for drawing it counts, too.
-        case.output.movie = true;
+        let usual = mapped_field(&case);
+        let field = self.field.unwrap_or(usual);
+        case.output.fields = vec![field];
+        // The memory for drawing it counts, too; of another field a case has no movie.
+        case.output.movie = field == usual;
         Ok(Some((case, frames)))
     }
 

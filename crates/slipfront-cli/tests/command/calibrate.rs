@@ -46,6 +46,8 @@ fn a_calibration_is_told_and_found_again() {
         said.contains("a calibration as its 360 recorded runs give it"),
         "{said}"
     );
+    workspace.succeed("plot twice --width 60 --format pdf,png -o figures");
+    assert!(workspace.files("figures").keys().eq(["band-1.pdf", "band-1.png"]));
     workspace.write(
         "found/posterior.csv",
         workspace.read_text("found/posterior.csv").replacen("0.", "1.", 1),

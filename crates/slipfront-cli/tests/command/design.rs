@@ -52,6 +52,14 @@ fn a_design_is_a_texture_that_other_commands_read() {
     );
     // It is laid over other meshes, too.
     workspace.succeed("converge found/case.toml --replicates 1 -o meshes --quiet");
+    // Its pictures come in any size; the mask is none of them.
+    workspace.succeed("plot found --width 89 --font-size 8 --format pdf -o figures");
+    let figures = workspace.files("figures");
+    assert!(
+        figures.keys().eq(["first_slips.pdf", "friction.pdf"]),
+        "{:?}",
+        figures.keys()
+    );
     // The design in the folder repeats it, on two threads.
     workspace.succeed("design found/design.toml -o twice --threads 2 --quiet");
     for name in [

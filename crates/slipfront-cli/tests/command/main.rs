@@ -19,6 +19,7 @@ mod design;
 mod docs;
 mod export;
 mod export_studies;
+mod figures;
 mod fixtures;
 mod folder;
 mod input;

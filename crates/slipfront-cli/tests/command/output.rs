@@ -425,6 +425,32 @@ fn a_movie_shows_every_snapshot() {
     }
 }
 
+/// A run that has kept the instants alone is run again for its movie, which shows a hundred snapshots and
+/// leaves the folder as it was.
+#[test]
+fn a_movie_has_a_hundred_snapshots() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o run");
+    let before = workspace.files("run");
+    workspace.succeed("movie run -o usual.gif");
+    let (_, usual, _) = shown(&workspace.read("usual.gif"));
+    // Beside the hundred there are the start and the instants.
+    assert!((100..=108).contains(&usual), "{usual}");
+    // Fields that the run has not kept can be shown, too.
+    let told = workspace.succeed("movie run --frames 30 --field velocity_x -o few.gif");
+    let (_, few, _) = shown(&workspace.read("few.gif"));
+    assert!(
+        (30..=38).contains(&few) && told.starts_with(&format!("{few} pictures")),
+        "{told}"
+    );
+    // What the run has kept is enough.
+    workspace.succeed("movie run --frames 1 -o kept.gif");
+    assert!(shown(&workspace.read("kept.gif")).1 <= 6);
+    assert!(workspace.files("run") == before);
+    let said = workspace.fail("movie run --frames 994 -o none.gif", 2);
+    assert!(said.contains("1..=993"), "{said}");
+}
+
 #[test]
 fn a_case_can_ask_for_its_movie() {
     let workspace = Workspace::small();

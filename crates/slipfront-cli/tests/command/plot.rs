@@ -312,7 +312,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
         usual.contains(">results/<") && usual.contains(">a<") && usual.contains(">b<"),
         "{usual}"
     );
-    assert!(usual.contains("width=\"85.01mm\"") && pixels("usual")[0] == 1004);
+    assert!(usual.contains("width=\"85.00mm\"") && pixels("usual")[0] == 1004);
     workspace.succeed(
         "plot results/a results/b --width 120 --height 90 --name plain --name other --x-label time --y-label F_T -o sized",
     );
@@ -321,7 +321,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
         assert!(sized.contains(words), "{words}: {sized}");
     }
     assert!(
-        sized.contains("width=\"119.97mm\" height=\"90.00mm\""),
+        sized.contains("width=\"120.00mm\" height=\"90.00mm\""),
         "{sized:.300}"
     );
     assert_eq!(pixels("sized"), [1417, 1063]);
@@ -329,22 +329,33 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     workspace.succeed("plot results/a results/b --font-size 12 -o large");
     let large = svg(&workspace, "large");
     assert!(
-        large.contains("width=\"84.96mm\"") && large.contains("viewBox=\"0 0 669 "),
+        large.contains("width=\"85.00mm\"") && large.contains("viewBox=\"0 0 662.6 "),
         "{large:.300}"
     );
     assert!((1003..=1005).contains(&pixels("large")[0]));
-    // One run: friction alone, and not in its folder.
-    workspace.succeed("plot results/a --width 60 -o narrow");
-    assert_eq!(workspace.files("narrow").len(), 2);
+    // Of one run all pictures, and not in its folder.
+    workspace.succeed("plot results/a --width 60 --font-size 7 -o narrow");
+    assert_eq!(workspace.files("narrow").len(), 6);
+    for name in workspace
+        .files("narrow")
+        .keys()
+        .filter(|name| name.ends_with("svg"))
+    {
+        let drawn = workspace.read_text(&format!("narrow/{name}"));
+        assert!(drawn.contains("width=\"60.00mm\""), "{name}");
+    }
+    workspace.succeed("verify results/a");
     for (options, sentence) in [
         (
             "--width 30 --font-size 12",
-            "a width of 30 mm leaves no room for the curves beside letters of 12 pt: at least 64 mm are needed",
+            "a width of 30 mm leaves no room for the curves beside letters of 12 pt: at least 65 mm are needed",
         ),
         ("--width 1000", "a number of mm from 20 to 400"),
         ("--font-size big", "a number of pt from 3 to 40"),
         ("--name one", "1 name for 2 runs: give --name once for each"),
-        ("--field traction --width 90", "cannot be used with"),
+        ("--field traction --name a", "cannot be used with"),
+        ("--field traction --picture stress", "cannot be used with"),
+        ("--format eps", "[possible values: svg, png, pdf]"),
     ] {
         let said = workspace.fail(&format!("plot results/a results/b {options} -o none"), 2);
         assert!(said.contains(sentence), "{options}: {said}");

@@ -5,6 +5,6 @@ mod files;
 mod folders;
 mod interrupted;
 mod refusals;
-mod results;
+pub(crate) mod results;
 mod shards;
 mod verify;

@@ -137,7 +137,7 @@ fn a_part_of_a_study_is_not_the_whole() {
     let (status, _, problems) = verified(&workspace, "part");
     assert_eq!(status, 2);
     assert!(
-        problems.contains("the study in part lacks 18 runs: finish it, or merge it"),
+        problems.contains("the study in part lacks 18 runs: finish it first, or merge it"),
         "{problems}"
     );
 }
