@@ -10,7 +10,7 @@ use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::series::cross;
 use crate::size::PictureSize;
-use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_TEXT, WHITE};
+use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_NARROW, SIZE_TEXT, WHITE};
 use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
 
@@ -356,33 +356,30 @@ fn cell_texts(
         sizes.fold(f64::INFINITY, f64::min)
     };
     let (room_x, room_y) = (smallest(x.edges()) - 12.0, smallest(y.edges()) - 12.0);
-    let height = Text::plain("0", SIZE_TEXT).height();
     // Two digits or so of the range, or one less.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
-    let lines = |value: f64, half: f64, decimals| {
+    let lines = |(&value, &half): (&f64, &f64), decimals, size| {
         let mut lines = Vec::new();
         if !value.is_nan() {
-            lines.push(Text::plain(&number(value, decimals), SIZE_TEXT));
+            lines.push(Text::plain(&number(value, decimals), size));
         }
         if !half.is_nan() {
-            lines.push(Text::plain(&plus_minus(half, decimals), SIZE_TEXT));
+            lines.push(Text::plain(&plus_minus(half, decimals), size));
         }
         lines
     };
-    let cells = values.iter().zip(half_widths);
-    let texts = |decimals| {
-        cells
-            .clone()
-            .map(move |(&value, &half)| lines(value, half, decimals))
-    };
-    let mut choices =
-        [decimals, decimals.saturating_sub(1)].map(|decimals| texts(decimals).collect::<Vec<_>>());
     let has_room = |lines: &Vec<Text>| {
+        let height = lines.first().map_or(0.0, Text::height);
         let tall = height + LINE * lines.len().saturating_sub(1) as f64;
         tall <= room_y && lines.iter().all(|line| line.width() <= room_x)
     };
-    let fits = choices.iter().position(|cells| cells.iter().all(has_room))?;
-    Some(std::mem::take(&mut choices[fits]))
+    let fewer = decimals.saturating_sub(1);
+    let choices = [decimals, fewer].map(|decimals| [SIZE_TEXT, SIZE_NARROW].map(|size| (decimals, size)));
+    choices.into_iter().flatten().find_map(|(decimals, size)| {
+        let cells = values.iter().zip(half_widths);
+        let cells: Vec<_> = cells.map(|cell| lines(cell, decimals, size)).collect();
+        cells.iter().all(has_room).then_some(cells)
+    })
 }
 
 /// A half width to the decimals of its value, or to its first digit where these would show none of it.

@@ -11,7 +11,7 @@ pub(crate) const TEXT_WIDTH: f64 = 175.0 * MM;
 
 /// Size of all text: 8 pt.
 pub(crate) const SIZE_TEXT: u32 = 33;
-/// Size of a title that has no room in the usual one: 7 pt.
+/// Size of titles, and of numbers in cells, that have no room in the usual one: 7 pt.
 pub(crate) const SIZE_NARROW: u32 = 29;
 
 /// Width of a curve: 0.9 pt.

@@ -17,8 +17,8 @@ pub(super) struct LookArgs {
     /// Height of the pictures in mm; of maps of the slider it follows from the width
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     height: Option<f64>,
-    /// Size of all text in pt: titles, numbers and legends alike [default: 8]. Subscripts have 0.72 of it, and a
-    /// title that is too long for its axis seven eighths of it; lines and marks grow with it
+    /// Size of all text in pt: titles, numbers and legends alike [default: 7.92]. Subscripts have 0.72 of it, and
+    /// titles and numbers that are too long for their axis or cell seven eighths; lines and marks grow with it
     #[arg(long, value_name = "PT", value_parser = points)]
     font_size: Option<f64>,
     /// Formats of the files, such as pdf or svg,png. PDF has its font inside. For EPS, convert the PDF: pdftops

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Draws the pictures of runs and studies in docs/images again, by the commands beside them in the guides. Those
+# of the laboratory's page are drawn by UPDATE=1 tests/browser/run.sh, and textures by `slipfront texture`.
+#
+#     docs/images.sh PROGRAM         PROGRAM is a built command `slipfront`
+#     docs/images.sh PROGRAM large   with the square centimetre, which takes minutes and 8 GB of memory
+set -euo pipefail
+program=$(realpath "$1")
+root=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
+work=$(mktemp -d)
+trap 'rm -r "$work"' EXIT
+cd "$work"
+cp -r "$root/cases" .
+slipfront() { "$program" "$@" > /dev/null; }
+image() { cp "$1" "$root/docs/images/$2"; }
+
+slipfront run --quiet
+image results/baseline/friction.png baseline-friction.png
+slipfront run --set 'slider.blocks=[50,50]' -o results/untextured --quiet
+slipfront run --set 'slider.blocks=[50,50]' --set texture.0.shape=cavity --set texture.0.coverage=10 \
+  -o results/cavity --quiet
+slipfront plot results/untextured results/cavity
+image results/overlay/friction.png getting-started-overlay.png
+
+slipfront run cases/circle.toml -o circle --quiet
+slipfront run cases/circle.toml --set 'texture=[]' -o untextured --quiet
+slipfront plot untextured circle -o circle-overlay
+image circle-overlay/friction.png circle-friction.png
+image circle/stress.png circle-stress.png
+slipfront movie circle -o circle-movie.gif
+image circle-movie.gif circle-movie.gif
+
+slipfront run cases/groove_across.toml --set 'output.snapshots=[68.7]' --quiet
+image results/groove_across/stress.png stress-groove-across.png
+slipfront run cases/groove_along.toml --set 'output.snapshots=[73.9]' --quiet
+image results/groove_along/stress.png stress-groove-along.png
+
+for case in gear graded hierarchical_dimples edge_driven_chain; do
+  slipfront run "cases/$case.toml" --quiet
+done
+image results/gear/stress.png family-gear.png
+image results/graded/stress.png family-graded.png
+image results/hierarchical_dimples/stress.png family-dimples.png
+image results/edge_driven_chain/precursors.png family-precursors.png
+
+slipfront study cases/studies/friction_polar.toml --quiet
+image results/friction_polar/friction_polar.png friction_polar.png
+slipfront study cases/studies/size_and_speed.toml --quiet
+image results/size_and_speed/static_reduction_percent.png size_and_speed.png
+image results/size_and_speed/static_reduction_percent_map.png size_and_speed_map.png
+
+if [ "${2:-}" = large ]; then
+  slipfront run "$root/benches/large/square_centimetre.toml" --quiet
+  image results/square_centimetre/stress.png square-centimetre.png
+fi
