@@ -1,7 +1,8 @@
 //! Conversion of a canvas to a picture.
 
 use crate::canvas::Canvas;
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::png_file;
 use crate::raster;
 use crate::svg;

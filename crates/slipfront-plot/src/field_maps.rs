@@ -9,7 +9,8 @@ use crate::geometry::Area;
 use crate::lattice_map::{
     Cells, LINE, MARK, MIN_MAP, TITLE_ROOM, block_count, check_length, circle, draw_titles, place,
 };
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::size::PictureSize;
 use crate::style::{MARGIN, SIZE_TEXT, TEXT_WIDTH};
 use crate::text::Text;
@@ -51,9 +52,9 @@ pub struct FieldMap {
     pub marks: Vec<[usize; 2]>,
 }
 
-/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, or as wide as asked for with fewer in
-/// a row where they would be small, all on one colour scale, textured areas outlined and marked blocks circled. Every map is as wide as the others, whatever its number of
-/// blocks.
+/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, or as wide as asked for with fewer
+/// in a row where they would be small, all on one colour scale, textured areas outlined and marked blocks
+/// circled. Every map is as wide as the others, whatever its number of blocks.
 ///
 /// # Errors
 ///

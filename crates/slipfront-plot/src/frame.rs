@@ -37,8 +37,8 @@ pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f6
     ticks.iter().map(end).fold(right, f64::min).floor()
 }
 
-/// Length of a title along the left side of `area` that neither leaves a picture of this height nor its middle,
-/// which is that of the side.
+/// Length of a title along the left side of `area` that neither leaves a picture of this height nor its
+/// middle, which is that of the side.
 pub(crate) fn upright_room(area: Area, height: f64) -> f64 {
     let middle = area.centre().1;
     (2.0 * middle.min(height - middle) - MARGIN).max(area.height)

@@ -13,7 +13,8 @@ use crate::lattice_map::{
     Cells, MARK, MIN_RATIO, block_count, check_block_size, check_length, circle, place, unit_of,
 };
 use crate::note::Note;
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::quantity_labels::{FIRST_SLIP, SLIDING_SHARE};
 use crate::size::PictureSize;
 use crate::style::{MARGIN, RADIUS_MARKER, TEXT_WIDTH, WHITE, WIDTH_FRAME};
@@ -86,8 +87,8 @@ fn is_above(ratio: f64) -> bool {
 }
 
 /// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less, or as wide as asked
-/// for: the map beside the other panel, or above it for a long slider and in a narrow picture. Nucleations are circled, the first filled; the texture is
-/// outlined.
+/// for: the map beside the other panel, or above it for a long slider and in a narrow picture. Nucleations
+/// are circled, the first filled; the texture is outlined.
 ///
 /// # Errors
 ///

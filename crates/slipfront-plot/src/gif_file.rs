@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
 use crate::movie::MovieSize;
-use crate::picture::PictureError;
+use crate::picture_error::PictureError;
 
 /// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture the
 /// file has the rectangle in which it differs from the picture before.

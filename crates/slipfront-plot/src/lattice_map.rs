@@ -5,7 +5,7 @@ use crate::cell_means::CellMeans;
 use crate::color_image::{Image, level};
 use crate::geometry::{Align, Area, CanvasPoint};
 use crate::mask_outline::outline;
-use crate::picture::PictureError;
+use crate::picture_error::PictureError;
 use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_TEXT, WHITE, WIDTH_MARK};
 use crate::text::Text;
 

@@ -14,7 +14,7 @@ use crate::geometry::{Align, Area, CanvasPoint};
 use crate::label_placement::{Placer, around};
 use crate::lattice_map::{Cells, MARK, MIN_RATIO, block_count, check_length, draw_titles};
 use crate::movie_colours::Colours;
-use crate::picture::{PictureError, check_columns};
+use crate::picture_error::{PictureError, check_columns};
 use crate::raster::Pixels;
 use crate::series::segments;
 use crate::style::{

@@ -115,7 +115,7 @@ fn state_name(index: usize) -> String {
     format!("S{index}")
 }
 
-/// What the page of this height shows.
+/// Operators that draw a canvas on a page of this height.
 fn content(canvas: &Canvas, height: f32, font: &PdfFont, opacities: &[f64]) -> Vec<u8> {
     let mut content = Content::new();
     // From pixels, y downwards, to points, y upwards.

@@ -1,6 +1,6 @@
 //! PNG files.
 
-use crate::picture::PictureError;
+use crate::picture_error::PictureError;
 use crate::style::DPI;
 
 /// A PNG file of an image: its bytes are red, green and blue of every pixel, printed at [`DPI`], or an index

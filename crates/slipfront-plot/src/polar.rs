@@ -8,7 +8,8 @@ use crate::frame::{LOWER_ROOM, lower_side};
 use crate::geometry::{Align, Area, CanvasPoint};
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::response::{Response, check_curves};
 use crate::series::{cross, interval, marker};
 use crate::size::PictureSize;
@@ -50,8 +51,8 @@ pub struct Polar {
 }
 
 /// Draws means around a centre with their confidence bands, usually as wide as a journal's column (85 mm).
-/// The centre is zero, unless all values are alike, and the note says what it is then. A curve whose directions go all
-/// the way round is closed, and has a gap where a value is missing or below zero.
+/// The centre is zero, unless all values are alike, and the note says what it is then. A curve whose
+/// directions go all the way round is closed, and has a gap where a value is missing or below zero.
 ///
 /// # Errors
 ///

@@ -8,7 +8,8 @@ use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, shor
 use crate::geometry::Area;
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
-use crate::picture::{Picture, PictureError, check_columns};
+use crate::picture::Picture;
+use crate::picture_error::{PictureError, check_columns};
 use crate::series::{cross, error_bar, interval, marker, segments};
 use crate::size::PictureSize;
 use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_LEADER, curve_style};

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
 use crate::geometry::Align;
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TEXT};
 use crate::text::Text;
 

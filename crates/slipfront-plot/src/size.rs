@@ -1,6 +1,6 @@
 //! Size of a picture and of its letters, as a user asks for them.
 
-use crate::picture::PictureError;
+use crate::picture_error::PictureError;
 use crate::style::{DPI, MM, SIZE_TEXT};
 
 /// Size of all text unless another is asked for, pt.
@@ -19,8 +19,8 @@ pub struct PictureSize {
     pub width_mm: Option<f64>,
     /// Height, mm.
     pub height_mm: Option<f64>,
-    /// Size of all text, pt; of titles and of numbers in cells that have no room in it, seven eighths of that,
-    /// and of subscripts 0.72 of it.
+    /// Size of all text, pt; of titles and of numbers in cells that have no room in it, seven eighths of
+    /// that, and of subscripts 0.72 of it.
     pub font_pt: Option<f64>,
 }
 

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
 use crate::geometry::{Align, CanvasPoint};
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, CURVES, GREY, MARGIN, SIZE_TEXT, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK,
 };

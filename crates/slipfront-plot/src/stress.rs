@@ -10,7 +10,8 @@ use crate::lattice_map::{
     Cells, MIN_MAP, MIN_RATIO, NOTE_ROOM, TITLE_ROOM, block_count, check_block_size, check_length,
     draw_titles, unit_of,
 };
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::size::PictureSize;
 use crate::style::{MARGIN, SIZE_TEXT, TEXT_WIDTH};
 use crate::text::{Text, number};
@@ -64,8 +65,8 @@ pub struct StressMaps {
 }
 
 /// Draws the maps, three in a row, at most as wide as a journal's text (175 mm) or as wide as asked for, with
-/// fewer in a row where they would be small, all on one colour scale, the textured area outlined. A slider that is long along x has two maps in a row, or one; a slider that is long
-/// along y has all in one row.
+/// fewer in a row where they would be small, all on one colour scale, the textured area outlined. A slider
+/// that is long along x has two maps in a row, or one; a slider that is long along y has all in one row.
 ///
 /// A slider more than twelve times as long as wide, six times along y, is drawn as if it were that long.
 ///

@@ -9,7 +9,7 @@ use crate::canvas::{Canvas, Element, Primitive};
 use crate::color_image::{Image, palette};
 use crate::font::WOFF2;
 use crate::geometry::{Area, CanvasPoint, length};
-use crate::picture::PictureError;
+use crate::picture_error::PictureError;
 use crate::png_file;
 use crate::style::Rgb;
 

@@ -81,7 +81,8 @@ impl Text {
         }
     }
 
-    /// A title no wider than `room`: in the size of all text, else in the size of titles without room, else cut.
+    /// A title no wider than `room`: in the size of all text, else in the size of titles without room, else
+    /// cut.
     pub(crate) fn fitted(text: &str, room: f64) -> Self {
         let whole = Self::plain(text, SIZE_TEXT);
         if whole.width() <= room {

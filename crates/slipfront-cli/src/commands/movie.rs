@@ -45,8 +45,8 @@ pub(crate) struct MovieCommand {
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Least number of snapshots, at equal distances in time beside the instants A-F. If the run has kept
-    /// fewer, its case is run again with this many, in the folder for temporary files (TMPDIR) [default: 100, or
-    /// those that the run has kept if its case names `output.snapshots` or has `output.movie`]
+    /// fewer, its case is run again with this many, in the folder for temporary files (TMPDIR) [default: 100,
+    /// or those that the run has kept if its case names `output.snapshots` or has `output.movie`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_FRAMES))]
     frames: Option<u16>,
     /// The field that is shown [default: that of the maps in stress.png]

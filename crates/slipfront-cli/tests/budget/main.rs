@@ -16,6 +16,7 @@ use slipfront_calibrate::{CalibrationFile, CalibrationFolder};
 use slipfront_case::case::{Case, PICTURES, PROGRAM, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_design::{Bounds, DesignFile, RunCache};
+use slipfront_plot::PictureLook;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::measured::Measure;
 use slipfront_run::run_curve::run_curve_unless;
@@ -409,7 +410,7 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     pictures::write_run(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
     drop((case, record));
     let before = LIVE.load(Ordering::Relaxed) as f64;
-    let (taken, drawn) = peak(|| pictures::draw(RunFiles::Folder(&out)).unwrap());
+    let (taken, drawn) = peak(|| pictures::draw(RunFiles::Folder(&out), &PictureLook::default()).unwrap());
     assert_eq!(drawn.len(), 2);
     let said = pictures::memory(std::slice::from_ref(&out)).unwrap();
     // Pictures may be of any size.

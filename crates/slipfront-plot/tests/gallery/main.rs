@@ -37,7 +37,7 @@ const COLUMN: PictureSize = PictureSize {
 fn check(name: &str, draw: impl Fn(PictureSize) -> Result<Picture, PictureError>) -> Page {
     match draw(COLUMN) {
         Ok(picture) => {
-            let page = check_one(&format!("{name}-column"), picture);
+            let page = check_one(&format!("{name}-column"), &picture);
             let width = page.width * 8.0 / 7.92 / 300.0 * 25.4;
             assert!((width - 89.0).abs() < 1e-3, "{name} is {width} mm wide");
         }
@@ -46,12 +46,12 @@ fn check(name: &str, draw: impl Fn(PictureSize) -> Result<Picture, PictureError>
     }
     check_one(
         name,
-        draw(PictureSize::default()).unwrap_or_else(|error| panic!("{name}: {error}")),
+        &draw(PictureSize::default()).unwrap_or_else(|error| panic!("{name}: {error}")),
     )
 }
 
 /// Checks a picture, and writes it if a folder is set.
-fn check_one(name: &str, picture: Picture) -> Page {
+fn check_one(name: &str, picture: &Picture) -> Page {
     if let Some(folder) = std::env::var_os("SLIPFRONT_GALLERY") {
         std::fs::create_dir_all(&folder).unwrap();
         for format in PictureFormat::ALL {
@@ -185,7 +185,7 @@ fn overlays() {
             font_pt: Some(font),
         };
         let drawn = friction(&speeds, &FrictionAxes::default(), size);
-        check_one(name, drawn.unwrap_or_else(|error| panic!("{name}: {error}")));
+        check_one(name, &drawn.unwrap_or_else(|error| panic!("{name}: {error}")));
     }
     // A legend of thirty names takes the whole height.
     let low = PictureSize {
@@ -494,7 +494,7 @@ fn pictures_of_the_paper() {
         points: vec![[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]],
     };
     let four = ["s = 2, w = 0.1", "a shape with a long name", "c", "d"].map(triangle);
-    check_one("shapes", shapes(&four).unwrap());
+    check_one("shapes", &shapes(&four).unwrap());
     let line = Stroke {
         style: StrokeStyle::Arrow,
         points: vec![[0.0, 0.0], [2.0, 1.0]],
@@ -503,5 +503,5 @@ fn pictures_of_the_paper() {
         strokes: vec![line],
         labels: vec![("k_1".to_owned(), [0.5, 0.5]), ("x".to_owned(), [2.0, 0.0])],
     };
-    check_one("sketch", sketch(&drawn).unwrap());
+    check_one("sketch", &sketch(&drawn).unwrap());
 }

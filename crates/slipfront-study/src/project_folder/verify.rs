@@ -50,6 +50,12 @@ pub enum Extent {
     Derived,
 }
 
+/// Finds the results of a folder again in another one, with pictures of this look, until a stop, from a copy
+/// of its journal; returns the numbers of runs there before and after, since runs that the journal lacks are
+/// made.
+pub type FindAgain =
+    fn(folder: &Path, other: &Path, look: &PictureLook, stop: &AtomicBool) -> Result<[usize; 2], StudyError>;
+
 /// A kind of projects whose results follow from the runs in the journal.
 #[derive(Debug)]
 pub struct Derivation {
@@ -57,15 +63,8 @@ pub struct Derivation {
     pub kind: &'static ProjectKind,
     /// Names, without their ending, of images in the folder that are no pictures of results.
     pub no_pictures: &'static [&'static str],
-    /// Finds the results of a folder again in another one, with pictures of this look, until a stop, from a
-    /// copy of its journal; returns the numbers of runs there before and after, since runs that the journal
-    /// lacks are made.
-    pub find_again: fn(
-        folder: &Path,
-        other: &Path,
-        look: &PictureLook,
-        stop: &AtomicBool,
-    ) -> Result<[usize; 2], StudyError>,
+    /// The function that finds the results of such a folder again.
+    pub find_again: FindAgain,
 }
 
 /// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the

@@ -10,18 +10,20 @@ use crate::failure::Failure;
 /// The look of pictures.
 #[derive(Args)]
 pub(super) struct LookArgs {
-    /// Width of the pictures in mm [default: 85 of curves, maps over two axes and bars, at most 175 of maps of
-    /// the slider]
+    /// Width of the pictures in mm [default: 85 of curves, maps over two axes and bars, at most 175 of maps
+    /// of the slider]
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     width: Option<f64>,
     /// Height of the pictures in mm; of maps of the slider it follows from the width
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     height: Option<f64>,
-    /// Size of all text in pt: titles, numbers and legends alike [default: 7.92]. Subscripts have 0.72 of it, and
-    /// titles and numbers that are too long for their axis or cell seven eighths; lines and marks grow with it
+    /// Size of all text in pt: titles, numbers and legends alike [default: 7.92]. Subscripts have 0.72 of it,
+    /// and titles and numbers that are too long for their axis or cell seven eighths; lines and marks grow
+    /// with it
     #[arg(long, value_name = "PT", value_parser = points)]
     font_size: Option<f64>,
-    /// Formats of the files, such as pdf or svg,png. PDF has its font inside. For EPS, convert the PDF: pdftops
+    /// Formats of the files, such as pdf or svg,png. PDF has its font inside. For EPS, convert the PDF:
+    /// pdftops
     /// -eps NAME.pdf
     #[arg(
         long = "format",

@@ -28,8 +28,9 @@ use crate::threads::set_threads;
 
 /// Draw the pictures of a run or a study in the size and format of a journal, or compare the curves of runs
 ///
-/// The pictures of a run, a study, a convergence, a design or a calibration are drawn again from what the folder has
-/// recorded. The axes of friction are of your choice, and measured records may be drawn over the curves
+/// The pictures of a run, a study, a convergence, a design or a calibration are drawn again from what the
+/// folder has recorded. The axes of friction are of your choice, and measured records may be drawn over the
+/// curves
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront plot results/baseline
