@@ -45,7 +45,7 @@ use crate::threads::set_threads;
   slipfront plot results/circle --field traction -o results/traction
   slipfront plot results/circle --field kymograph -o results/kymograph
 
-Formats are svg, png (300 dots per inch) and pdf; svg and pdf have their font inside. For EPS, convert the PDF: pdftops -eps friction.pdf")]
+Formats are svg, png (300 dots per inch) and pdf; svg and pdf have their font inside. For EPS, convert the PDF: pdftops -eps -r 1200 friction.pdf")]
 pub(crate) struct PlotCommand {
     /// Folders of runs, or one of a study, a convergence, a design or a calibration
     #[arg(required = true, value_name = "DIR")]
