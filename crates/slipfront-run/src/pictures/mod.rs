@@ -100,11 +100,10 @@ fn each_file(
     with_movie: bool,
     mut take: impl FnMut(&str, &[u8]) -> Result<(), RunPictureError>,
 ) -> Result<(), RunPictureError> {
-    let look = PictureLook::default();
-    for (name, picture) in draw(run, &look)? {
-        for format in &look.formats {
-            take(&format!("{name}.{}", format.ending()), &picture.file(*format))?;
-        }
+    for (name, picture) in draw(run, &PictureLook::default())? {
+        // By their names, so that a module of a page does not hold the writer of PDF.
+        take(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        take(&format!("{name}.png"), &picture.png)?;
     }
     if with_movie && let Some(movie) = movie::of_run(run, None)? {
         let delays = movie::delays(&movie, MoviePace::Usual)?;
