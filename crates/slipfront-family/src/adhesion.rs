@@ -59,7 +59,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         picture: Some((
             "Static friction of a smooth uniform surface against adhesion: the line is exact, the points are computed.",
             Responses {
-                x_title: "adhesion \u{3c4}\u{2090}/(P \u{3bc}\u{305}\u{209b})".to_owned(),
+                x_title: "adhesion \u{3c4}\u{2090}/(P \u{27e8}\u{3bc}\u{209b}\u{27e9})".to_owned(),
                 y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
                 curves: vec![
                     Response::of_formula("exact", &STRENGTHS, |adhesion| 1.0 + adhesion),
