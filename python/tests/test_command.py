@@ -97,7 +97,7 @@ def test_runs_are_exported_with_the_bytes_of_the_command(small: sf.Case, tmp_pat
 
 
 def test_a_study_is_exported_by_its_folder(small: sf.Case, tmp_path: Path) -> None:
-    study = sf.Study(small, {"drive.v_star": [0.1, 0.2]})
+    study = sf.Study(small, axes={"drive.v_star": [0.1, 0.2]})
     folder = study.run(tmp_path / "first", progress=False).folder
     assert folder is not None
     assert "first (study from 2 recorded runs)" in sf.export(folder, "bibtex")

@@ -24,8 +24,8 @@ const MOST_PILOT_BLOCKS: usize = 1_000_000;
 /// V* N above which blocks slide in every step: a faster pilot has as many of them.
 const ALWAYS_SLIDING: f64 = 5.0;
 
-/// Bounds of the time that a computation takes on a machine without other work, in s, from a short run of it. In JSON it is `[least, most]`,
-/// where no upper bound is null.
+/// Bounds of the time that a computation takes on a machine without other work, in s, from a short run of it.
+/// In JSON it is `[least, most]`, where no upper bound is null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(into = "[f64; 2]")]
 pub struct TimeRange {
@@ -177,8 +177,8 @@ fn sliding(case: &Case) -> State {
     state
 }
 
-/// Time of a step in s, the shortest of some measurements from a state on, from the start of the case if there
-/// is none: a slider that begins to move is not at rest at once.
+/// Time of a step in s, the shortest of some measurements from a state on, from the start of the case if
+/// there is none: a slider that begins to move is not at rest at once.
 fn measured(case: &Case, state: Option<State>) -> f64 {
     let mut steps = Steps::new(case.clone(), state);
     // The first step brings the lattice into the cache.
@@ -215,8 +215,8 @@ impl Steps {
         ((thread_time() - began).as_secs_f64(), made)
     }
 
-    /// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read seldom, since
-    /// that takes as long as a step of a few blocks.
+    /// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read seldom,
+    /// since that takes as long as a step of a few blocks.
     fn seconds_per_step(&mut self) -> f64 {
         let (mut passed, mut steps) = (0.0, 0);
         while passed < MEASUREMENT {

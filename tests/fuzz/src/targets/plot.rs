@@ -1,5 +1,6 @@
 //! Pictures from the files of a run folder.
 
+use slipfront_plot::PictureLook;
 use slipfront_run::pictures::draw;
 use slipfront_run::pictures::friction::{Against, AxisUnits, FrictionLook, overlay};
 use slipfront_run::run_files::RunFiles;
@@ -85,7 +86,7 @@ fn plot(input: &[u8]) {
     let folder = fields.parent().unwrap();
     let case = CASES[input.len() / 2 % 2];
     scratch::file("plot/case.toml", case.as_bytes());
-    match draw(RunFiles::Folder(folder)) {
+    match draw(RunFiles::Folder(folder), &PictureLook::default()) {
         Err(error) => readable(&error),
         Ok(pictures) => {
             for (name, picture) in pictures {
