@@ -7,7 +7,7 @@ use crate::support::process::{program, stderr, stdout};
 use crate::support::workspace::Workspace;
 
 /// Blocks of text in the guides that are formulas, or that a test of their own compares with results.
-const OTHER_TEXTS: [(&str, &str); 7] = [
+const OTHER_TEXTS: [(&str, &str); 8] = [
     // `the_guide_shows_what_is_printed` in `converge.rs`.
     (
         "experiment.md",
@@ -24,6 +24,8 @@ const OTHER_TEXTS: [(&str, &str); 7] = [
     ("getting-started.md", "100 (0.8763 - 0.6893)/0.8763 = 21.3 %"),
     // `tests/same_run.rs` of slipfront-mpi.
     ("long.md", "error: `drive.v_star` is 0.2 on rank 1"),
+    // `tests/fields/check.py`.
+    ("results.md", "displacement_x*iHat + displacement_y*jHat"),
     // `studies_show_what_is_printed` below.
     ("studies.md", "friction.sigma_static_star  0.00  0.05"),
 ];
