@@ -138,7 +138,7 @@ impl SlipTime {
                 least: slip,
                 most: slip,
             },
-            exponents: [0.4, 0.15],
+            exponents: [0.35, 0.1],
         })
     }
 
@@ -232,5 +232,44 @@ impl Steps {
         } else {
             passed / steps as f64
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Slip takes a smaller share of the steps at a slower drive, and no share is larger than that of a
+    /// drive under which blocks slide all the time; how long a held drive stands has no bound.
+    #[test]
+    fn the_time_of_steps_follows_the_share_of_slip() {
+        let time = StepTime {
+            at_rest: 1.0,
+            sliding: 5.0,
+            slip: SlipTime {
+                front_ratio: 4.0,
+                seconds: TimeRange {
+                    least: 2.0,
+                    most: 4.0,
+                },
+                exponents: [1.0, 0.5],
+            },
+        };
+        let of = |front_ratio: f64, stands: bool| {
+            time.of_steps(&ExpectedSteps {
+                steps: [10.0, 20.0],
+                front_ratio,
+                stands,
+            })
+        };
+        let range = |least: f64, most: f64| TimeRange { least, most };
+        assert_eq!(of(4.0, false), range(30.0, 100.0));
+        assert_eq!(of(1.0, false), range(15.0, 60.0));
+        assert_eq!(of(9.0, false), of(4.0, false));
+        assert_eq!(of(1.0, true), range(15.0, f64::INFINITY));
+        assert_eq!(
+            serde_json::to_value(of(1.0, true)).unwrap().to_string(),
+            "[15.0,null]"
+        );
     }
 }

@@ -93,6 +93,11 @@ impl RunState {
     }
 }
 
+/// Number of threads, of `most`, on which a run of this case is computed: as many as have enough blocks.
+pub fn useful_threads(case: &Case, most: usize) -> usize {
+    on_useful_threads(case, Execution::on_threads(most)).threads
+}
+
 /// Reduces the threads to those that have enough blocks.
 fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     let per_thread = blocks_per_thread(execution.kernel.for_model(&case.model));

@@ -241,21 +241,29 @@ impl Model {
 
     /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
     /// bear their load alone, which is larger by the [load factor](Surface::load_factor) f where only some
-    /// touch; the earlier one is Eq. 12 for blocks that all touch or, if that is later, for blocks that stand
-    /// alone and are pushed by their free neighbours too:
+    /// touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that is
+    /// later, for blocks that stand alone and are pushed by their free neighbours too:
     ///
     /// ```text
-    /// max(2.5, f/A k_2)/V* ... 2.5 f/V*
+    /// max(2.5 c f, f/A k_2)/V* ... 2.5 f/V*
     /// ```
     ///
-    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*.
-    /// The pull that a sheet of free blocks passes to those that touch is known only for a drive on every
-    /// block; `f` is 1 for any other drive.
-    pub fn onset_estimate(&self, load_factor: f64) -> [f64; 2] {
+    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*; c
+    /// f is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks passes to
+    /// those that touch is known only for a drive on every block: any other drive has no `load_factor`, and
+    /// pulls all blocks together.
+    pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
-        let late = ONSET_PATH * load_factor.max(1.0);
-        let lone = load_factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
-        [lone.clamp(ONSET_PATH, late) / speed, late / speed]
+        let surface = &self.surface;
+        let in_contact = 1.0 - 0.01 * surface.texture_percent();
+        let factor = load_factor.unwrap_or(surface.load_factor());
+        let together = ONSET_PATH * (in_contact * factor).min(1.0);
+        let Some(factor) = load_factor else {
+            return [together / speed; 2];
+        };
+        let late = ONSET_PATH * factor.max(1.0);
+        let lone = factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
+        [lone.clamp(together, late) / speed, late / speed]
     }
 
     /// The longest time in which mu* falls from its peak half-way to the [level of

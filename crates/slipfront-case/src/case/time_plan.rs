@@ -29,12 +29,12 @@ pub struct TimePlan {
     pub loading: Loading,
 }
 
-/// Load of a block in contact over its load if every block touched, a factor by which the onset comes later:
-/// 1 unless every block has a drive spring, and can bear its load by that alone.
-pub(super) fn load_factor(file: &CaseFile, model: &Model) -> f64 {
+/// Load of a block in contact over its load if every block touched, a factor by which the onset comes later;
+/// none unless every block has a drive spring, and can bear its load by that alone.
+pub(super) fn load_factor(file: &CaseFile, model: &Model) -> Option<f64> {
     match file.drive.attached {
-        Attached::At(AttachedEdge::All) => model.surface.load_factor(),
-        Attached::At(_) | Attached::File(_) => 1.0,
+        Attached::At(AttachedEdge::All) => Some(model.surface.load_factor()),
+        Attached::At(_) | Attached::File(_) => None,
     }
 }
 
@@ -155,7 +155,10 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
             .next_back(),
         DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
     };
-    let path = f64::max(8.0, load_factor(file, model) / K_DRIVE + ONSET_PATH);
+    let path = f64::max(
+        8.0,
+        load_factor(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
+    );
     last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales)
 }
 
@@ -168,7 +171,10 @@ fn delay(file: &CaseFile, scales: &Scales) -> f64 {
 /// (Eq. 12), or the time at which the drive springs of the blocks that touch bear the whole load, if that is
 /// later.
 pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
-    let path = f64::max(2.0 * ONSET_PATH, load_factor(file, model) / K_DRIVE);
+    let path = f64::max(
+        2.0 * ONSET_PATH,
+        load_factor(file, model).unwrap_or(1.0) / K_DRIVE,
+    );
     path / model.loading_speed() * delay(file, scales)
 }
 

@@ -4,6 +4,7 @@ use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
 use slipfront_run::estimate_cost::{StepTime, TimeRange};
+use slipfront_run::running::useful_threads;
 use slipfront_run::times::instant;
 
 use super::speeds::Speeds;
@@ -71,13 +72,17 @@ fn onset(case: &Case) -> String {
     }
     let [from, to] = expected.onset_star;
     text += &if from < to {
+        let factor = case.model.surface.load_factor();
+        let load = if factor > 1.0 {
+            format!("bear {} times the load", four_digits(factor))
+        } else {
+            "are pulled by the others too".to_owned()
+        };
         format!(
-            "onset expected    {} to {}: the {} % of the blocks that touch bear {} times the load; the earlier, the more scattered they \
-             are{}\n",
+            "onset expected    {} to {}: the {} % of the blocks that touch {load}; the earlier, the more scattered they are{}\n",
             at(from),
             at(to),
             four_digits(100.0 - case.texture.meshed_percent),
-            four_digits(case.model.surface.load_factor()),
             late(to)
         )
     } else {
@@ -133,12 +138,16 @@ fn resources(case: &Case, time: TimeRange) -> String {
         format!(" of {} available", byte_size(there))
     });
     format!(
-        "cost              {:.3e} block-steps{}, {} on this machine\n\
+        "cost              {:.3e} block-steps{}, {} on one thread{}\n\
          memory            {}{available}\n\
          disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
         case.block_steps(),
         standing(case.model.drive.is_held()),
         duration(time),
+        match useful_threads(case, rayon::current_num_threads()) {
+            1 => String::new(),
+            threads => format!(" of the {threads} that a run takes here"),
+        },
         byte_size(budget.memory()),
         byte_size(budget.disk()),
         byte_size(budget.disk_of_snapshots()),

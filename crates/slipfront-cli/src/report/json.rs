@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use slipfront_base::machine::available_memory;
 use slipfront_case::case::Case;
 use slipfront_run::estimate_cost::StepTime;
+use slipfront_run::running::useful_threads;
 
 use super::cost::warnings;
 use super::speeds::Speeds;
@@ -58,6 +59,7 @@ pub(crate) fn check(case: &Case, per_step: &StepTime) -> Value {
         "stress_unit_pa": case.scales.stress(),
         "block_steps": case.block_steps(),
         "seconds": per_step.of_steps(&case.expected_steps()),
+        "threads": useful_threads(case, rayon::current_num_threads()),
         "seconds_per_step_at_rest": per_step.at_rest,
         "seconds_per_step_sliding": per_step.sliding,
         "speeds": Speeds::of(case).map(|speeds| speeds.json(case, per_step)),

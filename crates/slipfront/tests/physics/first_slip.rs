@@ -149,10 +149,11 @@ fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
 fn an_onset_is_expected_between_that_of_lone_blocks_and_that_of_blocks_by_themselves() {
     let model = Slider::default().model();
     let usual = 2.5 / 0.03;
-    assert_eq!(model.onset_estimate(1.0), [usual; 2]);
-    let [from, to] = model.onset_estimate(2.0);
+    assert_eq!(model.onset_estimate(Some(1.0)), [usual; 2]);
+    assert_eq!(model.onset_estimate(None), [usual; 2]);
+    let [from, to] = model.onset_estimate(Some(2.0));
     assert!(from == usual && (to / (2.0 * usual) - 1.0).abs() < 1e-14);
-    let [from, to] = model.onset_estimate(20.0);
+    let [from, to] = model.onset_estimate(Some(20.0));
     // 5.0635 is the integral on 400 x 400 waves.
     let lone = 20.0 / (5.0635 * 0.375 * 0.03);
     assert!((from / lone - 1.0).abs() < 1e-4, "{from} {lone}");
