@@ -18,7 +18,7 @@ const MEASUREMENT: f64 = 0.005;
 /// Duration of the measurements of a kind from which on no other begins.
 const ENOUGH: Duration = Duration::from_millis(300);
 /// Duration of a pilot run whose blocks slide in every step, in s.
-const PILOT: f64 = 0.3;
+const PILOT: f64 = 0.2;
 /// Largest number of blocks of a pilot run, which takes a second model into memory.
 const MOST_PILOT_BLOCKS: usize = 1_000_000;
 /// V* N above which blocks slide in every step: a faster pilot has as many of them.
@@ -117,8 +117,9 @@ impl StepTime {
 }
 
 impl SlipTime {
-    /// The time from a run over the whole path of the drive, as fast as its time has to be short; none where
-    /// a faster drive is no other case of the same kind.
+    /// The time from a run over the whole path of the drive, as fast as its time has to be short, and from
+    /// one that is faster still, which shows how the time falls with the speed; none where a faster drive is
+    /// no other case of the same kind.
     fn of_pilot(case: &Case, at_rest: f64, sliding: f64) -> Option<Self> {
         let drive = &case.model.drive;
         if drive.program.is_some() || drive.is_held() || case.model.n_blocks() > MOST_PILOT_BLOCKS {
@@ -126,19 +127,30 @@ impl SlipTime {
         }
         let expected = case.expected_steps();
         let steps = 0.5 * (expected.steps[0] + expected.steps[1]);
+        let slip_at = |faster: f64| {
+            let mut pilot = case.clone();
+            Arc::make_mut(&mut pilot.model).drive.v_star *= faster;
+            let (seconds, made) = Steps::new(pilot, None).seconds((steps / faster).ceil() as u64);
+            (seconds / made as f64 - at_rest).max(0.0)
+        };
+        let ratio_at = |faster: f64| (faster * expected.front_ratio).min(ALWAYS_SLIDING);
         let faster = (steps * sliding.max(at_rest) / PILOT).max(1.0);
-        let mut pilot = case.clone();
-        Arc::make_mut(&mut pilot.model).drive.v_star *= faster;
-        let (seconds, n_steps) = Steps::new(pilot, None).seconds((steps / faster).ceil() as u64);
-        let per_step = seconds / n_steps as f64;
-        let slip = (per_step - at_rest).max(0.0);
+        let slip = slip_at(faster);
+        let is_shown = slip > 0.0 && faster > 1.0 && ratio_at(2.0 * faster) > 1.5 * ratio_at(faster);
+        let exponents = if is_shown {
+            let change = ratio_at(2.0 * faster) / ratio_at(faster);
+            let exponent = libm::log(slip_at(2.0 * faster) / slip) / libm::log(change);
+            [0.12, -0.12].map(|more| (exponent + more).clamp(0.0, 1.0))
+        } else {
+            [0.35, 0.1]
+        };
         Some(Self {
-            front_ratio: (faster * expected.front_ratio).min(ALWAYS_SLIDING),
+            front_ratio: ratio_at(faster),
             seconds: TimeRange {
                 least: slip,
                 most: slip,
             },
-            exponents: [0.35, 0.1],
+            exponents,
         })
     }
 
