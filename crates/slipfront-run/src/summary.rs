@@ -54,9 +54,9 @@ pub struct Summary {
     pub sliding_percent_max: f64,
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
-    /// Whether mu* fell at least half-way to the steady level L and by (1 - L)/20 after its first peak,
-    /// within the time of a transition, mu_k* is as much below the peak, and steady sliding takes less force
-    /// than the blocks hold at rest.
+    /// Whether mu* fell at least half-way to the steady level L and by (S - L)/20 after its first peak, where
+    /// S is the share of the load on blocks in contact, within the time of a transition, mu_k* is as much
+    /// below the peak, and steady sliding takes less force than the blocks hold at rest.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,

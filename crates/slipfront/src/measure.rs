@@ -109,14 +109,15 @@ impl Largest {
     }
 }
 
-/// Least loss of friction in a transition, as a share of the largest loss 1 - L. Ripples of sliding just
+/// Least loss of friction in a transition, as a share of the largest loss S - L. Ripples of sliding just
 /// above L are smaller; a texture that lowers mu_s* nearly to L leaves more.
 const LEAST_FALL: f64 = 0.05;
 
 /// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at
-/// least (1 - L)/20, within the longest time that a transition takes. It is found while the run goes on:
-/// until such a fall is seen it is the largest mu* so far, and it stays that if the first fall comes too
-/// late, of a slider that creeps.
+/// least (S - L)/20, within the longest time that a transition takes; S is the share of the load that blocks
+/// in contact bear, 1 unless that of textured blocks is lost. The peak is found while the run goes on: until
+/// such a fall is seen it is the largest mu* so far, and it stays that if the first fall comes too late, of a
+/// slider that creeps.
 ///
 /// Under a held drive it is the largest mu* until the drive has moved in a stated number of steps, if such a
 /// fall follows it until then, on the time of the drive: a ripple just above L would pass for a first peak
@@ -138,6 +139,7 @@ pub struct Peak {
     /// Largest mu* of the whole run so far.
     pub largest: Largest,
     steady_level: f64,
+    share_of_load: f64,
     longest_fall: f64,
     /// Whether mu* fell by the least loss too late for a transition; under a held drive, whether it did not
     /// fall.
@@ -167,12 +169,12 @@ impl Peak {
         };
         Self {
             held,
-            ..Self::within(model.longest_fall(), steady_level)
+            ..Self::within(model.longest_fall(), steady_level, model.share_of_load())
         }
     }
 
     /// The peak under a drive at constant speed; `longest_fall` comes from [`Model::longest_fall`].
-    fn within(longest_fall: f64, steady_level: f64) -> Self {
+    fn within(longest_fall: f64, steady_level: f64, share_of_load: f64) -> Self {
         Self {
             mu_star: f64::NEG_INFINITY,
             mu_lateral_star: 0.0,
@@ -182,6 +184,7 @@ impl Peak {
             ended: false,
             largest: Largest::until(f64::INFINITY),
             steady_level,
+            share_of_load,
             longest_fall,
             crept: false,
             held: None,
@@ -213,9 +216,9 @@ impl Peak {
     }
 
     /// Whether the peak is above this mean of mu* in sliding by the least that friction loses in a
-    /// transition, (1 - L)/20.
+    /// transition, (S - L)/20.
     pub fn is_above(&self, sliding: f64) -> bool {
-        self.mu_star - sliding >= LEAST_FALL * (1.0 - self.steady_level).max(0.0)
+        self.mu_star - sliding >= LEAST_FALL * (self.share_of_load - self.steady_level).max(0.0)
     }
 
     /// Takes the next step into account.
@@ -260,7 +263,7 @@ mod tests {
     }
 
     fn peak_within(longest_fall: f64, level: f64, curve: &[f64]) -> Peak {
-        let mut peak = Peak::within(longest_fall, level);
+        let mut peak = Peak::within(longest_fall, level, 1.0);
         let mut clock = Clock::start(1.0);
         for &mu in curve {
             let point = CurvePoint {

@@ -239,6 +239,13 @@ impl Model {
         self.loading_speed() * self.slider.mean_slowness
     }
 
+    /// Share of the load that the blocks in contact bear: less than 1 where that of textured blocks is not
+    /// redistributed.
+    pub fn share_of_load(&self) -> f64 {
+        let in_contact = 1.0 - 0.01 * self.surface.texture_percent();
+        (in_contact * self.surface.load_factor()).min(1.0)
+    }
+
     /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
     /// bear their load alone, which is larger by the [load factor](Surface::load_factor) f where only some
     /// touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that is
@@ -254,10 +261,7 @@ impl Model {
     /// pulls all blocks together.
     pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
-        let surface = &self.surface;
-        let in_contact = 1.0 - 0.01 * surface.texture_percent();
-        let factor = load_factor.unwrap_or(surface.load_factor());
-        let together = ONSET_PATH * (in_contact * factor).min(1.0);
+        let together = ONSET_PATH * self.share_of_load();
         let Some(factor) = load_factor else {
             return [together / speed; 2];
         };

@@ -255,7 +255,10 @@ fn runs_last_longer_where_few_blocks_touch() {
         );
         assert!(from >= 2.5 / 0.03 && (to / (2.5 / 0.03 * factor) - 1.0).abs() < 1e-12);
         let kept = end(&groove(percent), &["load.redistribute=false"]);
-        assert!(close([kept.0, usual]) && kept.1 == [2.5 / 0.03; 2]);
+        assert!(close([kept.0, usual]));
+        // All forces are smaller by the factor.
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+        assert!(near(kept.1[0] * factor, from) && near(kept.1[1] * factor, to));
         let edge = end(&groove(percent), &["drive.attach='left'"]);
         assert!(close([edge.0, 50.0 * usual]), "{}", edge.0);
         assert_eq!(edge.1[0], edge.1[1]);

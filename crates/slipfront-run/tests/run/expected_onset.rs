@@ -42,3 +42,15 @@ fn the_onset_of_sparse_contacts_is_expected_where_it_is_found() {
         "{from} {to} {whole}"
     );
 }
+
+/// A line of contacts whose load is all that the slider bears loses half of it when it slips: that is a
+/// transition, with a front, however small its share of the load is.
+#[test]
+fn a_line_of_contacts_has_a_transition() {
+    let text = "slider.blocks = [40, 40]\nload.redistribute = false\ndrive.v_star = 0.003\n\
+                texture = [{ shape = 'groove', coverage = 2.5, orientation = 'along', invert = true }]";
+    let case = Case::parse(text, "case", "", &[]).unwrap();
+    let summary = run_summary(&case).unwrap();
+    assert!(summary.transition, "{summary:?}");
+    assert!(summary.static_friction_star < 0.025 && summary.front_duration_star.is_some());
+}
