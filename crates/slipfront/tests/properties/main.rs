@@ -413,7 +413,7 @@ proptest! {
         };
         prop_assume!(has_contact(&slider));
         let outcome = slider.run(6.0);
-        let level = slider.model().steady_level(&Alone);
+        let (level, most) = (slider.model().steady_level(&Alone), slider.model().share_of_load());
         let curve: Vec<f64> = outcome.rows.iter().map(|row| row.point.mu_star).collect();
         let largest_to = |n: usize| {
             (0..=n).fold(0, |best, k| if curve[k] > curve[best] { k } else { best })
@@ -421,7 +421,7 @@ proptest! {
         let is_fall = |n: usize| {
             let largest = curve[largest_to(n)];
             let half_way = 0.5 * (largest + level);
-            largest > level && curve[n] <= half_way && largest - curve[n] >= 0.05 * (1.0 - level).max(0.0)
+            largest > level && curve[n] <= half_way && largest - curve[n] >= 0.05 * (most - level).max(0.0)
         };
         // A slider whose mu* falls too late has crept: no fall ends its peak any more.
         let time = |n: usize| outcome.rows[n].time_star;
