@@ -121,7 +121,7 @@ impl StepTime {
 impl SlipTime {
     /// The time from a run over the whole path of the drive, as fast as its time has to be short; none where
     /// a faster drive is no other case of the same kind. In Coulomb friction slip takes a smaller share of
-    /// the steps at a slower drive; under slip weakening blocks creep, and it takes about as large a share.
+    /// the steps at a slower drive; where strength falls with slip, blocks creep, and it takes as much.
     fn of_pilot(case: &Case, at_rest: f64, sliding: f64) -> Option<Self> {
         let drive = &case.model.drive;
         if drive.program.is_some() || drive.is_held() || case.model.n_blocks() > MOST_PILOT_BLOCKS {

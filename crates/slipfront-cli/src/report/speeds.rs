@@ -162,7 +162,7 @@ fn can_be_held(case: &Case) -> bool {
     let friction = &case.file.friction;
     let drives_all = case.file.drive.attached == Attached::At(AttachedEdge::All);
     let is_stiff = case.model.mount_stiffness() >= 0.5 * K_DRIVE;
-    drives_all && is_stiff && friction.can_be_held() && friction.slip_weakening.is_none()
+    drives_all && is_stiff && friction.can_be_held() && case.model.weakening().is_none()
 }
 
 /// The key of the speed as the case has it, and its value in the unit of that.
