@@ -4,15 +4,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use serde::Serialize;
 use slipfront_case::case_file::Texture;
 
 use crate::evaluate::{Evaluator, Keep, RunCache};
+use crate::mean::Mean;
 use crate::stages::Stages;
 use crate::subject::Fidelity;
 use crate::tolerance::WithinTolerance;
-use slipfront_study::CONFIDENCE;
-use slipfront_study::Sample;
 use slipfront_study::StudyError;
 
 /// Number of surfaces on which finalists are compared.
@@ -30,37 +28,6 @@ pub(crate) struct Contender {
     pub(crate) texture: Arc<Vec<bool>>,
     /// Shapes that the blocks were meshed from, if they were.
     pub(crate) shapes: Option<Arc<Vec<Texture>>>,
-}
-
-/// A mean over surfaces with its uncertainty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Mean {
-    /// The mean.
-    pub mean: f64,
-    /// Half the width of the 95 % interval of the mean; none where surfaces do not differ.
-    pub half_width: Option<f64>,
-    /// Standard deviation from surface to surface; none where surfaces do not differ.
-    pub deviation: Option<f64>,
-}
-
-impl Mean {
-    /// The mean of values, with its interval if there are several.
-    pub(crate) fn of(values: &[f64]) -> Self {
-        let sample = Sample::of(values, CONFIDENCE);
-        let mean = sample.map_or(f64::NAN, |sample| sample.mean);
-        // What differs by its rounding alone does not scatter.
-        let scatters = |width: &f64| *width > 1e-12 * mean.abs();
-        Self {
-            mean,
-            half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
-            deviation: sample.and_then(|sample| sample.deviation).filter(scatters),
-        }
-    }
-
-    /// Lower end of the interval.
-    pub(crate) fn low(&self) -> f64 {
-        self.mean - self.half_width.unwrap_or(0.0)
-    }
 }
 
 /// Numbers of the surfaces on which finalists are compared and judged.

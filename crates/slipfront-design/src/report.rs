@@ -18,7 +18,7 @@ use slipfront_run::running;
 
 use crate::design::{Design, Outcome};
 use crate::file::DesignFile;
-use crate::judge::Mean;
+use crate::mean::Mean;
 use crate::numbers::{FoundNumber, columns_of_unknowns, numbers_at, numbers_found, table_of_numbers};
 use crate::sensitivity::Changed;
 use crate::stages::{SearchLength, Tried};

@@ -6,7 +6,8 @@ use slipfront_case::case_file::{CaseError, DriveSpeed};
 use slipfront_case::quantity::Speed;
 
 use crate::evaluate::{Evaluator, Keep, RunCache};
-use crate::judge::{Contender, Judge, Mean, Surfaces};
+use crate::judge::{Contender, Judge, Surfaces};
+use crate::mean::Mean;
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::{Fidelity, Subject};
 use crate::tolerance::WithinTolerance;

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::evaluate::{Evaluator, Keep, RunCache, Wanted};
-use crate::judge::{Contender, Judge, Mean, Surfaces};
+use crate::judge::{Contender, Judge, Surfaces};
+use crate::mean::Mean;
 use crate::sensitivity::{self, Sensitivity};
 use crate::subject::Fidelity;
 use crate::tolerance::WithinTolerance;

@@ -8,7 +8,7 @@ use slipfront_case::case_file::names_of;
 use slipfront_run::summary::Summary;
 use slipfront_study::statistics::mean;
 
-use crate::judge::Mean;
+use crate::mean::Mean;
 
 /// Distance from a value above which it is reported as missed, %.
 const MISSED_PERCENT: f64 = 0.5;

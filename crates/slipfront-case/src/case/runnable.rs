@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::surface::{CorrelatedField, Texture};
-use slipfront::{Communicator, Lattice, Model, Scales, StopReason};
+use slipfront::{Communicator, Lattice, Model, Scales};
 
 use super::budget::Budget;
 use super::coefficients::correlated_field;
@@ -16,7 +16,6 @@ use super::inputs::{Input, Inputs, NamedFiles};
 use super::model::{self, TextureReport};
 use super::output::Output;
 use super::ranks::Ranks;
-use super::speeds::ExpectedSteps;
 use super::textures;
 use super::time_plan::{TimePlan, auto_onset_end, load_factor};
 use crate::arrays::Slab;
@@ -258,25 +257,6 @@ impl Case {
     /// Largest number of steps times blocks, without the steps in which a held drive stands.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
-    }
-
-    /// Steps that are expected, without those in which a held drive stands: all, or those to the expected
-    /// onset, within a tenth, where the onset ends the run.
-    pub fn expected_steps(&self) -> ExpectedSteps {
-        let plan = &self.time_plan;
-        let last = plan.last_step as f64;
-        let stands = self.model.drive.is_held();
-        let steps = if self.file.time.stop != StopReason::Onset || stands {
-            [last; 2]
-        } else {
-            let [early, late] = self.expected.onset_star;
-            [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last))
-        };
-        ExpectedSteps {
-            steps,
-            front_ratio: self.front_ratio(),
-            stands,
-        }
     }
 
     /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.

@@ -1,5 +1,6 @@
 //! Speeds at which a drive can load a slider: the run that each takes, and what it adds to friction.
 
+use slipfront::StopReason;
 use slipfront::lattice::K_DRIVE;
 
 use super::runnable::Case;
@@ -69,6 +70,25 @@ impl Case {
     /// k_s on each block.
     pub fn rise_per_step(&self) -> f64 {
         K_DRIVE * self.model.loading_speed() * self.time_plan.dt_star
+    }
+
+    /// Steps that are expected, without those in which a held drive stands: all, or those to the expected
+    /// onset, within a tenth, where the onset ends the run.
+    pub fn expected_steps(&self) -> ExpectedSteps {
+        let plan = &self.time_plan;
+        let last = plan.last_step as f64;
+        let stands = self.model.drive.is_held();
+        let steps = if self.file.time.stop != StopReason::Onset || stands {
+            [last; 2]
+        } else {
+            let [early, late] = self.expected.onset_star;
+            [0.9 * early, 1.1 * late].map(|star| (star / plan.dt_star).clamp(1.0, last))
+        };
+        ExpectedSteps {
+            steps,
+            front_ratio: self.front_ratio(),
+            stands,
+        }
     }
 
     /// The speed of the case and what it costs; none of a single block, or where the friction of the blocks

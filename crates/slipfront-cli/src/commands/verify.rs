@@ -90,31 +90,7 @@ impl VerifyCommand {
             let folders: Vec<_> = folders.map(|(folder, found)| found.to_json(folder)).collect();
             print(&text_of(&json!({ "folders": folders })))?;
         }
-        self.outcome(&found)
-    }
-
-    /// Fails unless all folders are as they were written.
-    fn outcome(&self, found: &[Finding]) -> Result<(), Failure> {
-        let n = |status: Status| found.iter().filter(|found| found.status == status).count();
-        let of_all = format!("of {}", count(found.len(), "folder"));
-        let different = n(Status::Different);
-        let differ = if different == 1 { "differs" } else { "differ" };
-        match (n(Status::Unusable), different, n(Status::NotDerived)) {
-            (0, 0, _) if n(Status::Pictures) == found.len() => Err(Failure::input(anyhow::anyhow!(
-                "there is nothing to verify: name folders of runs or studies"
-            ))),
-            (0, 0, 0) => Ok(()),
-            (0, 0, not_derived) => Err(Failure::running(anyhow::anyhow!(
-                "{not_derived} {of_all} {} as written, and could not be derived again: --checksums asks for no more",
-                if not_derived == 1 { "is" } else { "are" }
-            ))),
-            (0, _, _) => Err(Failure::running(anyhow::anyhow!(
-                "{different} {of_all} {differ} from what was written"
-            ))),
-            (unusable, _, _) => Err(Failure::input(anyhow::anyhow!(
-                "{unusable} {of_all} cannot be verified, {different} {differ}"
-            ))),
-        }
+        outcome(&found)
     }
 
     /// Verifies a folder. That it cannot be verified is a finding, so that the others are looked at all the
@@ -238,6 +214,30 @@ impl VerifyCommand {
             text += &wrap::note(note);
         }
         text
+    }
+}
+
+/// Fails unless all folders are as they were written.
+fn outcome(found: &[Finding]) -> Result<(), Failure> {
+    let n = |status: Status| found.iter().filter(|found| found.status == status).count();
+    let of_all = format!("of {}", count(found.len(), "folder"));
+    let different = n(Status::Different);
+    let differ = if different == 1 { "differs" } else { "differ" };
+    match (n(Status::Unusable), different, n(Status::NotDerived)) {
+        (0, 0, _) if n(Status::Pictures) == found.len() => Err(Failure::input(anyhow::anyhow!(
+            "there is nothing to verify: name folders of runs or studies"
+        ))),
+        (0, 0, 0) => Ok(()),
+        (0, 0, not_derived) => Err(Failure::running(anyhow::anyhow!(
+            "{not_derived} {of_all} {} as written, and could not be derived again: --checksums asks for no more",
+            if not_derived == 1 { "is" } else { "are" }
+        ))),
+        (0, _, _) => Err(Failure::running(anyhow::anyhow!(
+            "{different} {of_all} {differ} from what was written"
+        ))),
+        (unusable, _, _) => Err(Failure::input(anyhow::anyhow!(
+            "{unusable} {of_all} cannot be verified, {different} {differ}"
+        ))),
     }
 }
 

@@ -23,8 +23,7 @@ pub(super) struct LookArgs {
     #[arg(long, value_name = "PT", value_parser = points)]
     font_size: Option<f64>,
     /// Formats of the files, such as pdf or svg,png. PDF has its font inside. For EPS, convert the PDF:
-    /// pdftops
-    /// -eps NAME.pdf
+    /// pdftops -eps -r 1200 NAME.pdf
     #[arg(
         long = "format",
         value_name = "FORMAT",

@@ -1,0 +1,35 @@
+//! Means over surfaces.
+
+use serde::Serialize;
+use slipfront_study::{CONFIDENCE, Sample};
+
+/// A mean over surfaces with its uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the 95 % interval of the mean; none where surfaces do not differ.
+    pub half_width: Option<f64>,
+    /// Standard deviation from surface to surface; none where surfaces do not differ.
+    pub deviation: Option<f64>,
+}
+
+impl Mean {
+    /// The mean of values, with its interval if there are several.
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let sample = Sample::of(values, CONFIDENCE);
+        let mean = sample.map_or(f64::NAN, |sample| sample.mean);
+        // What differs by its rounding alone does not scatter.
+        let scatters = |width: &f64| *width > 1e-12 * mean.abs();
+        Self {
+            mean,
+            half_width: sample.and_then(|sample| sample.half_width).filter(scatters),
+            deviation: sample.and_then(|sample| sample.deviation).filter(scatters),
+        }
+    }
+
+    /// Lower end of the interval.
+    pub(crate) fn low(&self) -> f64 {
+        self.mean - self.half_width.unwrap_or(0.0)
+    }
+}
