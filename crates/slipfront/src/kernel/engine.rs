@@ -32,6 +32,10 @@ pub(crate) trait Engine: Send + Sync {
     /// is true, else those that do not.
     fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]);
 
+    /// Hands over the blocks of these rows, at least those that move, several that follow one another at a
+    /// time: the first, whether each slides, and their velocities half a step later.
+    fn read_sliding(&self, model: &Model, take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2]));
+
     /// Displacement now and velocity half a step later of block `b`.
     fn motion(&self, b: usize) -> [[f64; 2]; 2];
 

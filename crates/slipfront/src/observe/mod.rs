@@ -2,14 +2,15 @@
 //!
 //! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]:
 //! fields at chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance;
-//! [`precursors`]: events of slip of a slider driven at an edge; [`Largest`]: the largest mu* until the drive
-//! has gone a stated path; [`cycles`]: peaks under a program of speeds; [`kymograph`]: sliding against place
-//! and time. [`front`] is found after a run from its first slips: where slip has begun, and how fast it has
-//! spread.
+//! [`events`]: events of slip, each with its place and size; [`precursors`]: how far those of a slider driven
+//! at an edge reach; [`Largest`]: the largest mu* until the drive has gone a stated path; [`cycles`]: peaks
+//! under a program of speeds; [`kymograph`]: sliding against place and time. [`front`] is found after a run
+//! from its first slips: where slip has begun, and how fast it has spread.
 
 pub mod curve;
 pub mod cycles;
 pub mod energy;
+pub mod events;
 pub mod frames;
 pub mod front;
 pub mod instants;
@@ -24,6 +25,7 @@ pub use crate::measure::{CurvePoint, Largest, Peak};
 pub use curve::{Curve, CurveRow};
 pub use cycles::{Cycle, Cycles};
 pub use energy::{Energies, Ledger};
+pub use events::{Event, Events};
 pub use frames::{Frame, Frames};
 pub use front::{Front, Quantiles};
 pub use instants::Instants;

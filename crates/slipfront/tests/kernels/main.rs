@@ -89,6 +89,7 @@ fn stopped_and_resumed(
 
 mod against_general;
 mod checkpoints;
+mod events;
 mod executions;
 mod fields;
 mod general_divided;

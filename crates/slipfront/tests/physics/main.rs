@@ -20,6 +20,7 @@ mod correlated;
 mod driven_fronts;
 mod edge_drive;
 mod energy;
+mod events;
 mod first_slip;
 mod front_speed;
 mod graded;

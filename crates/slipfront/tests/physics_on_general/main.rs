@@ -17,6 +17,8 @@ mod composite;
 mod convergence;
 #[path = "../physics/energy.rs"]
 mod energy;
+#[path = "../physics/events.rs"]
+mod events;
 #[path = "../physics/first_slip.rs"]
 mod first_slip;
 #[path = "../physics/front_speed.rs"]

@@ -147,6 +147,30 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
     }
 }
 
+/// Hands over the blocks of tiles that move, some of a row at a time: the first, whether each slides, and
+/// their velocities.
+pub(super) fn read_sliding(
+    model: &Model,
+    layout: &Layout,
+    bands: &[Band],
+    take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2]),
+) {
+    let mut slides = [false; TILE];
+    for band in bands {
+        for t in (0..band.tiles.len()).filter(|t| band.tiles[*t].moving) {
+            let elements = band.elements(t);
+            let [x, y] = [&band.velocity.x, &band.velocity.y].map(|v| &v[elements.clone()]);
+            for ((slides, x), y) in slides.iter_mut().zip(x).zip(y) {
+                *slides = (*x != 0.0) | (*y != 0.0);
+            }
+            for (j, i, blocks) in layout.rows_among(band.first + elements.start..band.first + elements.end) {
+                let velocities = [&x[blocks.clone()], &y[blocks.clone()]];
+                take(model.lattice.block(i, j), &slides[blocks], velocities);
+            }
+        }
+    }
+}
+
 fn round(values: &mut [f32; TILE], exact: &[f64]) {
     for (value, exact) in values.iter_mut().zip(exact) {
         *value = *exact as f32;

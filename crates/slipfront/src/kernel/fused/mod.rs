@@ -619,6 +619,10 @@ impl Engine for Fused {
         }
     }
 
+    fn read_sliding(&self, model: &Model, take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2])) {
+        fields::read_sliding(model, &self.layout, &self.bands, take);
+    }
+
     fn motion(&self, b: usize) -> [[f64; 2]; 2] {
         let (band, k) = self.locate(self.layout.element_of(b));
         let band = &self.bands[band];

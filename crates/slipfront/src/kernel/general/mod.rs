@@ -386,6 +386,13 @@ impl Engine for General {
         }
     }
 
+    fn read_sliding(&self, _: &Model, take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2])) {
+        for BandOfRank { blocks, band, .. } in &self.bands {
+            let velocity = &band.state.velocity;
+            take(blocks.start, &band.forces.slides, [&velocity.x, &velocity.y]);
+        }
+    }
+
     fn motion(&self, b: usize) -> [[f64; 2]; 2] {
         let (Band { state, .. }, b) = self.locate(b);
         [state.displacement.at(b), state.velocity.at(b)]

@@ -1,0 +1,226 @@
+//! Events of slip: when and where each begins, how many blocks slide in it, and how far.
+
+use serde::{Deserialize, Serialize};
+
+use super::observer::Observer;
+use crate::error::RunError;
+use crate::fixed_point::sum_over;
+use crate::model::Model;
+use crate::reductions;
+use crate::snapshot::Snapshot;
+use crate::vector_field::dot;
+
+/// An event: consecutive steps in which some block in contact slides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// t* at which the event begins.
+    pub from_star: f64,
+    /// t* of the drive at which the event begins.
+    pub drive_from_star: f64,
+    /// Column and row of the block in contact that slides first; of several, the one with the least index.
+    pub nucleation: [u32; 2],
+    /// Number of blocks in contact that slide in the event.
+    pub blocks: usize,
+    /// Sum over these blocks of the slip along the drive, in units of displacement: from the instant at which
+    /// the block first slides in the event to the end of the event.
+    pub moment: f64,
+    /// Largest speed of a block in contact that slides.
+    pub speed_max: f64,
+    /// mu* at the beginning of the event.
+    pub mu_star_before: f64,
+    /// t* at which no block in contact slides any more, and mu* then; none for an event that goes on.
+    pub after: Option<(f64, f64)>,
+}
+
+/// The events of a run, the first [`Events::MAX`] of them one by one. The observer must be called at every
+/// step. It looks at blocks only while one slides.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Events {
+    events: Vec<Event>,
+    unlisted: u64,
+    /// Whether a block in contact slides from the latest instant on.
+    slides: bool,
+    /// Displacement along the drive of every block of this rank when it first slid in the event that goes on;
+    /// NaN for other blocks. Empty before the first event.
+    #[serde(skip)]
+    paths_before: Vec<f64>,
+    /// Number of blocks in contact of this rank that have not slid in the event that goes on.
+    #[serde(skip)]
+    n_stuck: usize,
+}
+
+impl Events {
+    /// Largest number of events that are listed.
+    pub const MAX: usize = 1_000_000;
+
+    /// The events in the order of time; the last may go on.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Number of events after the last one that is listed.
+    pub fn unlisted(&self) -> u64 {
+        self.unlisted
+    }
+
+    /// Displacement along the drive of every block of this rank when it first slid in the event that goes on,
+    /// NaN for other blocks; none between events. A checkpoint keeps them beside what is serialised.
+    pub fn paths_before(&self) -> Option<&[f64]> {
+        self.goes_on().then_some(&self.paths_before)
+    }
+
+    /// Whether an event that is listed goes on.
+    pub fn goes_on(&self) -> bool {
+        self.slides && self.unlisted == 0
+    }
+
+    /// Goes on within an event with the [paths](Self::paths_before) of a checkpoint.
+    pub fn resume(&mut self, model: &Model, paths_before: Vec<f64>) {
+        let blocks = paths_before.iter().zip(&model.surface.textured);
+        self.n_stuck = blocks
+            .filter(|(path, textured)| path.is_nan() && !**textured)
+            .count();
+        self.paths_before = paths_before;
+    }
+
+    /// Whether the recording can be of a run of this model up to `time_star`.
+    pub fn is_consistent_with(&self, model: &Model, time_star: f64) -> bool {
+        let times = self
+            .events
+            .iter()
+            .flat_map(|event| [Some(event.from_star), event.after.map(|(time, _)| time)]);
+        let is_rising = times.flatten().chain([time_star]).is_sorted();
+        let (lattice, n_contact) = (&model.lattice, model.surface.n_contact());
+        let is_possible = |event: &Event| {
+            let [i, j] = event.nucleation.map(|index| index as usize);
+            i < lattice.nx && j < lattice.ny && event.blocks <= n_contact
+        };
+        let n_open = self.events.iter().filter(|event| event.after.is_none()).count();
+        let last_is_open = self.events.last().is_some_and(|event| event.after.is_none());
+        is_rising
+            && self.events.iter().all(is_possible)
+            && n_open == usize::from(last_is_open)
+            && last_is_open == self.goes_on()
+            && self.events.len() <= Self::MAX
+            && (self.unlisted == 0 || self.events.len() == Self::MAX)
+    }
+
+    /// Begins an event that is listed.
+    fn begin(&mut self, now: &Snapshot) {
+        let mut paths = std::mem::take(&mut self.paths_before);
+        paths.clear();
+        paths.resize(now.model.surface.n_blocks(), f64::NAN);
+        self.resume(now.model, paths);
+        self.events.push(Event {
+            from_star: now.time_star,
+            drive_from_star: now.drive_time_star,
+            nucleation: [0; 2],
+            blocks: 0,
+            moment: 0.0,
+            speed_max: 0.0,
+            mu_star_before: now.point.mu_star,
+            after: None,
+        });
+        let first = self.follow(now);
+        // Of all ranks; the least index is the largest negative one.
+        let mut least = [first.map_or(f64::NEG_INFINITY, |b| -((first_block(now) + b) as f64))];
+        now.communicator.largest(&mut least);
+        let (i, j) = now.model.lattice.column_row(-least[0] as usize);
+        if let Some(event) = self.events.last_mut() {
+            event.nucleation = [i, j].map(|index| index as u32);
+        }
+    }
+
+    /// Looks at the blocks that slide in an event. Returns the first of those of this rank that have not slid
+    /// in it before.
+    fn follow(&mut self, now: &Snapshot) -> Option<usize> {
+        let event = self.events.last_mut()?;
+        // Blocks are not looked at if none is faster than one was before, and all have slid.
+        let bound = now
+            .engine
+            .motion_bounds()
+            .map_or(f64::INFINITY, |bounds| bounds.speed);
+        let may_be_faster = bound > event.speed_max;
+        let (paths, n_stuck) = (&mut self.paths_before, &mut self.n_stuck);
+        let (mut square, mut first) = (0.0, None);
+        if may_be_faster || *n_stuck > 0 {
+            now.engine.read_sliding(now.model, &mut |start, slides, [x, y]| {
+                let n = slides.len();
+                let textured = &now.model.surface.textured[start..][..n];
+                let (x, y) = (&x[..n], &y[..n]);
+                let slips = |k: usize| slides[k] & !textured[k];
+                let of_block = |k: usize| if slips(k) { x[k] * x[k] + y[k] * y[k] } else { 0.0 };
+                square = reductions::largest(n, of_block).max(square);
+                if *n_stuck == 0 {
+                    return;
+                }
+                for (k, path) in paths[start..][..n].iter_mut().enumerate() {
+                    if slips(k) & path.is_nan() {
+                        *path = path_of(now, start + k);
+                        *n_stuck -= 1;
+                        first = first.or(Some(start + k));
+                    }
+                }
+            });
+        }
+        if may_be_faster {
+            let mut speed = [square.sqrt()];
+            now.communicator.largest(&mut speed);
+            event.speed_max = event.speed_max.max(speed[0]);
+        }
+        first
+    }
+
+    /// Adds up what the blocks have slid in an event that ends here, or goes on when the run ends.
+    fn end(&mut self, now: &Snapshot) {
+        let paths = &self.paths_before;
+        let slip = |b: usize| {
+            if paths[b].is_nan() {
+                0.0
+            } else {
+                path_of(now, b) - paths[b]
+            }
+        };
+        let moment = sum_over(now.communicator, paths.len(), slip);
+        let mut blocks = [paths.iter().filter(|path| !path.is_nan()).count() as i64];
+        now.communicator.sum(&mut blocks);
+        if let Some(event) = self.events.last_mut() {
+            (event.moment, event.blocks) = (moment, blocks[0] as usize);
+            event.after = (!self.slides).then_some((now.time_star, now.point.mu_star));
+        }
+    }
+}
+
+/// Index in the whole lattice of the first block of this rank.
+fn first_block(now: &Snapshot) -> usize {
+    now.model.lattice.blocks_of(&now.model.rows).start
+}
+
+/// Displacement along the drive of block `b` of this rank.
+fn path_of(now: &Snapshot, b: usize) -> f64 {
+    let direction = now
+        .model
+        .drive
+        .direction_at(&now.model.lattice, first_block(now) + b);
+    dot(now.engine.motion(b)[0], direction)
+}
+
+impl Observer for Events {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        let goes_on = self.goes_on();
+        let begins = now.totals.n_slipping > 0 && !self.slides;
+        self.slides = now.totals.n_slipping > 0;
+        if begins && self.events.len() == Self::MAX {
+            self.unlisted += 1;
+        } else if begins {
+            self.begin(now);
+        } else if goes_on && self.slides {
+            self.follow(now);
+        }
+        let is_last = now.last && self.goes_on();
+        if goes_on && !self.slides || is_last {
+            self.end(now);
+        }
+        Ok(())
+    }
+}
