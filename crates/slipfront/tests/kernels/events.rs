@@ -10,9 +10,10 @@ use test_case::test_matrix;
 use crate::common::{Slider, cavity};
 use crate::{fused, general, stopped_and_resumed};
 
-/// Large enough for several bands, with events of few blocks and of all.
-fn slider() -> Slider {
-    let blocks = [70, 64];
+const DT_STAR: f64 = 0.2;
+
+/// A rough slider with a cavity, in which events are of few blocks and of all.
+fn slider(blocks: [usize; 2]) -> Slider {
     Slider {
         blocks,
         edges: [Edges::Periodic, Edges::Free],
@@ -21,18 +22,20 @@ fn slider() -> Slider {
         v_star: 0.05,
         sigma_static_star: 0.2,
         omega_star: 0.3,
-        dt_star: 0.2,
+        dt_star: DT_STAR,
         loading: Loading::Held { onset_steps: 1 },
         ..Slider::default()
     }
 }
 
 fn start(model: Model, execution: Execution) -> Simulation {
-    Simulation::new(model, slider().dt_star, None, execution)
+    Simulation::new(model, DT_STAR, None, execution)
 }
 
-/// The end comes within an event of many blocks.
-const DRIVE_STEPS: u64 = 300;
+/// Blocks enough for three bands of either kernel.
+const MANY: [usize; 2] = [49, 64];
+
+const DRIVE_STEPS: u64 = 270;
 
 fn recorded(mut simulation: Simulation) -> Vec<Event> {
     let mut events = Events::default();
@@ -44,7 +47,7 @@ fn recorded(mut simulation: Simulation) -> Vec<Event> {
 #[test]
 fn threads_and_ranks_find_equal_events() {
     for kernel in [fused(), general()] {
-        let alone = recorded(start(slider().model(), kernel.clone()));
+        let alone = recorded(start(slider(MANY).model(), kernel.clone()));
         let few = alone.iter().filter(|event| event.blocks < 10).count();
         let largest = alone.iter().map(|event| event.blocks).max();
         assert!(few > 5 && largest > Some(1000), "{few} {largest:?}");
@@ -54,7 +57,7 @@ fn threads_and_ranks_find_equal_events() {
                 skips,
                 ..kernel.clone()
             };
-            assert_eq!(recorded(start(slider().model(), execution)), alone);
+            assert_eq!(recorded(start(slider(MANY).model(), execution)), alone);
         }
         for size in [2, 3] {
             let ranks = Threads::run(size, |rank| {
@@ -63,7 +66,7 @@ fn threads_and_ranks_find_equal_events() {
                     communicator,
                     ..kernel.clone()
                 };
-                recorded(start(slider().model_of(rank), execution))
+                recorded(start(slider(MANY).model_of(rank), execution))
             });
             for rank in ranks {
                 assert_eq!(rank, alone);
@@ -76,7 +79,7 @@ fn threads_and_ranks_find_equal_events() {
 #[test_matrix([1, 7, 61], [false, true])]
 fn events_go_on_from_checkpoints(every: u64, is_fused: bool) {
     let kernel = || if is_fused { fused() } else { general() };
-    let model = slider().model();
+    let model = slider([20, 16]).model();
     let whole = recorded(start(model.clone(), kernel()));
     let mut simulation = start(model.clone(), kernel());
     let (mut events, mut within) = (Events::default(), 0);
@@ -88,7 +91,7 @@ fn events_go_on_from_checkpoints(every: u64, is_fused: bool) {
         if reason.is_some() {
             break;
         }
-        simulation = stopped_and_resumed(&simulation, &model, slider().dt_star, kernel());
+        simulation = stopped_and_resumed(&simulation, &model, DT_STAR, kernel());
         let kept = events.paths_before().map(<[f64]>::to_vec);
         events = postcard::from_bytes(&postcard::to_stdvec(&events).unwrap()).unwrap();
         assert_eq!(events.goes_on(), kept.is_some());
@@ -105,7 +108,7 @@ fn events_go_on_from_checkpoints(every: u64, is_fused: bool) {
 /// Events beyond the largest number are counted, and nothing else changes, also across a stop.
 #[test]
 fn a_list_that_is_full_counts_on() {
-    let model = slider().model();
+    let model = slider([20, 16]).model();
     let all = recorded(start(model.clone(), fused()));
     // A run that has listed all but two of the events that it can.
     let earlier = Event {

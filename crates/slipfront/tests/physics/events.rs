@@ -319,6 +319,14 @@ fn under_rate_and_state_an_event_is_what_exceeds_the_slip_speed() {
         Some((event.from_star, until, event.moment))
     });
     let found: Vec<_> = found.collect();
-    assert!(found.len() > 2, "{}", found.len());
-    assert_eq!(found, expected);
+    assert!(
+        found.len() > 2 && found.len() == expected.len(),
+        "{}",
+        found.len()
+    );
+    for (found, expected) in found.iter().zip(&expected) {
+        assert_eq!((found.0, found.1), (expected.0, expected.1));
+        // A sum is a multiple of 2^-51 of a power of two above its largest term.
+        assert!((found.2 / expected.2 - 1.0).abs() < 2.0 * f64::EPSILON);
+    }
 }
