@@ -170,10 +170,17 @@ impl Observers {
             number_bytes: number_bytes as u64,
         };
         let fields = self.fields.frames().len() * case.output.fields.len();
+        let of_event = usize::from(self.paths_before().is_some());
         [
-            columns(case.model.n_columns(), 1, size_of::<f64>()),
+            columns(case.model.n_columns() + of_event, 1, size_of::<f64>()),
             columns(fields, stride, size_of::<f32>()),
         ]
+    }
+
+    /// Displacements from which the slip of blocks counts in an event that goes on, if the run keeps a
+    /// catalogue of events and one goes on.
+    fn paths_before(&self) -> Option<&[f64]> {
+        self.summary.optional.events.as_ref()?.paths_before()
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> Vec<Scheduled<'_>> {
@@ -269,18 +276,26 @@ impl Running {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
         let (threads, communicator) = (execution.threads, Arc::clone(&execution.communicator));
-        let simulation =
-            Simulation::resume(model, dt_star, &checkpoint, execution, |column, first, values| {
-                bytes.resize(size_of_val(values), 0);
-                read(blocks.offset(column, first_row, first), &mut bytes)?;
-                for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
-                    *value = f64::from_le_bytes(*bytes);
-                }
-                Ok(())
-            })?;
+        let mut read_blocks = |column: usize, first: usize, values: &mut [f64]| {
+            bytes.resize(size_of_val(values), 0);
+            read(blocks.offset(column, first_row, first), &mut bytes)?;
+            for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
+                *value = f64::from_le_bytes(*bytes);
+            }
+            Ok(())
+        };
+        let simulation = Simulation::resume(model, dt_star, &checkpoint, execution, &mut read_blocks)?;
         let Some(simulation) = simulation else {
             return Ok(None);
         };
+        let events = observers.summary.optional.events.as_mut();
+        if let Some(events) = events.filter(|events| events.goes_on()) {
+            let mut paths = vec![0.0; case.model.surface.n_blocks()];
+            for (part, values) in paths.chunks_mut(PART).enumerate() {
+                read_blocks(case.model.n_columns(), part * PART, values)?;
+            }
+            events.resume(&case.model, paths);
+        }
         let (rows, begin) = (
             own_rows_of_fields(case),
             blocks.offset(blocks.count as usize, 0, 0),
@@ -399,13 +414,18 @@ impl Running {
         let [blocks, fields] = self.columns();
         let mut bytes = Vec::new();
         let first_row = own_rows(&self.case).start;
-        self.simulation.write_columns(|column, first, values| {
+        let mut write_blocks = |column: usize, first: usize, values: &[f64]| {
             bytes.resize(size_of_val(values), 0);
             for (value, bytes) in values.iter().zip(bytes.as_chunks_mut().0) {
                 *bytes = value.to_le_bytes();
             }
             write(blocks.offset(column, first_row, first), &bytes)
-        })?;
+        };
+        self.simulation.write_columns(&mut write_blocks)?;
+        let paths = self.observers.paths_before().unwrap_or_default();
+        for (part, values) in paths.chunks(PART).enumerate() {
+            write_blocks(self.case.model.n_columns(), part * PART, values)?;
+        }
         let (row, begin) = (
             own_rows_of_fields(&self.case).start,
             blocks.offset(blocks.count as usize, 0, 0),

@@ -12,6 +12,7 @@ use crate::error::ResultsError;
 use crate::folder_error::FolderError;
 use crate::names::SUMMARY;
 use crate::observers::cycles::CycleSummary;
+use crate::observers::events::EventSummary;
 use crate::observers::precursors::PrecursorSummary;
 use crate::run_files::RunFile;
 
@@ -151,6 +152,9 @@ pub struct Summary {
     /// Peak of every part of a program of speeds in which the drive moves forwards.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cycles: Option<Vec<CycleSummary>>,
+    /// Events of slip of a run that keeps a catalogue of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub events: Option<EventSummary>,
     /// Energy lost to the dampers between blocks, J, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,

@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use slipfront::observe::{Kymograph, frames};
+use slipfront::observe::{Events, Kymograph, frames};
 use slipfront::{Friction, Kernel, Lattice, Model};
 use slipfront_base::machine::{available_memory, can_be_had, free_disk};
 use slipfront_base::number_format::{byte_size, count};
@@ -75,6 +75,8 @@ pub struct Budget {
     fields: f64,
     rows: f64,
     /// Events of slip of a slider that is driven at an edge.
+    events_at_edge: f64,
+    /// Events of slip in the catalogue.
     events: f64,
     /// Places times instants of the kymograph.
     kymograph: f64,
@@ -170,14 +172,20 @@ impl Budget {
         let frames = output.max_snapshots(last_step) as f64;
         Self {
             all_blocks: lattice.n_blocks() as f64,
-            columns: model.n_columns() as f64,
+            columns: (model.n_columns() + usize::from(file.output.events)) as f64,
             cells: [columns * kept(model.rows.clone()), columns * kept(0..lattice.ny)],
             frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            events: match file.drive.edge() {
+            events_at_edge: match file.drive.edge() {
                 Some(_) => last_step.div_ceil(STEPS_OF_EVENT) as f64,
                 None => 0.0,
+            },
+            // The drive moves between two events.
+            events: if file.output.events {
+                (last_step + 1).min(Events::MAX as u64) as f64
+            } else {
+                0.0
             },
             kymograph: Kymograph::max_counts(lattice, most_steps) as f64,
             movie: if output.movie { frames } else { 0.0 },
@@ -187,7 +195,7 @@ impl Budget {
     }
 
     /// Parts of the memory and disk space.
-    fn parts(&self) -> [Part; 5] {
+    fn parts(&self) -> [Part; 6] {
         let [cells, all_cells] = self.cells;
         let snapshots = |cells: f64| self.frames * (256.0 + self.fields * (64.0 + 4.0 * cells));
         [
@@ -226,10 +234,22 @@ impl Budget {
             Part {
                 cause: |budget| Cause {
                     key: "drive.attach",
-                    what: count(budget.events as usize, "slip event"),
+                    what: count(budget.events_at_edge as usize, "slip event"),
                     remedy: "shorten the run",
                 },
-                bytes: [500.0, 250.0, 250.0].map(|bytes| bytes * self.events),
+                bytes: [500.0, 250.0, 250.0].map(|bytes| bytes * self.events_at_edge),
+            },
+            Part {
+                cause: |budget| Cause {
+                    key: "output.events",
+                    what: count(budget.events as usize, "slip event"),
+                    remedy: "shorten the run, or leave `output.events` out",
+                },
+                bytes: [
+                    800.0 * self.events + self.paths_before(),
+                    300.0 * self.events,
+                    80.0 * self.events,
+                ],
             },
             Part {
                 cause: |_| Cause {
@@ -258,6 +278,15 @@ impl Budget {
             .map(|part| part.bytes[place as usize])
             .sum::<f64>()
             + beside
+    }
+
+    /// Bytes of the paths from which the slip of blocks counts, in a run with a catalogue of events.
+    fn paths_before(&self) -> f64 {
+        if self.events > 0.0 {
+            NUMBER * self.blocks
+        } else {
+            0.0
+        }
     }
 
     /// Bytes of the numbers of other ranks' blocks.

@@ -135,6 +135,9 @@ impl CaseFile {
         if self.drive.loading == Loading::Held {
             self.friction.check_held(&check("friction"))?;
         }
+        if self.output.events {
+            self.friction.check_events(&check("friction"))?;
+        }
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");
             texture.check(&Check::new(&self.source, keys_of(texture.shape.name()), &path))?;

@@ -34,6 +34,11 @@ key_rows! {
         /// Whether a movie is drawn of the snapshots, `movie.gif`.
         pub movie: bool = key("false", KeyKind::Switch)
             .note("See [pictures](../guide/results.md#pictures). It needs from 1 to 1000 snapshots of the field that it shows."),
+        /// Whether a catalogue of the events of slip is kept, `events.csv`: when and where each begins, its
+        /// blocks and its moment.
+        #[serde(skip_serializing_if = "std::ops::Not::not")]
+        pub events: bool = key("false", KeyKind::Switch)
+            .note("See [events](../guide/results.md#eventscsv). It takes `friction.contact` = `\"rigid\"`."),
     }
 }
 

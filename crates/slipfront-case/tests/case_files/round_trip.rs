@@ -537,15 +537,16 @@ fn output() -> impl Strategy<Value = Output> {
         fields,
         1..=100_000_u32,
         auto_or(1e-6..1e6),
-        any::<bool>(),
+        any::<[bool; 2]>(),
     )
         .prop_map(
-            |(snapshots, fields, stride, series, movie): (_, Vec<Field>, _, _, _)| Output {
+            |(snapshots, fields, stride, series, [movie, events]): (_, Vec<Field>, _, _, _)| Output {
                 snapshots,
                 fields,
                 stride,
                 series,
                 movie,
+                events,
             },
         )
 }

@@ -1,12 +1,13 @@
 //! The observers that only some runs have: each is a file, and a row here.
 
 pub mod cycles;
+pub mod events;
 mod observed;
 pub mod precursors;
 
 use serde::{Deserialize, Serialize};
 use slipfront::Scales;
-use slipfront::observe::{Cycles, Precursors, Scheduled};
+use slipfront::observe::{Cycles, Events, Precursors, Scheduled};
 use slipfront_case::case::Case;
 
 use self::observed::Observed;
@@ -38,9 +39,12 @@ macro_rules! observers {
                 [$(self.$name.as_mut().map(|observer| Scheduled::always(observer))),*].into_iter().flatten()
             }
 
-            /// Writes the numbers of the observers into a summary.
+            /// Writes the numbers and warnings of the observers into a summary.
             pub(crate) fn tell(&self, summary: &mut Summary) {
-                $(summary.$name = self.$name.as_ref().map(Observed::numbers);)*
+                $(
+                    summary.$name = self.$name.as_ref().map(Observed::numbers);
+                    summary.warnings.extend(self.$name.as_ref().and_then(Observed::warning));
+                )*
             }
 
             /// The tables of the run, each with its content.
@@ -74,6 +78,7 @@ macro_rules! observers {
 observers! {
     precursors: Precursors,
     cycles: Cycles,
+    events: Events,
 }
 
 fn fits<O: Observed>(old: &Option<O>, new: &Option<O>, now: Times) -> bool {

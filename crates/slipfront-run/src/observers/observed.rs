@@ -32,6 +32,11 @@ pub(crate) trait Observed: Observer + Sized {
     /// The numbers at the end of a run.
     fn numbers(&self) -> Self::Numbers;
 
+    /// What a reader should know before trusting the numbers.
+    fn warning(&self) -> Option<String> {
+        None
+    }
+
     /// The numbers as a line for a reader: its name and its text.
     fn line(numbers: &Self::Numbers, case: &Case) -> (&'static str, String);
 

@@ -34,8 +34,10 @@ pub struct Event {
 
 /// The events of a run, the first [`Events::MAX`] of them one by one. The observer must be called at every
 /// step. It looks at blocks only while one slides.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Events {
+    /// Number of blocks in contact, of all ranks.
+    n_contact: usize,
     events: Vec<Event>,
     unlisted: u64,
     /// Whether a block in contact slides from the latest instant on.
@@ -53,9 +55,27 @@ impl Events {
     /// Largest number of events that are listed.
     pub const MAX: usize = 1_000_000;
 
+    /// The recording of a run of this model, with no event yet.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            n_contact: model.surface.n_contact(),
+            events: Vec::new(),
+            unlisted: 0,
+            slides: false,
+            paths_before: Vec::new(),
+            n_stuck: 0,
+        }
+    }
+
     /// The events in the order of time; the last may go on.
     pub fn events(&self) -> &[Event] {
         &self.events
+    }
+
+    /// Number of events that are listed in which all blocks in contact slide.
+    pub fn n_whole(&self) -> usize {
+        let is_whole = |event: &&Event| event.blocks == self.n_contact;
+        self.events.iter().filter(is_whole).count()
     }
 
     /// Number of events after the last one that is listed.
@@ -83,26 +103,23 @@ impl Events {
         self.paths_before = paths_before;
     }
 
-    /// Whether the recording can be of a run of this model up to `time_star`.
-    pub fn is_consistent_with(&self, model: &Model, time_star: f64) -> bool {
+    /// Whether the recording can be the one that began as `new` and was called up to `time_star`.
+    pub fn is_consistent_with(&self, new: &Self, time_star: f64) -> bool {
         let times = self
             .events
             .iter()
             .flat_map(|event| [Some(event.from_star), event.after.map(|(time, _)| time)]);
         let is_rising = times.flatten().chain([time_star]).is_sorted();
-        let (lattice, n_contact) = (&model.lattice, model.surface.n_contact());
-        let is_possible = |event: &Event| {
-            let [i, j] = event.nucleation.map(|index| index as usize);
-            i < lattice.nx && j < lattice.ny && event.blocks <= n_contact
-        };
-        let n_open = self.events.iter().filter(|event| event.after.is_none()).count();
-        let last_is_open = self.events.last().is_some_and(|event| event.after.is_none());
-        is_rising
-            && self.events.iter().all(is_possible)
-            && n_open == usize::from(last_is_open)
-            && last_is_open == self.goes_on()
-            && self.events.len() <= Self::MAX
-            && (self.unlisted == 0 || self.events.len() == Self::MAX)
+        let last_goes_on = self.events.last().is_some_and(|event| event.after.is_none());
+        let n_going_on = self.events.iter().filter(|event| event.after.is_none()).count();
+        let has_lengths =
+            self.events.len() <= Self::MAX && (self.unlisted == 0 || self.events.len() == Self::MAX);
+        self.n_contact == new.n_contact
+            && is_rising
+            && self.events.iter().all(|event| event.blocks <= self.n_contact)
+            && last_goes_on == self.goes_on()
+            && n_going_on == usize::from(last_goes_on)
+            && has_lengths
     }
 
     /// Begins an event that is listed.

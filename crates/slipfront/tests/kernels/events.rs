@@ -38,7 +38,7 @@ const MANY: [usize; 2] = [49, 64];
 const DRIVE_STEPS: u64 = 270;
 
 fn recorded(mut simulation: Simulation) -> Vec<Event> {
-    let mut events = Events::default();
+    let mut events = Events::new(simulation.snapshot().model);
     let seen = &mut [Scheduled::always(&mut events)];
     simulation.run(Stop::at_step(DRIVE_STEPS), seen).unwrap();
     events.events().to_vec()
@@ -82,7 +82,7 @@ fn events_go_on_from_checkpoints(every: u64, is_fused: bool) {
     let model = slider([20, 16]).model();
     let whole = recorded(start(model.clone(), kernel()));
     let mut simulation = start(model.clone(), kernel());
-    let (mut events, mut within) = (Events::default(), 0);
+    let (mut events, mut within) = (Events::new(&model), 0);
     loop {
         let seen = &mut [Scheduled::always(&mut events)];
         let reason = simulation
@@ -99,7 +99,7 @@ fn events_go_on_from_checkpoints(every: u64, is_fused: bool) {
             events.resume(&model, kept);
             within += 1;
         }
-        assert!(events.is_consistent_with(&model, simulation.time_star()));
+        assert!(events.is_consistent_with(&Events::new(&model), simulation.time_star()));
     }
     assert!(within > 5, "{within}");
     assert_eq!(events.events(), whole);
@@ -116,9 +116,10 @@ fn a_list_that_is_full_counts_on() {
         from_star: 0.0,
         ..all[0]
     };
+    let n_contact = model.surface.n_contact();
     let listed = vec![earlier; Events::MAX - 2];
     let mut events: Events =
-        postcard::from_bytes(&postcard::to_stdvec(&(listed, 0_u64, false)).unwrap()).unwrap();
+        postcard::from_bytes(&postcard::to_stdvec(&(n_contact, listed, 0_u64, false)).unwrap()).unwrap();
     let mut simulation = start(model.clone(), fused());
     while simulation
         .advance(
@@ -134,7 +135,7 @@ fn a_list_that_is_full_counts_on() {
         if let Some(paths) = paths {
             events.resume(&model, paths);
         }
-        assert!(events.is_consistent_with(&model, simulation.time_star()));
+        assert!(events.is_consistent_with(&Events::new(&model), simulation.time_star()));
     }
     assert_eq!(events.events().len(), Events::MAX);
     assert_eq!(events.events()[Events::MAX - 2..], all[..2]);

@@ -15,11 +15,11 @@ use test_case::{test_case, test_matrix};
 use crate::common::{Slider, at_rest, cavity};
 
 fn events_of(model: &Model, dt_star: f64, steps: u64) -> Vec<Event> {
-    let mut events = Events::default();
+    let mut events = Events::new(model);
     let mut simulation = at_rest(model, dt_star);
     let seen = &mut [Scheduled::always(&mut events)];
     simulation.run(Stop::at_step(steps), seen).unwrap();
-    assert!(events.is_consistent_with(model, simulation.time_star()));
+    assert!(events.is_consistent_with(&Events::new(model), simulation.time_star()));
     assert_eq!(events.unlisted(), 0);
     events.events().to_vec()
 }
@@ -137,7 +137,7 @@ fn at_an_edge_the_events_are_the_precursors() {
         ..Slider::default().uniform()
     };
     let model = driven_at_the_left(&slider, 0.242 / 100.0);
-    let (mut events, mut precursors) = (Events::default(), Precursors::new(Edge::Left));
+    let (mut events, mut precursors) = (Events::new(&model), Precursors::new(Edge::Left));
     let mut simulation = at_rest(&model, slider.dt_star);
     let seen = &mut [Scheduled::always(&mut events), Scheduled::always(&mut precursors)];
     simulation.run(Stop::at_step(60_000), seen).unwrap();
@@ -249,7 +249,7 @@ fn what_events_say_is_what_the_blocks_do(degrees: f64, turns: bool, held: bool, 
         let rotation = Rotation::about_centroid(lattice, &model.rows, model.slider(), &Alone);
         model.drive.rotation = Some(rotation);
     }
-    let (mut events, mut by_block) = (Events::default(), ByBlock::default());
+    let (mut events, mut by_block) = (Events::new(&model), ByBlock::default());
     let mut simulation = at_rest(&model, slider.dt_star);
     let seen = &mut [Scheduled::always(&mut events), Scheduled::always(&mut by_block)];
     simulation.run(Stop::at_step(slider.steps(until)), seen).unwrap();
@@ -295,7 +295,7 @@ fn under_rate_and_state_an_event_is_what_exceeds_the_slip_speed() {
         ..Drive::along_x(0.01)
     };
     let model = Model::new(lattice, surface, drive, 0.01, 0.0, Friction::RateAndState(law));
-    let mut events = Events::default();
+    let mut events = Events::new(&model);
     let mut simulation = at_rest(&model, 0.1);
     let (mut begin, mut expected) = (None, Vec::new());
     let block = |simulation: &Simulation| simulation.snapshot().block(0);

@@ -407,12 +407,18 @@ impl Friction {
         refuse_set(check, &others, HELD)
     }
 
-    /// Keys that have no meaning under such a drive, and whether they are set: first those under which
+    /// Keys that have no meaning under a held drive, and whether they are set: first those under which
     /// contacts grow stronger in time.
     fn not_held(&self) -> [[(&'static str, bool); 2]; 2] {
         let [_, ageing, _, healing] = self.options();
         let springs = ("contact", self.contact == ContactModel::Springs);
         [[ageing, healing], [("law", self.law != Law::Projection), springs]]
+    }
+
+    /// Refuses a catalogue of events where slip takes no time.
+    pub(super) fn check_events(&self, check: &Check) -> Result<(), CaseError> {
+        let springs = ("contact", self.contact == ContactModel::Springs);
+        refuse_set(check, &[springs], EVENTS)
     }
 
     /// Refuses a correlation length where no coefficient is drawn from a field.
@@ -518,6 +524,10 @@ const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" the drive waits for 
 /// Reason for which other laws have no meaning under a held drive.
 const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact are stuck, as they are by \
                     `law` = \"projection\" and `contact` = \"rigid\" alone; take these, or `drive.loading` = \"constant\"";
+
+/// Reason for which there are no events of slip of springs in contact.
+const EVENTS: &str = "with `output.events` blocks slide from the begin of an event to its end, and a spring in contact breaks and forms again \
+                      at an instant; take `contact` = \"rigid\", or leave `output.events` out";
 
 /// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it
 /// spreads.
