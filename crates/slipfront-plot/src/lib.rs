@@ -1,5 +1,5 @@
 //! Pictures for the eye and for print. Pictures of a run: friction against time, maps of contact stress, and
-//! the spread of slip. Pictures of a parametric study: response curves, heat maps, bars, all with their
+//! the spread of slip, and how large its events are. Pictures of a parametric study: response curves, heat maps, bars, all with their
 //! confidence intervals.
 //!
 //! Every picture is drawn once, on a canvas, and comes out as SVG, PNG and PDF of the same physical size:
@@ -14,6 +14,7 @@ mod cell_means;
 mod color_bar;
 mod color_image;
 mod contour;
+mod distributions;
 mod export;
 mod field_maps;
 mod font;
@@ -57,6 +58,7 @@ mod truetype;
 
 pub use bars::{Bar, BarChart, BarGroup, bars};
 pub use cell_means::CellMeans;
+pub use distributions::{Distribution, distributions};
 pub use field_maps::{FieldMap, FieldMaps, field_maps};
 pub use friction::friction;
 pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, KineticLine};

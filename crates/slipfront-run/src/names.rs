@@ -50,11 +50,19 @@ pub enum RunPicture {
     Front,
     /// The reach of events of slip against the load.
     Precursors,
+    /// The distributions of the moments of events and of the times between them.
+    Events,
 }
 
 impl RunPicture {
     /// Every picture of a run.
-    pub const ALL: [Self; 4] = [Self::Friction, Self::Stress, Self::Front, Self::Precursors];
+    pub const ALL: [Self; 5] = [
+        Self::Friction,
+        Self::Stress,
+        Self::Front,
+        Self::Precursors,
+        Self::Events,
+    ];
 
     /// Name of the picture's files.
     pub fn name(self) -> &'static str {
@@ -63,6 +71,7 @@ impl RunPicture {
             Self::Stress => "stress",
             Self::Front => "front",
             Self::Precursors => "precursors",
+            Self::Events => "events",
         }
     }
 
@@ -73,6 +82,7 @@ impl RunPicture {
             Self::Stress => "maps of the contact stress",
             Self::Front => "first slips, and sliding against place and time",
             Self::Precursors => "how far events of slip reach under the load",
+            Self::Events => "sizes of the events of slip, and times between them",
         }
     }
 

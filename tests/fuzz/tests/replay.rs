@@ -78,6 +78,7 @@ replay! {
     summary
     series
     precursors
+    events
     manifest
     journal
     plot

@@ -60,7 +60,7 @@ fn what_cannot_be_drawn_of_a_folder_is_refused() {
         ),
         (
             "plot run --picture fornt",
-            "did you mean front? The name can be friction, stress, front, precursors",
+            "did you mean front? The name can be friction, stress, front, precursors, events",
         ),
         (
             "plot run --picture precursors",

@@ -13,10 +13,10 @@ mod runs;
 use std::path::Path;
 
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap,
-    KineticLine, Picture, PictureError, PictureFormat, PictureSize, Polar, Response, Responses, Shape,
-    Sketch, Stroke, StrokeStyle, bars, field_maps, friction, front, heat_map, kymograph, polar, response,
-    shapes, sketch, stress,
+    Bar, BarChart, BarGroup, Distribution, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis,
+    HeatMap, KineticLine, Picture, PictureError, PictureFormat, PictureSize, Polar, Response, Responses,
+    Shape, Sketch, Stroke, StrokeStyle, bars, distributions, field_maps, friction, front, heat_map,
+    kymograph, polar, response, shapes, sketch, stress,
 };
 
 use page::Page;
@@ -325,6 +325,44 @@ fn responses() {
         "",
     ];
     check("precursors", |size| drawn(precursors, &["events", "exact"], size));
+}
+
+/// Catalogues of events: of small ones that follow a power law, beside one that is far larger; a few; equal
+/// ones; and two.
+#[test]
+fn catalogues() {
+    let moments = |count: usize| {
+        (1..count)
+            .map(|k| 1e3 / k as f64)
+            .chain([2e4])
+            .collect::<Vec<_>>()
+    };
+    let waits = |count: usize| {
+        (1..count)
+            .map(|k| -3.0 * libm::log(k as f64 / count as f64))
+            .collect::<Vec<_>>()
+    };
+    let drawn = |moments: &[f64], waits: &[f64], note: &str, size: PictureSize| {
+        let panel = |x_title: &str, y_title: &str, values: &[f64]| Distribution {
+            x_title: x_title.to_owned(),
+            y_title: y_title.to_owned(),
+            values: values.to_vec(),
+        };
+        let panels = [
+            panel(
+                "moment M* (displacement times blocks)",
+                "events of at least M*",
+                moments,
+            ),
+            panel("waiting time t* of the drive", "waits of at least t*", waits),
+        ];
+        distributions(&panels, note, size)
+    };
+    let note = "without 3 events that slip backwards";
+    check("events", |size| drawn(&moments(30_000), &waits(30_000), "", size));
+    check("events-few", |size| drawn(&moments(12), &waits(12), note, size));
+    check("events-equal", |size| drawn(&[2.0; 40], &[7.0; 39], "", size));
+    check("events-two", |size| drawn(&[2e-7, 3e5], &[7.0], "", size));
 }
 
 /// Friction around the directions: equal in all, larger along one axis, with wide intervals, without a value

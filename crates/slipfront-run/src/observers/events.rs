@@ -76,7 +76,8 @@ pub struct EventRow {
 }
 
 impl EventRow {
-    fn new(event: &Event, scales: &Scales) -> Self {
+    /// The row of an event.
+    pub fn new(event: &Event, scales: &Scales) -> Self {
         let (mean, time) = (scales.mu_static_mean, scales.time());
         let area = scales.block_size * scales.block_size;
         let [nucleation_column, nucleation_row] = event.nucleation;
@@ -178,7 +179,7 @@ impl Observed for Events {
     }
 
     fn csv(&self, scales: &Scales) -> Result<Vec<u8>, csv::Error> {
-        to_csv(self.events(), scales)
+        to_csv(self.events().iter().map(|event| EventRow::new(event, scales)))
     }
 }
 
@@ -198,12 +199,12 @@ fn waiting_times(begins: &[f64]) -> [Option<f64>; 2] {
     ]
 }
 
-/// The events as CSV.
+/// Rows as CSV, with the header also where there is none.
 ///
 /// # Errors
 /// When a row cannot be written.
-pub fn to_csv(events: &[Event], scales: &Scales) -> Result<Vec<u8>, csv::Error> {
-    csv_of(events.iter().map(|event| EventRow::new(event, scales)))
+pub fn to_csv(rows: impl IntoIterator<Item = EventRow>) -> Result<Vec<u8>, csv::Error> {
+    csv_of(rows)
 }
 
 /// Reads the events back.

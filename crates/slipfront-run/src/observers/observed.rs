@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 use slipfront::Scales;
 use slipfront::observe::Observer;
 use slipfront_case::case::Case;
@@ -102,10 +101,14 @@ pub(super) fn columns<T: Serialize + DeserializeOwned>(
     file: &RunFile<'_>,
     name: &'static str,
 ) -> Result<TableColumns, SeriesError> {
-    let rows = read_rows(file, name, |row: T| serde_json::to_value(row).unwrap_or_default())?;
-    let number = |row: &Value, name: &str| row[name].as_f64().unwrap_or(f64::NAN);
-    let columns = names_of::<T>().iter();
-    Ok(columns
-        .map(|&name| (name, rows.iter().map(|row| number(row, name)).collect()))
-        .collect())
+    let names = names_of::<T>();
+    // Row by row, since the values of a long table take far more memory than its numbers.
+    let numbers = |row: T| -> Vec<f64> {
+        let row = serde_json::to_value(row).unwrap_or_default();
+        let number = |name: &&str| row[*name].as_f64().unwrap_or(f64::NAN);
+        names.iter().map(number).collect()
+    };
+    let rows = read_rows(file, name, numbers)?;
+    let column = |(place, name): (usize, &&'static str)| (*name, rows.iter().map(|row| row[place]).collect());
+    Ok(names.iter().enumerate().map(column).collect())
 }

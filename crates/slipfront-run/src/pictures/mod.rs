@@ -5,6 +5,7 @@
 //! [`complete`] after the results of several ranks.
 
 pub mod error;
+mod events;
 mod files;
 pub mod friction;
 mod front;
@@ -27,6 +28,7 @@ pub use self::maps::{draw_field, title_of_field};
 use self::movie::MoviePace;
 use crate::manifest::Manifest;
 use crate::names::{KYMOGRAPH, MOVIE, RunPicture, SERIES};
+use crate::observers::events::FILE as EVENTS;
 use crate::results;
 use crate::run_files::RunFiles;
 use crate::run_folder::RunFolder;
@@ -36,11 +38,11 @@ use crate::running::RunData;
 const PIXELS: f64 = 96.0 * 1024.0 * 1024.0;
 
 /// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in
-/// bytes. What is read of a series or a kymograph takes less than four times its file.
+/// bytes. What is read of a series, a kymograph or a catalogue of events takes less than four times its file.
 pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
     let mut read = 0;
     for folder in folders {
-        for name in [SERIES, KYMOGRAPH] {
+        for name in [SERIES, KYMOGRAPH, EVENTS] {
             read += found(&folder.join(name))?.map_or(0, |file| file.len());
         }
     }
@@ -146,6 +148,7 @@ fn draw_one(
         RunPicture::Stress => maps::of_run(run, size),
         RunPicture::Front => front::of_run(run, size),
         RunPicture::Precursors => precursors::of_run(run, size),
+        RunPicture::Events => events::of_run(run, size),
     }
 }
 
@@ -164,7 +167,7 @@ mod tests {
         let out = tempfile::tempdir().unwrap();
         let out = out.path().join("out");
         // Driven at an edge it has events of slip, and it slides as a whole: every picture is drawn.
-        let text = "slider.blocks = [6, 4]\ndrive.attach = 'left'\ndrive.v_star = 3\ntime.duration_star = 60\noutput.movie = true\n";
+        let text = "slider.blocks = [6, 4]\ndrive.attach = 'left'\ndrive.v_star = 3\ntime.duration_star = 60\noutput = { movie = true, events = true }\n";
         let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
         let run = || running::run(&case, 1).unwrap();
         let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();

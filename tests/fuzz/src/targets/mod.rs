@@ -40,6 +40,7 @@ pub const TARGETS: [Target; 23] = [
     json::SUMMARY,
     series::SERIES,
     series::PRECURSORS,
+    series::EVENTS,
     json::MANIFEST,
     json::JOURNAL,
     plot::PLOT,

@@ -12,7 +12,7 @@ use crate::checks::readable;
 use crate::scratch;
 use crate::target::{Memory, Target, Time};
 
-/// Summary, series, events of slip and fields of a run in one input, separated by [`END`]; the case is one of
+/// Summary, series, both tables of events of slip, and fields of a run in one input, separated by [`END`]; the case is one of
 /// two, by the length of the input.
 pub(crate) const PLOT: Target = Target {
     name: "plot",
@@ -43,8 +43,8 @@ const END: &[u8] = b"\n==\n";
 
 fn generated() -> Vec<Vec<u8>> {
     let whole = |summary: &str, series: Vec<u8>, fields: Vec<u8>| {
-        let events = series::events_csv(3);
-        [summary.as_bytes(), END, &series, END, &events, END, &fields].concat()
+        let (precursors, events) = (series::precursors_csv(3), series::events_csv(3));
+        [summary.as_bytes(), &series, &precursors, &events, &fields].join(END)
     };
     let plain = summary_json(&summary());
     let mut seeds = vec![
@@ -76,7 +76,7 @@ fn generated() -> Vec<Vec<u8>> {
 
 fn plot(input: &[u8]) {
     let mut rest = input;
-    for name in ["summary.json", "series.csv", "precursors.csv"] {
+    for name in ["summary.json", "series.csv", "precursors.csv", "events.csv"] {
         let end = rest.windows(END.len()).position(|bytes| bytes == END);
         let at = end.unwrap_or(rest.len());
         scratch::file(&format!("plot/{name}"), &rest[..at]);

@@ -1,7 +1,8 @@
-//! The curve of a run, and the events of slip of a slider that is driven at an edge, as CSV.
+//! The curve of a run, its events of slip, and those of a slider that is driven at an edge, as CSV.
 
 use slipfront::Scales;
-use slipfront::observe::SlipEvent;
+use slipfront::observe::{Event, SlipEvent};
+use slipfront_run::observers::events::{self, EventRow};
 use slipfront_run::observers::precursors;
 use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 
@@ -31,7 +32,16 @@ pub(crate) const SERIES: Target = Target {
 /// Target for `precursors.csv`.
 pub(crate) const PRECURSORS: Target = Target {
     name: "precursors",
-    check: events,
+    check: precursor_rows,
+    generated: || vec![precursors_csv(3), precursors_csv(1), precursors_csv(0)],
+    long: || long(&precursors_csv(1), &precursors_csv(0)),
+    ..SERIES
+};
+
+/// Target for `events.csv`.
+pub(crate) const EVENTS: Target = Target {
+    name: "events",
+    check: event_rows,
     generated: || vec![events_csv(3), events_csv(1), events_csv(0)],
     long: || long(&events_csv(1), &events_csv(0)),
     ..SERIES
@@ -58,8 +68,18 @@ fn long(row: &[u8], header: &[u8]) -> Vec<Vec<u8>> {
     ]
 }
 
-/// Events as CSV, `count` of them, the last of which goes on.
-pub(crate) fn events_csv(count: u32) -> Vec<u8> {
+/// Units of events.
+const SCALES: Scales = Scales {
+    block_size: 1e-6,
+    thickness: 1e-6,
+    young_modulus: 1e11,
+    density: 1e4,
+    pressure: 1e5,
+    mu_static_mean: 0.7,
+};
+
+/// Events at an edge as CSV, `count` of them, the last of which goes on.
+pub(crate) fn precursors_csv(count: u32) -> Vec<u8> {
     let event = |number: u32| SlipEvent {
         from_star: 16.5 * f64::from(number),
         length: 0.25 * f64::from(number + 1),
@@ -67,26 +87,18 @@ pub(crate) fn events_csv(count: u32) -> Vec<u8> {
         after: (number + 1 < count).then_some((16.5 * f64::from(number) + 0.1, 1e-300)),
     };
     let events: Vec<SlipEvent> = (0..count).map(event).collect();
-    let scales = Scales {
-        block_size: 1e-6,
-        thickness: 1e-6,
-        young_modulus: 1e11,
-        density: 1e4,
-        pressure: 1e5,
-        mu_static_mean: 0.7,
-    };
-    precursors::to_csv(&events, &scales).unwrap()
+    precursors::to_csv(&events, &SCALES).unwrap()
 }
 
 /// Events that are read have the numbers that stand there: written as a row of the same columns they are read
 /// again as equal.
-fn events(input: &[u8]) {
+fn precursor_rows(input: &[u8]) {
     let rows = match precursors::read_csv(scratch::file("run/precursors.csv", input)) {
         Ok(rows) => rows,
         Err(error) => return readable(&error),
     };
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:?}"));
-    let mut printed = String::from_utf8(events_csv(0)).unwrap();
+    let mut printed = String::from_utf8(precursors_csv(0)).unwrap();
     for row in &rows {
         let numbers = [
             row.time_star,
@@ -101,6 +113,36 @@ fn events(input: &[u8]) {
         printed += &(cells.join(",") + "\n");
     }
     let again = precursors::read_csv(scratch::file("run/precursors.csv", printed.as_bytes())).unwrap();
+    // Debug shows every bit but those of a NaN.
+    assert_eq!(format!("{again:?}"), format!("{rows:?}"));
+}
+
+/// A catalogue of `count` events as CSV, the last of which goes on and the first of which slips backwards.
+pub(crate) fn events_csv(count: u32) -> Vec<u8> {
+    let row = |number: u32| {
+        let event = Event {
+            from_star: 16.5 * f64::from(number),
+            drive_from_star: 8.0 * f64::from(number),
+            nucleation: [number, 7],
+            blocks: 1 << number,
+            moment: 30.5 * f64::from(number) - 1.0,
+            speed_max: 0.3,
+            mu_star_before: 0.1 * f64::from(number),
+            after: (number + 1 < count).then_some((16.5 * f64::from(number) + 0.1, 1e-300)),
+        };
+        EventRow::new(&event, &SCALES)
+    };
+    events::to_csv((0..count).map(row)).unwrap()
+}
+
+/// A catalogue that is written and read again has the same bits.
+fn event_rows(input: &[u8]) {
+    let rows = match events::read_csv(scratch::file("run/events.csv", input)) {
+        Ok(rows) => rows,
+        Err(error) => return readable(&error),
+    };
+    let printed = events::to_csv(rows.iter().copied()).unwrap();
+    let again = events::read_csv(scratch::file("run/events.csv", &printed)).unwrap();
     // Debug shows every bit but those of a NaN.
     assert_eq!(format!("{again:?}"), format!("{rows:?}"));
 }

@@ -1,0 +1,169 @@
+//! Distributions of several quantities: for each, the number of values that are as large or larger.
+
+use crate::axis::{DrawnAxis, drawable};
+use crate::canvas::Canvas;
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks, upright_room};
+use crate::geometry::Area;
+use crate::note::Note;
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
+use crate::series::segments;
+use crate::size::PictureSize;
+use crate::style::{COLUMN_WIDTH, MARGIN, RADIUS_MARKER, curve_style};
+use crate::text::Text;
+use crate::ticks::{Direction, MAX_STEPS};
+
+/// Usual height of a panel.
+const HEIGHT: f64 = 400.0;
+/// Distance between the numbers of a panel and the panel below.
+const GAP: f64 = 18.0;
+/// Distance between the last number below a panel, half of which may stand beyond it, and the picture's edge.
+const RIGHT: f64 = 34.0;
+
+/// Values of a quantity, and the words for them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Distribution {
+    /// Quantity of the values.
+    pub x_title: String,
+    /// Words for the number of values that are as large or larger.
+    pub y_title: String,
+    /// The values, in any order; those that are not above zero have no place.
+    pub values: Vec<f64>,
+}
+
+/// Draws, panel below panel, for each quantity the number of values that are as large or larger than x, both
+/// on logarithmic axes, usually as wide as a journal's column (85 mm). A power law is a straight line there.
+///
+/// # Errors
+///
+/// No distribution, or a size that leaves no room for the panels.
+pub fn distributions(
+    distributions: &[Distribution],
+    note: &str,
+    size: PictureSize,
+) -> Result<Picture, PictureError> {
+    if distributions.is_empty() {
+        return Err(PictureError::Nothing("distribution"));
+    }
+    let curves: Vec<Steps> = distributions.iter().map(Steps::of).collect();
+    let width = size.roomy_width(COLUMN_WIDTH)?;
+    let left = curves
+        .iter()
+        .map(|curve| left_room(&curve.y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS)));
+    let left = left.fold(0.0, f64::max);
+    let right = curves.iter().fold((width - RIGHT).round(), |right, curve| {
+        let ticks = curve.x.placed(left, right).ticks(Direction::X, MAX_STEPS);
+        right_end(&ticks, left, right, width)
+    });
+    let note = Note::of(note, 0.5 * (left + right), width);
+    let count = curves.len() as f64;
+    let beside = MARGIN + count * LOWER_ROOM + (count - 1.0) * GAP + note.height;
+    let height = size.panel(HEIGHT, beside, curves.len())?;
+    let mut canvas = Canvas::sized(width, beside + count * height, size);
+    let mut top = MARGIN;
+    for (curve, distribution) in curves.iter().zip(distributions) {
+        let area = Area::new(left, top, right - left, height);
+        curve.draw(&mut canvas, area, distribution);
+        top = area.bottom() + LOWER_ROOM + GAP;
+    }
+    note.draw(&mut canvas);
+    canvas.finish()
+}
+
+/// The number of values as a function of x, which falls in steps.
+struct Steps {
+    x: DrawnAxis,
+    y: DrawnAxis,
+    /// The values in rising order.
+    values: Vec<f64>,
+}
+
+impl Steps {
+    fn of(distribution: &Distribution) -> Self {
+        let values = distribution.values.iter().copied();
+        let mut values: Vec<f64> = values.filter(|value| drawable(*value) && *value > 0.0).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        // At least a decade, so that its numbers are whole.
+        let most = values.len().max(10) as f64;
+        Self {
+            x: DrawnAxis::around(&values, true, 0.04),
+            y: DrawnAxis::around(&[1.0, most], true, 0.06),
+            values,
+        }
+    }
+
+    /// The corners of the steps: abscissae and numbers.
+    fn corners(&self) -> (Vec<f64>, Vec<f64>) {
+        let n = self.values.len();
+        let corner = |k: usize| {
+            let (value, number) = (self.values[k], (n - k) as f64);
+            // From the value before at this number, then down.
+            let before = self.values[k.saturating_sub(1)];
+            [(before, number), (value, number)]
+        };
+        (0..n).flat_map(corner).unzip()
+    }
+
+    fn draw(&self, canvas: &mut Canvas, area: Area, distribution: &Distribution) {
+        let (x, y) = (
+            self.x.placed(area.x, area.right()),
+            self.y.placed(area.bottom(), area.y),
+        );
+        let title = Text::fitted(&distribution.y_title, upright_room(area, canvas.height));
+        left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
+        short_ticks(canvas, area, Direction::Y, &y.short_ticks());
+        short_ticks(canvas, area, Direction::X, &x.short_ticks());
+        let title = Text::fitted(&distribution.x_title, area.width);
+        lower_side(canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
+        let (xs, ys) = self.corners();
+        for segment in segments(&xs, &ys, &x, &y) {
+            if let (Some(&first), true) = (segment.first(), xs.len() == 2) {
+                canvas.dot(first, RADIUS_MARKER, curve_style(0).colour);
+            }
+            canvas.curve(segment, curve_style(0));
+        }
+        canvas.frame(area);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn distribution(values: &[f64]) -> Distribution {
+        Distribution {
+            x_title: "moment".to_owned(),
+            y_title: "events".to_owned(),
+            values: values.to_vec(),
+        }
+    }
+
+    #[test]
+    fn numbers_fall_by_one_at_every_value() {
+        let steps = Steps::of(&distribution(&[4.0, f64::NAN, 1.0, -3.0, 4.0, 0.0]));
+        let (x, number) = steps.corners();
+        assert_eq!(x, [1.0, 1.0, 1.0, 4.0, 4.0, 4.0]);
+        assert_eq!(number, [3.0, 3.0, 2.0, 2.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn poor_values_are_drawn_all_the_same() {
+        for values in [
+            &[][..],
+            &[1.0],
+            &[2.0, 2.0],
+            &[f64::MAX, 1e-320],
+            &[-1.0, f64::NAN],
+        ] {
+            let drawn = distributions(
+                &[distribution(values), distribution(&[1.0, 2.0])],
+                "",
+                PictureSize::default(),
+            );
+            let svg = drawn.unwrap().svg;
+            assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{values:?}");
+        }
+        let none = distributions(&[], "", PictureSize::default()).unwrap_err();
+        assert_eq!(none.to_string(), "there is no distribution to draw");
+    }
+}
