@@ -35,13 +35,14 @@ image results/groove_across/stress.png stress-groove-across.png
 slipfront run cases/groove_along.toml --set 'output.snapshots=[73.9]' --quiet
 image results/groove_along/stress.png stress-groove-along.png
 
-for case in gear graded hierarchical_dimples edge_driven_chain; do
+for case in gear graded hierarchical_dimples edge_driven_chain burridge_knopoff; do
   slipfront run "cases/$case.toml" --quiet
 done
 image results/gear/stress.png family-gear.png
 image results/graded/stress.png family-graded.png
 image results/hierarchical_dimples/stress.png family-dimples.png
 image results/edge_driven_chain/precursors.png family-precursors.png
+image results/burridge_knopoff/events.png burridge-knopoff-events.png
 
 slipfront study cases/studies/friction_polar.toml --quiet
 image results/friction_polar/friction_polar.png friction_polar.png

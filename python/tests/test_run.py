@@ -89,6 +89,13 @@ def test_edge_driven_runs_have_precursors() -> None:
     assert len(run.precursors["length"]) == run.summary["precursors"]["events"] > 0
 
 
+def test_runs_that_ask_for_events_have_a_catalogue() -> None:
+    case = sf.Case({"slider": {"blocks": [4, 3]}, "drive": {"v_star": 0.2}, "output": {"events": True}})
+    events = sf.run(case, progress=False).events
+    assert events is not None and len(events["moment_star"]) > 0
+    assert sf.run(case.replace({"output.events": False}), progress=False).events is None
+
+
 @pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_ends_a_run_at_once(long: sf.Case) -> None:
     pressed: list[float] = []

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
+mod events;
 mod expected_onset;
 mod fields;
 mod lateral_friction;
