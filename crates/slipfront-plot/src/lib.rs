@@ -1,6 +1,6 @@
-//! Pictures for the eye and for print. Pictures of a run: friction against time, maps of contact stress, and
-//! the spread of slip, and how large its events are. Pictures of a parametric study: response curves, heat maps, bars, all with their
-//! confidence intervals.
+//! Pictures for the eye and for print. Pictures of a run: friction against time, maps of contact stress, the
+//! spread of slip, and the sizes of its events. Pictures of a parametric study: response curves, heat maps,
+//! bars, all with their confidence intervals.
 //!
 //! Every picture is drawn once, on a canvas, and comes out as SVG, PNG and PDF of the same physical size:
 //! unless another is asked for, a journal's column for curves, heat maps and bars, its text width for maps of

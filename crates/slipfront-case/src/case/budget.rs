@@ -181,9 +181,14 @@ impl Budget {
                 Some(_) => last_step.div_ceil(STEPS_OF_EVENT) as f64,
                 None => 0.0,
             },
-            // The drive moves between two events.
             events: if file.output.events {
-                (last_step + 1).min(Events::MAX as u64) as f64
+                // Between two events there is a step without slip, in which the drive moves.
+                let most = if model.drive.is_held() {
+                    last_step
+                } else {
+                    last_step / 2
+                };
+                (most + 1).min(Events::MAX as u64) as f64
             } else {
                 0.0
             },

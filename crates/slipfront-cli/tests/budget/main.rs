@@ -213,7 +213,7 @@ const RUNS: [&str; 7] = [
 ];
 
 /// Whole runs of other laws, in the other kernel, with events and snapshots, and of cases that read files.
-const OTHER_RUNS: [&str; 14] = [
+const OTHER_RUNS: [&str; 15] = [
     // Laws of friction that remember more.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
      friction.contact_stiffness_star=0.1",
@@ -231,6 +231,9 @@ const OTHER_RUNS: [&str; 14] = [
     // Events of slip.
     "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
      drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
+    // A catalogue of events, one for nearly every step of the drive.
+    "slider.blocks=[60,1];slider.omega_star=0.5;friction.r_star=0.9;drive.v_star=1;drive.loading='held';time.duration_star=2000;\
+     time.kinetic_from_star=100;output.snapshots=[];output.series=100;output.events=true",
     // Snapshots.
     "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
     "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",

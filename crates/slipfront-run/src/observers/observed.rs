@@ -31,7 +31,7 @@ pub(crate) trait Observed: Observer + Sized {
     /// The numbers at the end of a run.
     fn numbers(&self) -> Self::Numbers;
 
-    /// What a reader should know before trusting the numbers.
+    /// A sentence that a reader should know before trusting the numbers.
     fn warning(&self) -> Option<String> {
         None
     }

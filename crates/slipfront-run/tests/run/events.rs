@@ -84,16 +84,23 @@ fn a_catalogue_is_asked_for() {
     assert!(data.summary.events.is_none() && data.observers.tables(&without.scales).unwrap().is_empty());
     let asked = running::run(&with, 1).unwrap();
     assert!(asked.summary.events.is_some());
+    // Within an event there is one more number of each block.
     let columns = |case: &Arc<Case>| {
         let mut running = Running::start(case, None, Execution::default());
-        running.advance(with.time_plan.last_step - 1).unwrap();
-        running.columns()[0].count
+        let mut found = Vec::new();
+        while running.advance(10).unwrap().is_none() {
+            found.push(running.columns()[0].count);
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
     };
-    // In the last event, which goes on, there is one more number of each block.
-    assert_eq!(columns(&with), columns(&without) + 1);
+    let plain = columns(&without);
+    assert_eq!(columns(&with), [plain[0], plain[0] + 1]);
+    assert_eq!(plain.len(), 1);
 }
 
-/// Rough, with a cavity, in two parts of the lattice and more: events of few blocks and of many, the last of
+/// Rough, with a cavity: events of few blocks and of many, the last of
 /// which goes on.
 const ROUGH: &str = "slider.blocks = [19, 23]\nslider.omega_star = 0.3\nfriction.sigma_static_star = 0.2\n\
                      drive = { v_star = 0.05, loading = 'held', direction = 25 }\n\
@@ -191,10 +198,9 @@ fn a_train_of_blocks_slips_in_events_of_all_sizes() {
         rows.iter().filter(|row| blocks.contains(&row.blocks)).count()
     };
     let [one, some, all] = [1..=1, 2..=199, 200..=200].map(of_blocks);
-    println!("{one} {some} {all}");
-    assert!(one > some && some > 10 * all && all > 3);
-    // Small events are as large as the part of the load that the drive adds in a step, large ones by five
-    // orders of magnitude larger.
+    assert!(one > some && some > 10 * all && all > 3, "{one} {some} {all}");
+    // A block that slips alone goes by about twice the fall of its force over its springs, 0.02/1.5; of the
+    // train each goes by half of its load over its drive spring, 0.5/0.0075.
     let moments: Vec<f64> = rows.iter().map(|row| row.moment_star).collect();
     let least = moments.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(data.summary.events.unwrap().moment_star_max > Some(1e5 * least));

@@ -125,8 +125,8 @@ fn driven_at_the_left(slider: &Slider, total: f64) -> Model {
     model
 }
 
-/// Of a chain that is driven at its edge the events are those that the precursors have, and slip begins at
-/// the driven block. A precursor of so many blocks that it is the longest so far has slid in each of them.
+/// A chain that is driven at its edge has the events that its precursors have, and slip begins at the driven
+/// block. A precursor of so many blocks that it is the longest so far has slid in each of them.
 #[test]
 fn at_an_edge_the_events_are_the_precursors() {
     let slider = Slider {
