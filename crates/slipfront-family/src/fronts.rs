@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use slipfront::exact_solutions::front_speed;
 use slipfront::lattice::K_STRAIGHT;
-use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Surface};
+use slipfront::{DeadLoad, Drive, FrictionLaw, Lattice, Model, State, Surface};
 use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
@@ -17,16 +17,17 @@ const DT_STAR: f64 = 5e-3;
 const PRESTRESSES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 /// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness,
-/// under a constant force.
+/// under a dead load.
 fn speed(kappa: f64, prestress: f64) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(BLOCKS, 1);
     let drive = Drive {
         k_drive: kappa * K_STRAIGHT,
-        constant_force: [KINETIC + prestress * (1.0 - KINETIC), 0.0],
         ..Drive::along_x(0.0)
     };
     let surface = Surface::uniform(&lattice, 1.0, KINETIC);
-    let model = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection);
+    let force = [KINETIC + prestress * (1.0 - KINETIC), 0.0];
+    let model = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
+        .with_dead_load(DeadLoad::uniform(force));
     let sound = K_STRAIGHT.sqrt();
     let mut state = State::at_rest(BLOCKS);
     state.velocity.x[..5].fill(0.5 * sound * (1.0 - KINETIC) / K_STRAIGHT);

@@ -20,10 +20,6 @@ pub struct Drive {
     /// Stiffness `k_s` of the spring on every block, in units of `E h`; see
     /// [`Slider::drive_springs`](crate::Slider::drive_springs).
     pub k_drive: f64,
-    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in
-    /// the paper. It is scaled with the relative stiffness of the block's drive spring. The components are
-    /// along x and y; for a rotation along the [direction](Self::direction_at) of each block and across it.
-    pub constant_force: [f64; 2],
     /// Speeds that follow one another; the drive moves at `v_star` all the time if there are none.
     pub program: Option<Arc<Program>>,
     /// A rotation in place of the translation along `direction`.
@@ -189,7 +185,6 @@ impl Drive {
             v_star,
             direction: [1.0, 0.0],
             k_drive: K_DRIVE,
-            constant_force: [0.0, 0.0],
             program: None,
             rotation: None,
             loading: Loading::Constant,
@@ -249,11 +244,10 @@ impl Drive {
         [along * self.direction[0], along * self.direction[1]]
     }
 
-    /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`, with the
-    /// constant force.
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`.
     pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
         let position = self.position(time_star);
-        [0, 1].map(|axis| self.k_drive * (position[axis] - u[axis]) + self.constant_force[axis])
+        [0, 1].map(|axis| self.k_drive * (position[axis] - u[axis]))
     }
 
     /// Displacement of the driven end over block `b` of the whole lattice per path of the drive, `g`: the

@@ -36,6 +36,7 @@ pub mod surface;
 pub mod testing;
 
 mod clock;
+mod dead_load;
 mod drive;
 mod elementary;
 mod error;
@@ -59,6 +60,7 @@ mod vector_field;
 
 pub use checkpoint::Checkpoint;
 pub use communicator::Communicator;
+pub use dead_load::{DeadLoad, LoadField};
 pub use drive::{Drive, Loading, Program, Rotation, Segment};
 pub use error::{RunError, SurfaceError};
 pub use friction::*;

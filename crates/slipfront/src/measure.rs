@@ -12,9 +12,11 @@ use crate::vector_field::dot;
 /// The whole slider at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
-    /// mu*, the drive springs' force along the sliding direction over the load; can be negative.
+    /// mu*, the force of drive springs and dead load along the sliding direction over the load; can be
+    /// negative.
     pub mu_star: f64,
-    /// The drive springs' force across the sliding direction, to the left of it, over the load.
+    /// The force of drive springs and dead load across the sliding direction, to the left of it, over the
+    /// load.
     pub mu_lateral_star: f64,
     /// Number of blocks that slide, textured ones included.
     pub n_sliding: usize,
@@ -23,38 +25,50 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
-    /// Eq. 9 over mu_s at a time t* of the drive, from the mean displacement, with the relative stiffness w
-    /// of the drive springs and N blocks that exist:
+    /// Eq. 9 over mu_s at a time t* of the drive: the force of the [drive springs](pull_of_springs), with the
+    /// dead load,
     ///
     /// ```text
-    /// mu* = (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
-    /// ```
-    ///
-    /// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with
-    /// `g_i = z x r_i/r_max`:
-    ///
-    /// ```text
-    /// mu* = (k_s/N) (X sum_i w_i - sum_i w_i u_i . d)
-    /// mu* = (k_s r_max/sum_i r_i) (X sum_i w_i g_i^2 - sum_i w_i u_i . g_i)
+    /// mu* = (1/N) sum_i (F_s,i + F_0,i) . d
     /// ```
     pub(crate) fn measure(model: &Model, totals: &Totals, drive_time_star: f64) -> Self {
-        let (drive, divisor) = (&model.drive, model.mu_star_divisor());
-        let mean = totals.displacement.map(|sum| sum / divisor);
-        // The sums of a rotation are along and across its direction at each block.
-        let (position, [dx, dy]) = match drive.rotation {
-            None => (drive.position(drive_time_star), drive.direction),
-            Some(_) => ([drive.path(drive_time_star), 0.0], [1.0, 0.0]),
-        };
-        let share = model.driven_share();
-        let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
+        let [along, across] = pull_of_springs(model, totals, drive_time_star);
+        let [dead_along, dead_across] = model.mean_dead_load();
         let n_blocks = model.n_blocks() as f64;
         Self {
-            mu_star: dot(pull, [dx, dy]),
-            mu_lateral_star: dot(pull, [-dy, dx]),
+            mu_star: along + dead_along,
+            mu_lateral_star: across + dead_across,
             n_sliding: totals.n_sliding,
             sliding_percent: 100.0 * totals.n_sliding as f64 / n_blocks,
         }
     }
+}
+
+/// Force of the drive springs along the sliding direction and to the left of it, over the load, from the mean
+/// displacement, with the relative stiffness w of the drive springs and N blocks that exist:
+///
+/// ```text
+/// (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
+/// ```
+///
+/// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with
+/// `g_i = z x r_i/r_max`:
+///
+/// ```text
+/// (k_s/N) (X sum_i w_i - sum_i w_i u_i . d)
+/// (k_s r_max/sum_i r_i) (X sum_i w_i g_i^2 - sum_i w_i u_i . g_i)
+/// ```
+pub(crate) fn pull_of_springs(model: &Model, totals: &Totals, drive_time_star: f64) -> [f64; 2] {
+    let (drive, divisor) = (&model.drive, model.mu_star_divisor());
+    let mean = totals.displacement.map(|sum| sum / divisor);
+    // The sums of a rotation are along and across its direction at each block.
+    let (position, [dx, dy]) = match drive.rotation {
+        None => (drive.position(drive_time_star), drive.direction),
+        Some(_) => ([drive.path(drive_time_star), 0.0], [1.0, 0.0]),
+    };
+    let share = model.driven_share();
+    let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
+    [dot(pull, [dx, dy]), dot(pull, [-dy, dx])]
 }
 
 /// The largest mu* until the drive has gone a stated path.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::communicator::Communicator;
+use crate::dead_load::DeadLoad;
 use crate::drive::{Drive, Loading, Program};
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
@@ -12,7 +13,7 @@ use crate::lattice::{K_DRIVE, Lattice, SpringStiffness, springs_on_a_lone_block}
 use crate::sheets::{self, Sheet};
 use crate::slider::Slider;
 use crate::surface::Surface;
-use crate::vector_field::length;
+use crate::vector_field::{dot, length};
 
 /// Path of the drive to the onset of sliding where all blocks touch, in units of displacement: t_s* = 2.5/V*
 /// (Eq. 12).
@@ -35,6 +36,8 @@ pub struct Model {
     pub surface: Surface,
     /// The drive of the slider.
     pub drive: Drive,
+    /// Constant forces beside those of the drive springs; none in the paper.
+    pub(crate) dead_load: DeadLoad,
     /// Damping `Omega` per unit of dimensionless time (see [`crate::scales::damping`]).
     pub damping: f64,
     /// The load's strain `eps = P mu_s l/(E h)`; 0 makes the springs linear.
@@ -80,6 +83,7 @@ impl Model {
             springs: SpringStiffness::default(),
             surface,
             drive,
+            dead_load: DeadLoad::default(),
             damping,
             epsilon,
             friction: friction.into(),
@@ -115,6 +119,24 @@ impl Model {
         }
     }
 
+    /// Returns the model with constant forces on its blocks, which have their slider and sheets already.
+    ///
+    /// # Panics
+    /// If forces that differ are not one for each block that this process holds, or are on a stack of sheets;
+    /// or if the drive rotates, whose direction no constant force has.
+    pub fn with_dead_load(self, dead_load: DeadLoad) -> Self {
+        if let Some(field) = &dead_load.field {
+            let (forces, blocks) = (field.relative.len(), self.surface.n_blocks());
+            assert_eq!(forces, blocks, "there are {forces} forces for {blocks} blocks: give one each");
+            assert!(self.sheets.is_empty(), "forces on a stack of sheets are alike");
+        }
+        assert!(
+            self.drive.rotation.is_none() || !dead_load.acts(),
+            "a drive that rotates has no constant forces beside it"
+        );
+        Self { dead_load, ..self }
+    }
+
     /// Returns the model with the given loading of its drive.
     pub fn with_loading(mut self, loading: Loading) -> Self {
         self.drive.loading = loading;
@@ -139,6 +161,7 @@ impl Model {
             springs: self.springs,
             surface: self.surface.of_some_blocks(&blocks),
             drive: self.drive.clone(),
+            dead_load: self.dead_load.of_some_blocks(&blocks),
             damping: self.damping,
             epsilon: self.epsilon,
             friction: self.friction,
@@ -148,6 +171,25 @@ impl Model {
     /// Heterogeneous properties of the blocks of the rows that this process holds.
     pub fn slider(&self) -> &Slider {
         &self.slider
+    }
+
+    /// Constant forces on the blocks beside those of the drive springs.
+    pub fn dead_load(&self) -> &DeadLoad {
+        &self.dead_load
+    }
+
+    /// Mean over all blocks of the constant forces along the drive and to its left, over the load: their part
+    /// of mu*.
+    pub fn mean_dead_load(&self) -> [f64; 2] {
+        let n_blocks = self.n_blocks() as f64;
+        let sum = self.dead_load.field.as_ref().map_or(n_blocks, |field| field.sum);
+        self.along_and_across(self.dead_load.force).map(|force| force * (sum / n_blocks))
+    }
+
+    /// Components of a vector along the direction of a drive that does not rotate, and to the left of it.
+    fn along_and_across(&self, vector: [f64; 2]) -> [f64; 2] {
+        let [dx, dy] = self.drive.direction;
+        [dot(vector, [dx, dy]), dot(vector, [-dy, dx])]
     }
 
     /// Sheets above the lattice, from the lowest on.
@@ -258,16 +300,21 @@ impl Model {
     /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*; c
     /// f is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks passes to
     /// those that touch is known only for a drive on every block: any other drive has no `load_factor`, and
-    /// pulls all blocks together.
+    /// pulls all blocks together. What a dead load bears, tau, the drive need not: it takes tau/k_2 off each
+    /// path.
     pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
         let together = ONSET_PATH * self.share_of_load();
-        let Some(factor) = load_factor else {
-            return [together / speed; 2];
+        let [early, late] = match load_factor {
+            None => [together; 2],
+            Some(factor) => {
+                let late = ONSET_PATH * factor.max(1.0);
+                let lone = factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
+                [lone.clamp(together, late), late]
+            }
         };
-        let late = ONSET_PATH * factor.max(1.0);
-        let lone = factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
-        [lone.clamp(together, late) / speed, late / speed]
+        let [borne, _] = self.mean_dead_load();
+        [early, late].map(|path| (path - borne / K_DRIVE).max(0.0) / speed)
     }
 
     /// The longest time in which mu* falls from its peak half-way to the [level of
@@ -349,21 +396,38 @@ impl Model {
     /// ```
     ///
     /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
-    /// this time, `path(t) = V* t*`. A stack of sheets takes the stiffness in series, which holds for slow
+    /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold: see
+    /// [`missing_pull`](Self::missing_pull). A stack of sheets takes the stiffness in series, which holds for slow
     /// loading: the sheets above swing about it. All `ranks` of a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.mount_stiffness(), self.drive.v_star);
         let pull =
             |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
         if self.drive.rotation.is_none() {
-            let pull = pull(self.surface.min_slip_threshold(), k_drive);
+            let threshold = if self.dead_load.acts() {
+                let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
+                // A block that slips at once may have no drive spring.
+                let missing = in_contact.map(|b| match self.missing_pull(b) {
+                    0.0 => 0.0,
+                    pull => pull / self.slider.drive_spring(b),
+                });
+                let mut negative = [-missing.fold(f64::INFINITY, f64::min)];
+                ranks.largest(&mut negative);
+                -negative[0]
+            } else {
+                self.surface.min_slip_threshold()
+            };
+            let mut pull = pull(threshold, k_drive);
+            if !self.friction.has_thresholds() {
+                pull -= self.mean_dead_load()[0];
+            }
             return match self.drive.program {
                 None => pull / (k_drive * v_star),
                 Some(_) => self.drive.time_of_path(pull / k_drive),
             };
         }
         let path = |b: usize| {
-            let limit = self.surface.static_limit(b).max(self.surface.kinetic_force(b));
+            let limit = self.slip_threshold(b);
             let k = k_drive * self.slider.drive_spring(b) * self.relative_radius(b);
             if k > 0.0 {
                 pull(limit, k) / k
@@ -375,6 +439,35 @@ impl Model {
         let mut negative = [-in_contact.map(path).fold(f64::INFINITY, f64::min)];
         ranks.largest(&mut negative);
         self.drive.time_of_path(-negative[0])
+    }
+
+    /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for it:
+    ///
+    /// ```text
+    /// sqrt(T^2 - F_0,across^2) - F_0,along,   T = max(mu_s, mu_k) F_n
+    /// ```
+    fn missing_pull(&self, b: usize) -> f64 {
+        if self.slips_at_once(b) {
+            return 0.0;
+        }
+        let ([along, across], threshold) = (self.dead_load_on(b), self.slip_threshold(b));
+        (threshold * threshold - across * across).sqrt() - along
+    }
+
+    /// Dead load on block `b` along the drive and to the left of it.
+    fn dead_load_on(&self, b: usize) -> [f64; 2] {
+        let relative = self.dead_load.relative(b);
+        self.along_and_across(self.dead_load.force).map(|force| relative * force)
+    }
+
+    /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction (D12).
+    fn slip_threshold(&self, b: usize) -> f64 {
+        self.surface.static_limit(b).max(self.surface.kinetic_force(b))
+    }
+
+    /// Whether the dead load alone makes block `b` slip.
+    pub fn slips_at_once(&self, b: usize) -> bool {
+        length(self.dead_load_on(b)) > self.slip_threshold(b)
     }
 
     /// Relative radius `r_i/r_max` of block `b` of these rows in a rotation.

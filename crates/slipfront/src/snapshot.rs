@@ -10,6 +10,7 @@ use crate::kernel::engine::Engine;
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 use crate::totals::{StoredEnergy, Totals};
+use crate::vector_field::dot;
 
 /// A run at one instant t_n. Forces, friction and contact are those of the update that starts at t_n.
 pub struct Snapshot<'a> {
@@ -39,6 +40,10 @@ pub struct Snapshot<'a> {
     pub(crate) engine: &'a dyn Engine,
     pub(crate) communicator: &'a dyn Communicator,
 }
+
+/// Blocks at once in sums over columns: few enough for the stack, since memory for all of them would be asked
+/// for at every row of a series.
+const CHUNK: usize = 1024;
 
 /// Changes of mu* below this are taken for rounding errors.
 pub(crate) const MU_STAR_ROUNDING: f64 = 1e-9;
@@ -112,15 +117,46 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
+    /// Work of the dead load from the rest sites to the displacements now, `sum F_0,i . u_i`. All ranks must
+    /// call this together.
+    pub fn dead_load_work(&self) -> f64 {
+        let (load, slider) = (&self.model.dead_load, &self.model.slider);
+        if !load.acts() {
+            return 0.0;
+        }
+        // Of blocks that are alike the sum is known, also of those of the highest sheet.
+        if load.field.is_none() && slider.drive_springs.is_none() {
+            return dot(load.force, self.totals.displacement);
+        }
+        let n_blocks = self.model.surface.n_blocks();
+        let mut values = [0.0; CHUNK];
+        let mut sums = [RunningSum::default(); 2];
+        loop {
+            for (sum, column) in sums
+                .iter_mut()
+                .zip([BlockColumn::DisplacementX, BlockColumn::DisplacementY])
+            {
+                for first in (0..n_blocks).step_by(CHUNK) {
+                    let values = &mut values[..CHUNK.min(n_blocks - first)];
+                    self.engine.read_column(column, first, values);
+                    for (b, value) in (first..).zip(&mut *values) {
+                        *value *= if slider.exists(b) { load.relative(b) } else { 0.0 };
+                    }
+                    sum.add(values);
+                }
+            }
+            if let Some(sums) = RunningSum::finish(self.communicator, &mut sums) {
+                return dot(load.force, sums);
+            }
+        }
+    }
+
     /// Energy that falling strength takes since the start, a part of the loss to friction: for each block the
     /// integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this together.
     pub fn weakening_energy(&self) -> f64 {
         let Some(law) = self.model.friction.strength_over_slip() else {
             return 0.0;
         };
-        /// Blocks at once: few enough for the stack, since memory for all of them would be asked for at every
-        /// row of a series.
-        const CHUNK: usize = 1024;
         let surface = &self.model.surface;
         let (mut energies, mut lost_before) = ([0.0; CHUNK], [0.0; CHUNK]);
         let mut sum = [RunningSum::default()];

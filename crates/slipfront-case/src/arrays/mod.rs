@@ -94,8 +94,30 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
 /// [`ArrayError`] if the file is of another format or shape, or has a value that is not finite or is below
 /// zero.
 pub fn field(path: &Path, source: &mut (impl BufRead + Seek), slab: &Slab) -> Result<Vec<f64>, ArrayError> {
-    let wanted = "a finite number >= 0";
     let is_wrong = |value: f64| !value.is_finite() || value < 0.0;
+    values(path, source, slab, "a finite number >= 0", is_wrong)
+}
+
+/// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`, as [`field`] does,
+/// whatever its sign.
+///
+/// # Errors
+/// [`ArrayError`] if the file is of another format or shape, or has a value that is not finite.
+pub fn signed_field(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    slab: &Slab,
+) -> Result<Vec<f64>, ArrayError> {
+    values(path, source, slab, "a finite number", |value| !value.is_finite())
+}
+
+fn values(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    slab: &Slab,
+    wanted: &str,
+    is_wrong: impl Fn(f64) -> bool,
+) -> Result<Vec<f64>, ArrayError> {
     match extension(path).as_str() {
         "npy" => npy::values(path, source, slab, wanted, is_wrong),
         "csv" => table::values(path, source, slab, wanted, is_wrong),

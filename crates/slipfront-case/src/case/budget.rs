@@ -533,12 +533,13 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
         slider.stiffness_field.is_some() || slider.stiffness_grade.is_some(),
         slider.density_field.is_some() || slider.density_grade.is_some(),
         file.drive.attached != Attached::At(AttachedEdge::All),
+        load.shear_field.is_some(),
     ];
     let many = |options: &[bool]| options.iter().filter(|is_used| **is_used).count() as f64;
     let own = 2.0 * many(&varies) + 2.0 * many(&[has_outline, has_pressures]);
     let blocks_differ = own > 0.0;
     let (stepped, of_sheet) = match kernel(file, friction) {
-        Kernel::Fused if varies.contains(&true) || needs.varies => (22.0, FUSED_NUMBERS_OF_SHEET),
+        Kernel::Fused if varies.contains(&true) || needs.varies => (22.0 + 2.0 * many(&varies[3..]), FUSED_NUMBERS_OF_SHEET),
         Kernel::Fused => (10.0 + own, FUSED_NUMBERS_OF_SHEET),
         Kernel::General => {
             let differing = if blocks_differ { 9.0 } else { 0.0 };
@@ -713,6 +714,7 @@ mod tests {
             "drive.attach='left'",
             "drive.motion='rotation'",
             "load.profile={along='x',relative_slope=0.5}",
+            "load.shear_star=0.5",
         ] {
             let case = case(&[set]);
             let friction = case.file.friction.in_model(case.groups.v_star, &case.scales);

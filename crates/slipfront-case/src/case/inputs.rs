@@ -408,6 +408,22 @@ impl Inputs {
         };
         name.as_ref().map(read).transpose()
     }
+
+    /// Reads a number of any sign of every block from the file of this name, if the case names one.
+    pub(super) fn read_signed_field(
+        &self,
+        file: &CaseFile,
+        key: &str,
+        name: &Option<String>,
+        watch: &mut Watch,
+    ) -> Result<Option<Vec<f64>>, CaseError> {
+        let read = |name: &String| {
+            self.read(file, (key, name), FileUse::Blocks, watch, |path, source| {
+                arrays::signed_field(path, source, &self.slab)
+            })
+        };
+        name.as_ref().map(read).transpose()
+    }
 }
 
 /// Whether the file of a mask is an array, rather than an image.

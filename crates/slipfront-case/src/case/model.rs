@@ -12,6 +12,7 @@ use super::drive::{attach, attached, drive};
 use super::files::Watch;
 use super::inputs::{Inputs, NamedFiles};
 use super::ranks::Ranks;
+use super::shear;
 use super::slider::GivenBlocks;
 use super::textures;
 use super::topography::Topography;
@@ -50,9 +51,10 @@ pub(super) fn make(
     let made = textures::mesh(file, scales, &lattice, n_blocks, inputs, watch).and_then(|meshed| {
         let coefficients = coefficients(file, groups, &lattice, inputs, watch)?;
         let contact = contact(file, scales, &lattice, inputs, watch)?;
-        Ok((meshed, coefficients, contact, attached(file, inputs, watch)?))
+        let (shear, attached) = (shear::field(file, inputs, watch)?, attached(file, inputs, watch)?);
+        Ok((meshed, coefficients, contact, shear, attached))
     });
-    let ((meshed, in_blocks), coefficients, mut contact, attached) = ranks.agree_on_rows(made)?;
+    let ((meshed, in_blocks), coefficients, mut contact, shear, attached) = ranks.agree_on_rows(made)?;
     ranks.agree(named.expect_unchanged(file))?;
     attach(&mut slider, file, &lattice, &rows, attached, ranks.communicator)?;
     if let Some(distance) = sharing_distance(file, scales, &lattice)? {
@@ -93,6 +95,9 @@ pub(super) fn make(
         None => model,
         Some(stack) => model.with_sheets(stack.sheets(scales), stack.springs()),
     };
+    let load = shear::dead_load(file, scales, &model, shear, ranks.communicator);
+    let model = model.with_dead_load(load);
+    shear::refuse_runaway(file, &model)?;
     Ok((model, texture))
 }
 

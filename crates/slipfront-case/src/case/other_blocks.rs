@@ -139,6 +139,7 @@ impl Case {
             ("slider.stiffness_field", &file.slider.stiffness_field),
             ("slider.density_field", &file.slider.density_field),
             ("load.pressure_field", &file.load.pressure_field),
+            ("load.shear_field", &file.load.shear_field),
             ("friction.mu_static_field", &file.friction.mu_static_field),
             ("friction.mu_kinetic_field", &file.friction.mu_kinetic_field),
         ];

@@ -16,6 +16,7 @@ use super::inputs::{Input, Inputs, NamedFiles};
 use super::model::{self, TextureReport};
 use super::output::Output;
 use super::ranks::Ranks;
+use super::shear::AtOnce;
 use super::textures;
 use super::time_plan::{TimePlan, auto_onset_end, load_factor};
 use crate::arrays::Slab;
@@ -65,6 +66,8 @@ pub struct Expected {
     /// t* up to which the largest mu* is static friction: twice the t* of the onset, and more where only some
     /// blocks touch or adhesion delays it.
     pub onset_end_star: f64,
+    /// Blocks in contact that slip at t = 0.
+    pub at_once: AtOnce,
 }
 
 impl Expected {
@@ -75,6 +78,7 @@ impl Expected {
             first_slip_star: model.first_slip_estimate(ranks),
             onset_star: model.onset_estimate(load_factor(file, model)),
             onset_end_star: auto_onset_end(file, scales, model),
+            at_once: AtOnce::of(model, ranks),
         }
     }
 }

@@ -159,7 +159,14 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
         8.0,
         load_factor(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
     );
-    last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales)
+    let path = path * delay(file, scales) + path_against_load(model);
+    last.unwrap_or(0.0) + path / model.loading_speed()
+}
+
+/// Path of the drive by which a dead load against it delays the onset.
+fn path_against_load(model: &Model) -> f64 {
+    let [along, _] = model.mean_dead_load();
+    (-along).max(0.0) / K_DRIVE
 }
 
 /// Factor by which adhesion delays the onset.
@@ -175,7 +182,7 @@ pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) ->
         2.0 * ONSET_PATH,
         load_factor(file, model).unwrap_or(1.0) / K_DRIVE,
     );
-    path / model.loading_speed() * delay(file, scales)
+    (path * delay(file, scales) + path_against_load(model)) / model.loading_speed()
 }
 
 /// The window of kinetic friction under a drive that is held, and its loading: the largest mu* before the

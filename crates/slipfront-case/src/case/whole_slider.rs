@@ -90,6 +90,7 @@ impl Case {
             && file.texture.is_empty()
             && load.profile.is_none()
             && load.pressure_field.is_none()
+            && !model.dead_load().acts()
             && *model.slider() == Slider::default()
             && model.sheets().is_empty()
             && model.drive.program.is_none()
@@ -183,6 +184,7 @@ mod tests {
             "slider.viscosity_time_star=0.1",
             "slider.stiffness_grade={ along = 'x', from = 0.5, to = 1.5 }",
             "load.profile={ along = 'x', relative_slope = 0.5 }",
+            "load.shear_star=0.1",
             "drive.attach='left'",
             "drive.motion='rotation'",
             "drive.loading='held'",

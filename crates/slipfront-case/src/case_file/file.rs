@@ -44,7 +44,7 @@ use super::words::Loading;
 pub struct CaseFile {
     /// `[slider]`: the lattice of blocks and its material.
     pub slider: Slider,
-    /// `[load]`: the normal load.
+    /// `[load]`: the normal load, and a dead shear load.
     pub load: Load,
     /// `[drive]`: how the slider is pulled.
     pub drive: Drive,
@@ -108,6 +108,7 @@ impl CaseFile {
             ("slider.stiffness_field", &mut self.slider.stiffness_field),
             ("slider.density_field", &mut self.slider.density_field),
             ("load.pressure_field", &mut self.load.pressure_field),
+            ("load.shear_field", &mut self.load.shear_field),
             ("friction.mu_static_field", &mut self.friction.mu_static_field),
             ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
         ];
@@ -132,6 +133,8 @@ impl CaseFile {
         self.load.check(&check("load"))?;
         self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
+        let (motion, body, contact) = (self.drive.motion, self.slider.body, self.friction.contact);
+        self.load.check_shear(&check("load"), motion, body, contact)?;
         if self.drive.loading == Loading::Held {
             self.friction.check_held(&check("friction"))?;
         }

@@ -1,17 +1,19 @@
-//! `[load]`: the normal load.
+//! `[load]`: the normal load, and a dead shear load.
 
 use serde::{Deserialize, Serialize};
 
 use super::check::{Check, Checked};
 use super::error::CaseError;
-use super::key::{ARRAY, KeyKind, between, key, number, quantity, within};
+use super::friction::ContactModel;
+use super::key::{ARRAY, KeyKind, StarUnit, between, key, number, quantity, within};
 use super::probe::names_of;
 use super::values::word;
+use super::words::{Body, Motion};
 use crate::key_rows;
 use crate::quantity::{Length, Pressure};
 
 key_rows! {
-    /// `[load]`: the normal load.
+    /// `[load]`: the normal load, and a dead shear load.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Load {
@@ -31,8 +33,22 @@ key_rows! {
         /// Local pressure over `pressure`, block by block, in place of `profile`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub pressure_field: Option<String> = key("", ARRAY).or("profile"),
+        /// Dead shear load: a stress along the drive on every block, textured or not, that is there from t = 0
+        /// on and follows no motion. Below 0 it acts against the drive.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub shear: Option<Pressure> = key("", quantity("Pa", within(-1e15, 1e15))).or("shear_star")
+            .title("shear load", "\u{3c4}\u{2080}", "Pa").note(DEAD_LOAD),
+        /// Dead shear load over P mu_s, in place of `shear`: what it adds to mu\*.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub shear_star: Option<f64> = key("", number(within(-1e3, 1e3), "it is over P mu_s, of which blocks hold 1"))
+            .star(StarUnit::One).or("shear").title("shear load", "\u{3c4}\u{2080}*", ""),
+        /// Local shear load over `shear` or `shear_star`, block by block; it may be below 0.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub shear_field: Option<String> = key("", ARRAY),
     }
 }
+
+const DEAD_LOAD: &str = "See [dead loads](../model.md#dead-loads).";
 
 key_rows! {
     /// A profile along an axis, `1 + relative_slope (2 x/L - 1)` times the mean.
@@ -66,7 +82,51 @@ impl Load {
         if let Some(profile) = &self.profile {
             check.value_of(&RELATIVE_SLOPE, "profile.relative_slope", &profile.relative_slope)?;
         }
-        check.value("pressure_field", &self.pressure_field)
+        check.value("pressure_field", &self.pressure_field)?;
+        check.value("shear", &self.shear)?;
+        check.value("shear_star", &self.shear_star)?;
+        check.value("shear_field", &self.shear_field)?;
+        if self.shear_field.is_some() && self.shear_key().is_none() {
+            return check.refuse("shear_field", |key| {
+                format!("`{key}` is relative to `load.shear` or `load.shear_star`: give one of them")
+            });
+        }
+        Ok(())
+    }
+
+    /// Name of the key that gives the shear load, if one does.
+    pub fn shear_key(&self) -> Option<&'static str> {
+        let of_star = self.shear_star.map(|_| "shear_star");
+        self.shear.as_ref().map(|_| "shear").or(of_star)
+    }
+
+    /// Refuses a shear load beside a drive, slider or contacts that none is derived for.
+    pub(super) fn check_shear(
+        &self,
+        check: &Check,
+        motion: Motion,
+        body: Body,
+        contact: ContactModel,
+    ) -> Result<(), CaseError> {
+        let Some(key) = self.shear_key() else { return Ok(()) };
+        let reasons = [
+            (
+                motion == Motion::Rotation,
+                "`drive.motion` = \"rotation\": it acts along one direction, and this drive pulls every block another way",
+            ),
+            (
+                body == Body::Bulk,
+                "`slider.body` = \"bulk\": the sheets above the contact begin at rest, and would swing under it",
+            ),
+            (
+                contact == ContactModel::Springs,
+                "`friction.contact` = \"springs\": contacts begin without a force, and the slider would swing on them",
+            ),
+        ];
+        let reason = reasons.iter().find(|(is_given, _)| *is_given);
+        reason.map_or(Ok(()), |(_, reason)| {
+            check.refuse(key, |key| format!("`{key}` does not go with {reason}; leave one of them out"))
+        })
     }
 }
 

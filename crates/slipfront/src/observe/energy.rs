@@ -4,16 +4,16 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::measure::pull_of_springs;
 use crate::snapshot::Snapshot;
 use crate::totals::StoredEnergy;
-use crate::vector_field::dot;
 
 /// Energies stored at an instant, and supplied and lost since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Energy stored at this instant.
     pub stored: StoredEnergy,
-    /// Work done by the drive (and by a constant force) since the start.
+    /// Work done by the drive and the dead load since the start.
     pub work: f64,
     /// Energy lost to friction since the start.
     pub friction_loss: f64,
@@ -59,29 +59,22 @@ impl Energies {
     }
 }
 
-/// The pull of the drive at one instant, and powers: of a constant force, of friction, of damping and of the
-/// dampers between blocks.
+/// The pull of the drive springs at one instant, and powers: of friction, of damping and of the dampers
+/// between blocks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
     /// Force along the path of the drive, `sum F_s . d`; for a rotation the torque over the largest radius.
     pull: f64,
-    constant_force: f64,
     friction: f64,
     damping: f64,
     viscous: f64,
 }
 
 impl Powers {
-    /// Power of the drive at this speed, and of the constant force.
-    fn work(&self, speed: f64) -> f64 {
-        self.pull * speed + self.constant_force
-    }
-
     fn at(now: &Snapshot) -> Self {
         let (model, totals) = (now.model, &now.totals);
         Self {
-            pull: now.point.mu_star * model.mu_star_divisor(),
-            constant_force: dot(model.drive.constant_force, totals.velocity),
+            pull: pull_of_springs(model, totals, now.drive_time_star)[0] * model.mu_star_divisor(),
             friction: -totals.friction_power,
             damping: model.damping * totals.velocity_square,
             viscous: now.engine.viscous_power(),
@@ -90,11 +83,14 @@ impl Powers {
 }
 
 /// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, whose speed is
-/// constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle.
+/// constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle; that of the dead load follows
+/// from the displacements.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,
     totals: Energies,
+    /// Work of the dead load from the rest sites to the start.
+    dead_load_at_start: f64,
 }
 
 impl Ledger {
@@ -109,12 +105,15 @@ impl Ledger {
                 let moved = now.clock.drive_moved();
                 let at_speed = || now.model.drive.speed_after(now.clock.drive_time_before());
                 let speed = if moved { at_speed() } else { 0.0 };
-                self.totals.work += half * (before.work(speed) + powers.work(speed));
+                self.totals.work += half * (before.pull * speed + powers.pull * speed);
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
                 self.totals.viscous_loss += half * (before.viscous + powers.viscous);
             }
-            None => self.totals.stored_at_start = now.stored_energy().total(),
+            None => {
+                self.totals.stored_at_start = now.stored_energy().total();
+                self.dead_load_at_start = now.dead_load_work();
+            }
         }
         self.before = Some(powers);
     }
@@ -122,6 +121,7 @@ impl Ledger {
     /// The balance at this instant, without what blocks and springs store.
     pub(crate) fn counts(&self, now: &Snapshot) -> Energies {
         Energies {
+            work: self.totals.work + (now.dead_load_work() - self.dead_load_at_start),
             weakening_loss: now.weakening_energy(),
             ..self.totals
         }

@@ -2,7 +2,7 @@
 
 use slipfront::Totals;
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
+use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
 use test_case::test_matrix;
 
 use crate::common::{self, Slider, cavity, groove};
@@ -189,9 +189,9 @@ fn forces_of_every_kind(
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// A front that a constant force drives, without drive springs: mu* stays zero and no peak ends.
+/// A front that a dead load drives, without drive springs: mu* stays and no peak ends.
 #[test_matrix([[80, 1], [80, 3], [300, 5]], [[1.0, 0.0], [0.0, 1.0], [0.6, 0.8]])]
-fn a_constant_force_alone(blocks: [usize; 2], direction: [f64; 2]) {
+fn a_dead_load_alone(blocks: [usize; 2], direction: [f64; 2]) {
     let lattice = Lattice::free(blocks[0], blocks[1]);
     let mut surface = Surface::uniform(&lattice, 1.0, 0.25);
     for j in 0..blocks[1] {
@@ -201,10 +201,10 @@ fn a_constant_force_alone(blocks: [usize; 2], direction: [f64; 2]) {
         v_star: 0.0,
         direction,
         k_drive: 0.0,
-        constant_force: direction.map(|d| 0.8 * d),
         ..Drive::along_x(0.0)
     };
-    let model = Model::new(lattice, surface, drive, 0.0, 1e-3, FrictionLaw::Projection);
+    let model = Model::new(lattice, surface, drive, 0.0, 1e-3, FrictionLaw::Projection)
+        .with_dead_load(DeadLoad::uniform(direction.map(|d| 0.8 * d)));
     assert_same(&model, 0.1, None, 400);
 }
 

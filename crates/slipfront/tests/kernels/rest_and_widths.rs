@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use slipfront::lattice::Bond;
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::testing::FusedKernel;
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
+use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
 
 use crate::stacks::{SHEETS, springs};
 
@@ -175,7 +175,7 @@ proptest! {
         dt_star in 0.05..0.5_f64,
     ) {
         let mut model = model(Lattice::free(3, 3), v_star, degrees, 1e-3);
-        model.drive.constant_force = constant;
+        model = model.with_dead_load(DeadLoad::uniform(constant));
         for (b, (static_limit, kinetic_force)) in holds.into_iter().enumerate() {
             (model.surface.mu_static[b], model.surface.mu_kinetic[b]) = (static_limit, kinetic_force);
         }

@@ -1,7 +1,7 @@
 //! Slip fronts in a chain whose blocks keep their drive springs, under constant far ends.
 
 use slipfront::lattice::K_STRAIGHT;
-use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Stop, Surface};
+use slipfront::{DeadLoad, Drive, FrictionLaw, Lattice, Model, State, Stop, Surface};
 use test_case::test_matrix;
 
 use crate::common::from_state;
@@ -14,11 +14,12 @@ fn chain(kappa: f64, tau: f64) -> Model {
     let lattice = Lattice::free(BLOCKS, 1);
     let drive = Drive {
         k_drive: kappa * K_STRAIGHT,
-        constant_force: [KINETIC + tau * (1.0 - KINETIC), 0.0],
         ..Drive::along_x(0.0)
     };
     let surface = Surface::uniform(&lattice, 1.0, KINETIC);
+    let force = [KINETIC + tau * (1.0 - KINETIC), 0.0];
     Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
+        .with_dead_load(DeadLoad::uniform(force))
 }
 
 /// A block that slides `s` far is pulled back by its drive spring by `k_s s`: fronts are slower than without,

@@ -5,7 +5,7 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::SlipCycle;
 use slipfront::observe::energy::Energies;
 use slipfront::observe::{Curve, Scheduled};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface, VectorField};
+use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface, VectorField};
 use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, cavity, from_state, thrown};
@@ -200,13 +200,12 @@ fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64)
     assert!(last.error().abs() < 1e-6, "{}", last.error());
 }
 
-/// A constant force does work as well.
+/// A dead load does work as well, exactly that of its force along the way.
 #[test]
-fn a_constant_force_does_work() {
+fn a_dead_load_does_work() {
     let lattice = Lattice::free(1, 1);
     let drive = Drive {
         k_drive: 0.0,
-        constant_force: [0.3, 0.4],
         ..Drive::along_x(0.0)
     };
     let model = Model::new(
@@ -216,7 +215,8 @@ fn a_constant_force_does_work() {
         0.0,
         0.0,
         FrictionLaw::Projection,
-    );
+    )
+    .with_dead_load(DeadLoad::uniform([0.3, 0.4]));
     let dt = 0.01;
     let last = *energies(&model, dt, 1000, State::at_rest(1)).last().unwrap();
     // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: displacement a t^2/2, work 0.5 per displacement,

@@ -3,7 +3,7 @@
 use slipfront::exact_solutions::{Facing, front_speed};
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::Front;
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface};
+use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface};
 use test_case::{test_case, test_matrix};
 
 use crate::common::{at_rest, from_state};
@@ -11,7 +11,7 @@ use crate::common::{at_rest, from_state};
 const COLUMNS: usize = 80;
 const KINETIC: f64 = 0.25;
 
-/// A strip of columns under a constant force per block of prestress `tau`; its first column has
+/// A strip of columns under a dead load of prestress `tau`; its first column has
 /// no static friction.
 fn strip(columns: usize, rows: usize, direction: [f64; 2], tau: f64) -> Model {
     let edges = if rows == 1 { Edges::Free } else { Edges::Periodic };
@@ -25,10 +25,10 @@ fn strip(columns: usize, rows: usize, direction: [f64; 2], tau: f64) -> Model {
         v_star: 0.0,
         direction,
         k_drive: 0.0,
-        constant_force: [force * direction[0], force * direction[1]],
         ..Drive::along_x(0.0)
     };
     Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
+        .with_dead_load(DeadLoad::uniform(direction.map(|d| force * d)))
 }
 
 /// Time for which the front stays at a column, over the second half of the strip.

@@ -17,6 +17,7 @@ mod composite;
 mod contact_springs;
 mod convergence;
 mod correlated;
+mod dead_load;
 mod driven_fronts;
 mod edge_drive;
 mod energy;

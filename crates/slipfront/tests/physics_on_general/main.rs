@@ -15,6 +15,8 @@ const KERNEL: Kernel = Kernel::General;
 mod composite;
 #[path = "../physics/convergence.rs"]
 mod convergence;
+#[path = "../physics/dead_load.rs"]
+mod dead_load;
 #[path = "../physics/energy.rs"]
 mod energy;
 #[path = "../physics/events.rs"]

@@ -11,7 +11,7 @@ use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Kernel, Loading,
+    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Kernel, Loading,
     Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, SlipWeakening, Snapshot, State, Stop,
     Surface, VectorField, Weakening, scales,
 };
@@ -41,7 +41,9 @@ struct Options {
     rotates: bool,
     held: bool,
     k_drive: f64,
-    constant_force: [f64; 2],
+    dead_load: [f64; 2],
+    /// Whether the dead load differs from block to block.
+    uneven_load: bool,
     /// Scale of forces over the mean static coefficient.
     mu_static_mean: f64,
     /// Size of displacements and velocities at the start, and which of the blocks have a velocity: every
@@ -119,13 +121,14 @@ prop_compose! {
         rotates in prop::bool::weighted(0.25),
         held in prop::bool::weighted(0.3),
         k_drive in 0.02..0.6,
-        constant_force in prop_oneof![3 => Just([0.0; 2]), 1 => [-0.3..0.3, -0.3..0.3]],
+        dead_load in prop_oneof![3 => Just([0.0; 2]), 2 => [-0.3..0.3, -0.3..0.3]],
+        uneven_load in any::<bool>(),
         mu_static_mean in 0.5..2.0,
         start in prop::option::of((prop_oneof![1e-3..0.1, 0.1..2.0], 1..5_usize)),
         follows in any::<bool>(),
     ) -> Options {
         Options {
-            friction, graded, outline, sheets, along_to_across, attached, viscosity_time, program, rotates, held, k_drive, constant_force, mu_static_mean,
+            friction, graded, outline, sheets, along_to_across, attached, viscosity_time, program, rotates, held, k_drive, dead_load, uneven_load, mu_static_mean,
             start, follows,
         }
     }
@@ -183,7 +186,6 @@ impl Setting {
             Surface::of_ranks(slider.coefficients(), textured, contact.clone(), &body, &Alone).ok()?;
         let drive = Drive {
             k_drive: options.k_drive,
-            constant_force: options.constant_force,
             ..Drive::at_angle(slider.v_star, slider.degrees)
         };
         let damping = scales::damping(slider.omega_star);
@@ -213,6 +215,15 @@ impl Setting {
         if options.held {
             model.drive.loading = Loading::Held { onset_steps: 20 };
         }
+        if model.drive.rotation.is_none() {
+            let load = if options.uneven_load && !is_stack {
+                let relative = spread(n, seed.wrapping_add(4), -1.0, 2.0);
+                DeadLoad::of_blocks(options.dead_load, relative, model.slider(), &Alone)
+            } else {
+                DeadLoad::uniform(options.dead_load)
+            };
+            model = model.with_dead_load(load);
+        }
         let state = start(&model, options.start, seed);
         Some(Self {
             model,
@@ -224,8 +235,8 @@ impl Setting {
     }
 
     /// All options, and whether this setting uses them.
-    fn options(&self) -> [(&'static str, bool); 35] {
-        let (model, body) = (&self.model, self.model.slider());
+    fn options(&self) -> [(&'static str, bool); 36] {
+        let (model, body, load) = (&self.model, self.model.slider(), self.model.dead_load());
         let coulomb = match model.friction {
             Friction::Coulomb(coulomb) => Some(coulomb),
             Friction::RateAndState(_) | Friction::ContactSprings(_) => None,
@@ -276,7 +287,8 @@ impl Setting {
                     .as_ref()
                     .is_some_and(|springs| springs.relative.contains(&0.0)),
             ),
-            ("constant force", model.drive.constant_force != [0.0; 2]),
+            ("even dead load", load.acts() && load.field.is_none()),
+            ("uneven dead load", load.acts() && load.field.is_some()),
             ("program", model.drive.program.is_some()),
             ("held drive", model.drive.is_held()),
             ("translation", model.drive.rotation.is_none()),

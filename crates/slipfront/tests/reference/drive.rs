@@ -1,4 +1,4 @@
-//! The drive: springs whose far ends move along a path X(t) (Eq. 2).
+//! The drive: springs whose far ends move along a path X(t) (Eq. 2); and the dead load.
 
 use slipfront::Model;
 
@@ -73,13 +73,13 @@ pub(crate) fn spring_force(stiffness: f64, path: f64, direction: Vector, displac
     times(stiffness, difference(times(path, direction), displacement))
 }
 
-/// The constant force beside the drive spring of block `b`, in proportion to its stiffness: along x and y, of
-/// a rotation along the direction **g** of the block and across it.
-pub(crate) fn constant_force(model: &Model, b: usize, direction: Vector) -> Vector {
-    let [along, across] = model.drive.constant_force;
-    let force = match model.drive.rotation {
-        None => [along, across],
-        Some(_) => sum(times(along, direction), times(across, left_of(direction))),
+/// The dead load `F_0,i` on block `b`: the common force times that of the block, if these differ.
+pub(crate) fn dead_load(model: &Model, b: usize) -> Vector {
+    let load = model.dead_load();
+    let relative = match &load.field {
+        _ if !exists(model, b) => 0.0,
+        Some(field) => field.relative[b],
+        None => 1.0,
     };
-    times(relative_stiffness(model, b), force)
+    times(relative, load.force)
 }

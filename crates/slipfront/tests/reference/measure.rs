@@ -11,7 +11,6 @@ use super::{Reference, drive};
 struct Powers {
     /// Force of the drive springs along their direction, `sum F_s . g`, which works along the path X.
     pull: f64,
-    constant_force: f64,
     friction: f64,
     damping: f64,
     viscosity: f64,
@@ -35,9 +34,9 @@ impl Reference<'_> {
         times(0.5, sum(self.velocity_before[b], self.velocity[b]))
     }
 
-    /// Pull of the drive spring of block `b`, without the constant force.
+    /// Pull of the drive spring of block `b`, without the dead load.
     fn pull(&self, b: usize) -> Vector {
-        difference(self.drive_force(b), self.blocks[b].constant_force)
+        difference(self.drive_force(b), self.blocks[b].dead_load)
     }
 
     pub(super) fn sum_over(&self, of_block: impl Fn(usize) -> f64) -> f64 {
@@ -49,15 +48,15 @@ impl Reference<'_> {
         self.blocks.iter().filter(|block| block.exists).count() as f64
     }
 
-    /// mu* and the component to the left of the drive (Eq. 9): of a translation `sum F_s . d/N`, of a
+    /// mu* and the component to the left of the drive (Eq. 9): of a translation `sum (F_s + F_0) . d/N`, of a
     /// rotation `sum F_s . (z x r)/sum r`, the torque over the sum of radii.
     pub(crate) fn mu_star(&self) -> [f64; 2] {
         let over = match self.model.drive.rotation {
             None => self.n_blocks(),
             Some(_) => self.sum_over(|b| length(self.blocks[b].direction)),
         };
-        let along = self.sum_over(|b| dot(self.pull(b), self.blocks[b].direction));
-        let across = self.sum_over(|b| dot(self.pull(b), left_of(self.blocks[b].direction)));
+        let along = self.sum_over(|b| dot(self.drive_force(b), self.blocks[b].direction));
+        let across = self.sum_over(|b| dot(self.drive_force(b), left_of(self.blocks[b].direction)));
         [along / over, across / over]
     }
 
@@ -154,11 +153,15 @@ impl Reference<'_> {
         };
         Powers {
             pull: self.sum_over(|b| dot(self.pull(b), self.blocks[b].direction)),
-            constant_force: self.sum_over(|b| dot(self.blocks[b].constant_force, self.pulled_velocity(b))),
             friction: if is_stored { 0.0 } else { self.sum_over(friction) },
             damping: self.sum_over(damping) + self.model.damping * self.sheets_m_v_squared(false),
             viscosity: self.sum_over(|b| -dot(self.force_dampers[b], self.velocity_now(b))),
         }
+    }
+
+    /// Work of the dead load in the step from t_n on, `sum F_0,i . (u_n+1 - u_n)`.
+    pub(super) fn work_of_dead_load(&self) -> f64 {
+        self.dt * self.sum_over(|b| dot(self.blocks[b].dead_load, self.pulled_velocity(b)))
     }
 
     /// Adds the step that ends at t_n, by the trapezoidal rule: the work of the drive is
@@ -172,8 +175,7 @@ impl Reference<'_> {
             let mean = |of: fn(&Powers) -> f64| 0.5 * (of(&before) + of(&now));
             let paths = [self.drive_steps_before, self.drive_steps]
                 .map(|step| drive::path(self.model, step as f64 * self.dt));
-            let work_of_drive = mean(|powers| powers.pull) * (paths[1] - paths[0]);
-            losses.work += work_of_drive + self.dt * mean(|powers| powers.constant_force);
+            losses.work += mean(|powers| powers.pull) * (paths[1] - paths[0]);
             losses.friction += self.dt * mean(|powers| powers.friction);
             losses.damping += self.dt * mean(|powers| powers.damping);
             losses.viscosity += self.dt * mean(|powers| powers.viscosity);

@@ -36,8 +36,8 @@ struct Block {
     drive_stiffness: f64,
     /// Direction **g** of the far end of the block's drive spring.
     direction: Vector,
-    /// Constant force beside the block's drive spring.
-    constant_force: Vector,
+    /// Dead load `F_0,i`, a constant force.
+    dead_load: Vector,
     normal_force: f64,
     kinetic: Threshold,
 }
@@ -78,7 +78,7 @@ pub(crate) struct Reference<'a> {
     pub(crate) velocity: Vec<Vector>,
     /// Sheets above the lattice.
     sheets: Vec<sheets::Blocks>,
-    /// Drive forces `F_s` with the constant force; of a stack the forces of the sheet above.
+    /// Drive forces `F_s` with the dead load; of a stack the forces of the sheet above.
     pub(crate) force_drive: Vec<Vector>,
     /// Forces `F_v` of the dampers.
     force_dampers: Vec<Vector>,
@@ -111,7 +111,7 @@ impl<'a> Reference<'a> {
                 springs: lattice::springs(model, b),
                 drive_stiffness: drive::stiffness(model, b),
                 direction: directions[b],
-                constant_force: drive::constant_force(model, b, directions[b]),
+                dead_load: drive::dead_load(model, b),
                 normal_force: load,
                 kinetic: Threshold::new(surface.mu_kinetic[b], contact, load, in_contact, adhesion),
             }
@@ -205,6 +205,7 @@ impl<'a> Reference<'a> {
                 self.memory[b].theta = rate_and_state::evolved(law, self.memory[b].theta, speed, self.dt);
             }
         }
+        self.losses.work += self.work_of_dead_load();
         self.velocity_before.clone_from(&self.velocity);
         self.sheets.iter_mut().for_each(|blocks| blocks.step(self.dt));
         self.evaluate();

@@ -52,12 +52,10 @@ impl Reference<'_> {
         sheet.map_or(self.displacement[b], |sheet| self.sheets[sheet].displacement[b])
     }
 
-    /// Velocity at t_n of block `b` of the blocks that the drive pulls: those of the highest sheet.
+    /// Velocity half a step after t_n of block `b` of the blocks that the drive pulls: those of the highest
+    /// sheet.
     pub(super) fn pulled_velocity(&self, b: usize) -> Vector {
-        match self.sheets.last() {
-            None => self.velocity_now(b),
-            Some(highest) => times(0.5, sum(highest.velocity_before[b], highest.velocity[b])),
-        }
+        self.sheets.last().map_or(self.velocity[b], |highest| highest.velocity[b])
     }
 
     /// Displacement of block `b` of the blocks that the drive pulls.
@@ -65,12 +63,12 @@ impl Reference<'_> {
         self.displacement_in(self.sheets.len().checked_sub(1), b)
     }
 
-    /// Force of the drive spring over block `b` (Eq. 2), and the constant force.
+    /// Force of the drive spring over block `b` (Eq. 2), and the dead load.
     pub(super) fn drive_force(&self, b: usize) -> Vector {
         let (block, path) = (&self.blocks[b], drive::path(self.model, self.drive_time()));
         let u = self.pulled_displacement(b);
         let spring = drive::spring_force(block.drive_stiffness, path, block.direction, u);
-        sum(spring, block.constant_force)
+        sum(spring, block.dead_load)
     }
 
     /// Force from above on block `b` of a sheet, or of the lattice: `g (u_k+1 - u_k)`, or that of the drive.

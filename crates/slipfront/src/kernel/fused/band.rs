@@ -865,15 +865,18 @@ impl Band {
             Some(thresholds) => thresholds.kinetic_impulses(k..k + LANES),
             None => self.kinetic_impulses[k..k + LANES].as_chunks().0,
         };
+        let of_vector = |values: &Aligned| load(simd, &values[k..].as_chunks().0[0]);
+        let variations = self.variations.as_ref();
         let blocks = RestingVector {
             displacement: load_vec2(simd, chunks(&self.displacement, self.halo + k, LANES), 0),
             lattice: load_vec2(simd, chunks(&scratch.lattice, place, LANES), 0),
-            static_limit_square: load(simd, &self.static_limit_squares[k..].as_chunks().0[0]),
+            static_limit_square: of_vector(&self.static_limit_squares),
             kinetic_impulse: load(simd, &impulses[0]),
-            variation: self.variations.as_ref().map(|variations| {
-                let [drive_spring, mass] = [&variations.drive_springs, &variations.mass];
-                [drive_spring, mass].map(|values| load(simd, &values[k..].as_chunks().0[0]))
-            }),
+            variation: variations
+                .map(|variations| [&variations.drive_springs, &variations.mass].map(of_vector)),
+            loads: variations
+                .and_then(|variations| variations.loads.as_ref())
+                .map(of_vector),
         };
         steps_until_slip(simd, &step, &blocks)
     }
@@ -975,8 +978,11 @@ impl Band {
                 if self.in_contact[v] >> (k % LANES) & 1 == 1 {
                     let u = self.displacement.at(self.halo + k);
                     let variations = self.variations.as_ref();
-                    let drive_spring = variations.map_or(1.0, |variations| variations.drive_springs[k]);
-                    let [x, y] = step.drive_force(u).map(|force| drive_spring * force);
+                    let relative = variations.map_or([1.0; 2], |variations| {
+                        let load = variations.loads.as_ref().map_or(1.0, |loads| loads[k]);
+                        [variations.drive_springs[k], load]
+                    });
+                    let [x, y] = step.drive_force(u, relative);
                     most = most.max(x * x + y * y);
                 }
             }

@@ -6,7 +6,7 @@
 use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 
 use super::aligned::CacheLines;
-use super::pull::{Above, pull_from_above};
+use super::pull::{Above, pull_from_above, pull_of_differing};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
@@ -591,7 +591,7 @@ fn rest<S: Simd>(
 /// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for
 /// vectors that do not [`rest`].
 #[inline(always)]
-fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool>(
+fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOADS: bool>(
     simd: S,
     step: Step,
     arrays: &mut FrictionLoop,
@@ -608,11 +608,16 @@ fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool>(
     let free_speed = &mut arrays.free_speed[..n];
     let variation = arrays.variation.first::<DIFFER>(n);
     for c in 0..n {
-        let mut drive = pull_from_above::<S, HAS_ABOVE>(simd, step, above, c, load_vec2(simd, u, c));
+        let u = load_vec2(simd, u, c);
+        let drive = if DIFFER && !HAS_ABOVE {
+            let loads = HAS_LOADS.then(|| load(simd, &variation.loads[c]));
+            pull_of_differing(simd, step, load(simd, &variation.drive_springs[c]), loads, u)
+        } else {
+            pull_from_above::<S, HAS_ABOVE>(simd, step, above, c, u)
+        };
         let mut force_to_velocity = splat(simd, step.integrator.force_to_velocity);
         let before = load_vec2(simd, velocity, c);
         if DIFFER {
-            drive = scale(load(simd, &variation.drive_springs[c]), drive);
             force_to_velocity *= load(simd, &variation.inverse_mass[c]);
         }
         let force = add(drive, load_vec2(simd, lattice, c));
@@ -645,7 +650,12 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
     sums: &mut Sums<i64x8<S>, f64x8<S>>,
 ) {
     let n = arrays.free_speed.len();
-    free_motion::<S, DIFFER, HAS_ABOVE>(simd, step, &mut arrays, above.first::<HAS_ABOVE>(n));
+    let above = above.first::<HAS_ABOVE>(n);
+    if DIFFER && !HAS_ABOVE && !arrays.variation.loads.is_empty() {
+        free_motion::<S, DIFFER, HAS_ABOVE, true>(simd, step, &mut arrays, above);
+    } else {
+        free_motion::<S, DIFFER, HAS_ABOVE, false>(simd, step, &mut arrays, above);
+    }
     let [vx, vy] = arrays.velocity;
     let n = vx.len();
     let vy = &mut vy[..n];

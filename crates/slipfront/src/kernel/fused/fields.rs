@@ -7,21 +7,25 @@ use fearless_simd::{Simd, SimdBase, SimdFloat};
 use super::aligned::chunks;
 use super::band::Band;
 use super::layout::{Layout, TILE};
-use super::pull::{pull, pull_from_above};
+use super::pull::{pull, pull_from_above, pull_of_differing};
 use super::scratch::Scratch;
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
+use super::aligned::Aligned;
 use crate::kernel::block::{Block, Field};
 use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Force of the drive spring on block `b` (Eq. 2), with the constant force.
+/// Force of the drive spring on block `b` (Eq. 2), with the dead load.
 pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displacement: [f64; 2]) -> [f64; 2] {
     let drive_spring = model.slider.drive_spring(b);
-    let force = model.drive.force(displacement, drive_time_star);
-    force.map(|force| drive_spring * force)
+    let (spring, load) = (
+        model.drive.force(displacement, drive_time_star),
+        model.dead_load.relative(b),
+    );
+    [0, 1].map(|axis| drive_spring * spring[axis] + load * model.dead_load.force[axis])
 }
 
 /// Block `b` under the given force of its drive spring or of the sheet above. `motion` gives displacement and
@@ -200,17 +204,17 @@ fn stresses<S: Simd, G: Geometry>(
         let velocity = load_vec2(simd, velocities, c);
         let lattice = load_vec2(simd, lattice_forces, c);
         let u = load_vec2(simd, displacements, c);
-        let mut drive = match above {
-            Some(above) => pull_from_above::<S, true>(simd, step, above, c, u),
-            None => pull(simd, step, u),
+        let variations = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER);
+        let drive = match (above, variations) {
+            (Some(above), _) => pull_from_above::<S, true>(simd, step, above, c, u),
+            (None, Some(variations)) => {
+                let first = elements.start + c * LANES;
+                let of_vector = |values: &Aligned| load(simd, &values[first..].as_chunks().0[0]);
+                let loads = variations.loads.as_ref().map(of_vector);
+                pull_of_differing(simd, step, of_vector(&variations.drive_springs), loads, u)
+            }
+            (None, None) => pull(simd, step, u),
         };
-        if let Some(variations) = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER) {
-            let first = elements.start + c * LANES;
-            drive = scale(
-                load(simd, &variations.drive_springs[first..].as_chunks().0[0]),
-                drive,
-            );
-        }
         let [x, y] = add(drive, lattice);
         let mut force = [-x, -y];
         let stuck = is_zero(simd, velocity);

@@ -1,19 +1,43 @@
-//! The pull of the drive, or of the sheet above, on blocks.
+//! The pull of the drive, with the dead load, or of the sheet above, on blocks.
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f64x8};
 
 use super::step::Step;
 use super::vector::{Chunks, Vec2x8, add, load_vec2, scale, splat, subtract};
 
-/// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with any constant force.
+/// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with the dead load, on blocks that are alike.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    let ([x, y], [fx, fy]) = (step.drive_position, step.constant_force);
+    add(pull_of_springs(simd, step, u), dead_load(simd, step))
+}
+
+/// Force of the drive springs (Eq. 2), `F_s = k_s,i (V t - u)`, with the dead load, on blocks that differ:
+/// given their springs over others, and their loads unless these are alike.
+#[inline(always)]
+pub(super) fn pull_of_differing<S: Simd>(
+    simd: S,
+    step: Step,
+    drive_springs: f64x8<S>,
+    loads: Option<f64x8<S>>,
+    u: Vec2x8<S>,
+) -> Vec2x8<S> {
+    let mut dead = dead_load(simd, step);
+    if let Some(loads) = loads {
+        dead = scale(loads, dead);
+    }
+    add(scale(drive_springs, pull_of_springs(simd, step, u)), dead)
+}
+
+#[inline(always)]
+fn pull_of_springs<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
+    let [x, y] = step.drive_position;
     let stretch = subtract([splat(simd, x), splat(simd, y)], u);
-    add(
-        scale(splat(simd, step.k_drive), stretch),
-        [splat(simd, fx), splat(simd, fy)],
-    )
+    scale(splat(simd, step.k_drive), stretch)
+}
+
+#[inline(always)]
+fn dead_load<S: Simd>(simd: S, step: Step) -> Vec2x8<S> {
+    step.dead_load.map(|force| splat(simd, force))
 }
 
 /// Blocks of the sheet above some blocks; none where the drive springs pull these.
@@ -38,7 +62,7 @@ impl Above<'_> {
 }
 
 /// Force from above on eight blocks at displacement `u`: of the springs to the sheet there,
-/// `g (u_k+1 - u_k)`, or of the drive springs (Eq. 2), with any constant force.
+/// `g (u_k+1 - u_k)`, or of the drive springs (Eq. 2), with the dead load.
 #[inline(always)]
 pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
     simd: S,

@@ -80,10 +80,9 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         let stretch = (position - low).abs().max((position - high).abs());
         // The force of a spring is at most its stiffness times the difference of the displacements of its
         // ends.
+        let dead_load = largest.load * step.dead_load[axis].abs();
         force += largest.modulus * 4.0 * largest.springs.along() * bounds.spring_difference(axis)
-            + largest.inverse_thickness
-                * largest.drive_spring
-                * (step.k_drive * stretch + step.constant_force[axis].abs());
+            + largest.inverse_thickness * (largest.drive_spring * (step.k_drive * stretch) + dead_load);
         // Not so of one sheet, whose bits may not change where displacements are no numbers.
         if largest.coupling > 0.0 {
             force += largest.couplings_over_thickness * (high - low);

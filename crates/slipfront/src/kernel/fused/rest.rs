@@ -1,7 +1,7 @@
 //! How long blocks at rest will stay at rest.
 //!
 //! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone,
-//! linearly: `F(t) = F + k_s V t`. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n`
+//! linearly: `F(t) = F + k_s V t`, with the dead load in F. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n`
 //! (D12):
 //!
 //! ```text
@@ -11,7 +11,7 @@
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f64x8};
 
-use super::pull::pull;
+use super::pull::pull_of_differing;
 use super::step::Step;
 use super::vector::{Vec2x8, add, dot, lane_max, scale, splat, square};
 
@@ -24,6 +24,8 @@ pub(super) struct RestingVector<S: Simd> {
     pub(super) kinetic_impulse: f64x8<S>,
     /// Relative stiffness of the drive springs, and masses, of a heterogeneous slider.
     pub(super) variation: Option<[f64x8<S>; 2]>,
+    /// Relative dead loads, where they differ.
+    pub(super) loads: Option<f64x8<S>>,
 }
 
 /// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
@@ -45,7 +47,7 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     let [drive_spring, mass] = blocks.variation.unwrap_or([one; 2]);
     let growth = scale(drive_spring, [splat(simd, bx), splat(simd, by)]);
     let c = drive_spring * drive_spring * splat(simd, growth_square);
-    let drive = scale(drive_spring, pull(simd, *step, blocks.displacement));
+    let drive = pull_of_differing(simd, *step, drive_spring, blocks.loads, blocks.displacement);
     let force = add(drive, blocks.lattice);
     let velocity_to_force = mass * splat(simd, step.integrator.velocity_to_force);
     let kinetic_force = blocks.kinetic_impulse * velocity_to_force;

@@ -24,7 +24,8 @@ pub(super) struct Step {
     /// Growth per time of the force of a drive spring on a block at rest, `k_s V`; a drive that is held loads
     /// more slowly.
     pub(super) force_growth: [f64; 2],
-    pub(super) constant_force: [f64; 2],
+    /// Dead load on a block, unless it has a relative one.
+    pub(super) dead_load: [f64; 2],
     pub(super) integrator: Integrator,
 }
 
@@ -47,7 +48,7 @@ impl Step {
             force_growth: drive
                 .direction
                 .map(|d| drive.k_drive * drive.speed_after(time_star) * d),
-            constant_force: drive.constant_force,
+            dead_load: model.dead_load.force,
             integrator: Integrator::new(model.damping, dt_star),
         }
     }
@@ -66,8 +67,12 @@ impl Step {
         }
     }
 
-    /// Force of the drive spring on a block at displacement `u` (Eq. 2), with the constant force.
-    pub(super) fn drive_force(&self, u: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| self.k_drive * (self.drive_position[axis] - u[axis]) + self.constant_force[axis])
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), with the dead load, given both over
+    /// those of other blocks.
+    pub(super) fn drive_force(&self, u: [f64; 2], [drive_spring, load]: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let spring = self.k_drive * (self.drive_position[axis] - u[axis]);
+            drive_spring * spring + load * self.dead_load[axis]
+        })
     }
 }

@@ -1,4 +1,4 @@
-//! Heterogeneous sliders: springs, drive springs and masses that differ from block to block.
+//! Heterogeneous sliders: springs, drive springs, masses and dead loads that differ from block to block.
 //!
 //! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of
 //! slider ([`Geometry`]). An outline needs nothing of it, either: blocks outside are elements that are no
@@ -28,6 +28,8 @@ pub(super) struct Variations {
     pub(super) mass: Aligned,
     // Beside the mass, in place of a division for every block in every step.
     pub(super) inverse_mass: Aligned,
+    /// Dead load over that of [`Step`](super::step::Step), where it differs.
+    pub(super) loads: Option<Aligned>,
 }
 
 /// [`Variations`] of some elements, in vectors of eight; empty where all blocks are alike.
@@ -36,6 +38,8 @@ pub(super) struct Variation<'a> {
     pub(super) drive_springs: Chunks<'a>,
     pub(super) mass: Chunks<'a>,
     pub(super) inverse_mass: Chunks<'a>,
+    /// Empty where all blocks have one load.
+    pub(super) loads: Chunks<'a>,
 }
 
 impl<'a> Variation<'a> {
@@ -47,6 +51,7 @@ impl<'a> Variation<'a> {
             drive_springs: &self.drive_springs[..n],
             mass: &self.mass[..n],
             inverse_mass: &self.inverse_mass[..n],
+            loads: &self.loads[..n.min(self.loads.len())],
         }
     }
 }
@@ -62,6 +67,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
     slider.stiffness.is_some()
         || slider.density.is_some()
         || drive_springs_differ
+        || model.dead_load.field.is_some()
         || model.friction.needs().varies
 }
 
@@ -73,6 +79,8 @@ pub(super) struct LargestFactors {
     pub(super) drive_spring: f64,
     pub(super) mass: f64,
     pub(super) inverse_mass: f64,
+    /// Largest dead load over that of [`Step`](super::step::Step).
+    pub(super) load: f64,
     /// Springs between the blocks of a sheet of relative thickness 1.
     pub(super) springs: SpringStiffness,
     /// Largest relative thickness of a sheet of a stack; 1 of a single sheet.
@@ -102,9 +110,12 @@ impl LargestFactors {
             largest(slider.drive_springs.is_some(), &|b| slider.drive_spring(b)),
             largest(slider.density.is_some(), &|b| slider.mass(b)),
             largest(slider.density.is_some(), &|b| 1.0 / slider.mass(b)),
+            largest(model.dead_load.field.is_some(), &|b| {
+                model.dead_load.relative(b).abs()
+            }),
         ];
         communicator.largest(&mut found);
-        let [modulus, drive_spring, mass, inverse_mass] = found;
+        let [modulus, drive_spring, mass, inverse_mass, load] = found;
         let of_sheets = |value: &dyn Fn(&Sheet) -> f64, lowest: f64| {
             model.sheets.iter().map(value).fold(lowest, f64::max)
         };
@@ -121,6 +132,7 @@ impl LargestFactors {
             drive_spring,
             mass,
             inverse_mass,
+            load,
         }
     }
 }
@@ -141,6 +153,7 @@ impl Variations {
             drive_springs: ones(),
             mass: ones(),
             inverse_mass: ones(),
+            loads: model.dead_load.field.as_ref().map(|_| ones()),
         };
         let before = elements.start as isize - halo as isize;
         for k in 0..halo + len {
@@ -158,6 +171,9 @@ impl Variations {
                 variations.drive_springs[k] = model.slider.drive_spring(b);
                 variations.mass[k] = model.slider.mass(b);
                 variations.inverse_mass[k] = 1.0 / model.slider.mass(b);
+                if let Some(loads) = &mut variations.loads {
+                    loads[k] = model.dead_load.relative(b);
+                }
             }
         }
         variations
@@ -168,7 +184,9 @@ impl Variations {
     /// Variations of some elements, counted from the first of the band.
     #[inline(always)]
     pub(super) fn of(&self, elements: Range<usize>) -> Variation<'_> {
+        let loads = self.loads.as_ref();
         Variation {
+            loads: loads.map_or(&[], |loads| loads[elements.clone()].as_chunks().0),
             drive_springs: self.drive_springs[elements.clone()].as_chunks().0,
             mass: self.mass[elements.clone()].as_chunks().0,
             inverse_mass: self.inverse_mass[elements].as_chunks().0,

@@ -1,8 +1,9 @@
-//! The drive springs (Eq. 2): forces, energy, and the sums over blocks that belong to them.
+//! The drive springs (Eq. 2) and the dead load: forces, energy, and the sums over blocks that belong to them.
 
 use std::ops::Range;
 
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
+use crate::dead_load::DeadLoad;
 use crate::fixed_point::RunningSum;
 use crate::forces::{part, part_mut};
 use crate::model::Model;
@@ -29,7 +30,8 @@ impl DrivenBlocks {
         }
     }
 
-    /// Forces of the drive springs (Eq. 2) on some blocks at a time of the drive, `F_s = k_s,i (V t - u)`.
+    /// Forces of the drive springs (Eq. 2) on some blocks at a time of the drive, `F_s = k_s,i (V t - u)`, with
+    /// the dead load.
     #[inline(always)]
     pub(super) fn forces(
         &self,
@@ -39,8 +41,7 @@ impl DrivenBlocks {
         drive_time_star: f64,
         force: &mut VectorField,
     ) {
-        let (k_drive, [along, across]) = (model.drive.k_drive, model.drive.constant_force);
-        let n = blocks.len();
+        let (k_drive, n) = (model.drive.k_drive, blocks.len());
         let ([fx, fy], [ux, uy]) = (part_mut(force, blocks), part(u, blocks));
         let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
         // Told apart outside of the loops, which then have no branch and become vectors.
@@ -48,8 +49,8 @@ impl DrivenBlocks {
             None => {
                 let [x, y] = model.drive.position(drive_time_star);
                 for k in 0..n {
-                    fx[k] = k_drive * (x - ux[k]) + along;
-                    fy[k] = k_drive * (y - uy[k]) + across;
+                    fx[k] = k_drive * (x - ux[k]);
+                    fy[k] = k_drive * (y - uy[k]);
                 }
             }
             Some(direction) => {
@@ -57,8 +58,8 @@ impl DrivenBlocks {
                 let [gx, gy] = part(direction, blocks);
                 let (gx, gy) = (&gx[..n], &gy[..n]);
                 for k in 0..n {
-                    fx[k] = k_drive * (path * gx[k] - ux[k]) + (along * gx[k] - across * gy[k]);
-                    fy[k] = k_drive * (path * gy[k] - uy[k]) + (along * gy[k] + across * gx[k]);
+                    fx[k] = k_drive * (path * gx[k] - ux[k]);
+                    fy[k] = k_drive * (path * gy[k] - uy[k]);
                 }
             }
         }
@@ -68,6 +69,9 @@ impl DrivenBlocks {
                 fx[k] *= relative[k];
                 fy[k] *= relative[k];
             }
+        }
+        if model.dead_load.acts() {
+            add_dead_load(model, blocks, [fx, fy]);
         }
     }
 
@@ -132,6 +136,26 @@ impl DrivenBlocks {
                 }
                 add_weighted(across, terms, relative, &mut scratch.products);
             }
+        }
+    }
+}
+
+/// Adds the dead load of some blocks.
+#[inline(always)]
+fn add_dead_load(model: &Model, blocks: &Range<usize>, [fx, fy]: [&mut [f64]; 2]) {
+    let DeadLoad { force: [x, y], field } = &model.dead_load;
+    let n = blocks.len();
+    let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
+    if let Some(field) = field {
+        let relative = &field.relative[blocks.clone()][..n];
+        for k in 0..n {
+            fx[k] += relative[k] * x;
+            fy[k] += relative[k] * y;
+        }
+    } else {
+        for (k, _) in blocks.clone().enumerate().filter(|&(_, b)| model.slider.exists(b)) {
+            fx[k] += x;
+            fy[k] += y;
         }
     }
 }

@@ -1,0 +1,107 @@
+//! The dead shear load of a case, and what it leaves to the drive.
+
+use slipfront::communicator::lowest_rank;
+use slipfront::{Communicator, DeadLoad, Model, Scales};
+
+use super::files::Watch;
+use super::inputs::Inputs;
+use super::runnable::Case;
+use crate::case_file::{CaseError, CaseFile};
+use slipfront_base::number_format::{count, four_digits};
+
+/// The local shear load over that of the case, of the blocks of these rows, if a file gives it.
+pub(super) fn field(
+    file: &CaseFile,
+    inputs: &Inputs,
+    watch: &mut Watch,
+) -> Result<Option<Vec<f64>>, CaseError> {
+    inputs.read_signed_field(file, "load.shear_field", &file.load.shear_field, watch)
+}
+
+/// The dead load of a case on the blocks of a model, along its drive. All ranks call this at once.
+pub(super) fn dead_load(
+    file: &CaseFile,
+    scales: &Scales,
+    model: &Model,
+    field: Option<Vec<f64>>,
+    ranks: &dyn Communicator,
+) -> DeadLoad {
+    let of_stress = file.load.shear.as_ref().map(|shear| shear.si() / scales.stress());
+    let shear = of_stress.or(file.load.shear_star).unwrap_or(0.0);
+    let force = model.drive.direction.map(|d| shear * d);
+    match field {
+        Some(field) => DeadLoad::of_blocks(force, field, model.slider(), ranks),
+        None => DeadLoad::uniform(force),
+    }
+}
+
+/// Refuses a dead load that the slider as a whole cannot bear: nothing would be left for the drive.
+pub(super) fn refuse_runaway(file: &CaseFile, model: &Model) -> Result<(), CaseError> {
+    let ([borne, _], held) = (model.mean_dead_load(), model.surface.mean_static_force());
+    if !model.friction.has_thresholds() || borne.abs() <= held {
+        return Ok(());
+    }
+    let key = file.load.shear_key().unwrap_or_default();
+    let sentence = format!(
+        "the shear load is {} of P mu_s on the mean, and the blocks hold {} at rest: the slider would run away at t = 0; lower it, or raise \
+         `load.pressure` or `friction.mu_static`",
+        four_digits(borne),
+        four_digits(held)
+    );
+    Err(file.source.error(&format!("load.{key}"), sentence))
+}
+
+/// Blocks in contact that slip at t = 0 under the dead load alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AtOnce {
+    /// Number of these blocks in the whole lattice.
+    pub count: usize,
+    /// Column and row of the first of them.
+    pub first: [usize; 2],
+}
+
+impl AtOnce {
+    /// The blocks of all ranks, which call this at once.
+    pub(super) fn of(model: &Model, ranks: &dyn Communicator) -> Self {
+        let is_pulled = model.dead_load().acts() && model.friction.has_thresholds();
+        let slips = |b: &usize| !model.surface.textured[*b] && model.slips_at_once(*b);
+        let blocks = if is_pulled { model.surface.n_blocks() } else { 0 };
+        let mut own = (0..blocks).filter(slips);
+        let first = own.next();
+        let lowest = lowest_rank(ranks, first.is_some());
+        let mut sums = [first.map_or(0, |_| 1 + own.count() as i64), 0];
+        if let Some(first) = first
+            && lowest == Some(ranks.rank())
+        {
+            sums[1] = (model.lattice.blocks_of(&model.rows).start + first) as i64;
+        }
+        ranks.sum(&mut sums);
+        let (i, j) = model.lattice.column_row(sums[1] as usize);
+        Self {
+            count: sums[0] as usize,
+            first: [i, j],
+        }
+    }
+}
+
+impl Case {
+    /// Share of the static friction of the blocks that the dead load along the drive takes; none without a
+    /// load, or under a law without static friction.
+    pub fn share_of_shear(&self) -> Option<f64> {
+        let model = &self.model;
+        let has_share = model.dead_load().acts() && model.friction.has_thresholds();
+        has_share.then(|| model.mean_dead_load()[0] / model.surface.mean_static_force())
+    }
+
+    /// A warning where blocks slip at t = 0 already.
+    pub(super) fn shear_warning(&self) -> Option<String> {
+        let AtOnce { count: n, first: [i, j] } = self.expected.at_once;
+        let (slip, their) = if n == 1 { ("slips", "its") } else { ("slip", "their") };
+        (n > 0).then(|| {
+            format!(
+                "{} {slip} at t = 0, since the shear load is above {their} static friction; the first is ({i}, {j})",
+                count(n, "block")
+            )
+        })
+    }
+}
