@@ -234,7 +234,7 @@ fn own_rows_of_fields(case: &Case) -> Range<usize> {
 const PART: usize = 1 << 17;
 
 impl Running {
-    /// Begins a run in this state, in which blocks may be displaced and slide, or at rest. The run is
+    /// Begins a run in this state, in which blocks may be displaced and slide, or in that of the case. The run is
     /// computed as `execution` says, on no more threads than have enough blocks; ranks that share the lattice
     /// call this and then the same functions.
     ///
@@ -243,6 +243,7 @@ impl Running {
     pub fn start(case: &Arc<Case>, state: Option<State>, execution: Execution) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
+        let state = state.or_else(|| case.state());
         Self {
             case: Arc::clone(case),
             communicator: Arc::clone(&execution.communicator),

@@ -548,7 +548,16 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
         }
     };
     let of_sheets = of_sheet * file.slider.n_sheets_above() as f64;
-    [3.0 + own, stepped + of_sheets + 2.0 * needs.columns as f64]
+    // Beside the state of the case stands a copy of it while a kernel is made.
+    let [state, begun] = if file.initial.files().into_iter().flatten().any(|(_, name)| name.is_some()) {
+        [4.0, 8.0]
+    } else {
+        [0.0; 2]
+    };
+    [
+        3.0 + own + state,
+        stepped + begun + of_sheets + 2.0 * needs.columns as f64,
+    ]
 }
 
 /// Numbers of each block of the whole lattice while the load of textured blocks is shared among those near

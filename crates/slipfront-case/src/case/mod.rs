@@ -9,6 +9,7 @@ mod drive;
 mod few_blocks;
 mod files;
 mod groups;
+mod initial;
 mod inputs;
 mod lengths;
 mod model;

@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use slipfront::scales::damping;
 use slipfront::surface::share_load;
-use slipfront::{Communicator, Lattice, Model, Surface, SurfaceError};
+use slipfront::{Communicator, Lattice, Model, State, Surface, SurfaceError};
 
 use super::coefficients::{coefficients, contact, sharing_distance};
 use super::derived::Derived;
 use super::drive::{attach, attached, drive};
 use super::files::Watch;
+use super::initial;
 use super::inputs::{Inputs, NamedFiles};
 use super::ranks::Ranks;
 use super::shear;
@@ -35,7 +36,7 @@ pub struct TextureReport {
 }
 
 /// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps
-/// begin. Files that have changed while they were read are refused.
+/// begin, and the state in which a run begins, unless it is at rest. Files that have changed while they were read are refused.
 pub(super) fn make(
     file: &CaseFile,
     derived: &Derived,
@@ -43,7 +44,7 @@ pub(super) fn make(
     (named, inputs): (&NamedFiles, &Inputs),
     watch: &mut Watch,
     ranks: &Ranks,
-) -> Result<(Model, TextureReport), CaseError> {
+) -> Result<(Model, TextureReport, Option<State>), CaseError> {
     let (scales, groups) = (&derived.scales, &derived.groups);
     let blocks = ranks.agree_on_rows(GivenBlocks::read(file, &lattice, inputs, watch))?;
     let mut slider = blocks.slider(file, ranks.communicator)?;
@@ -52,9 +53,10 @@ pub(super) fn make(
         let coefficients = coefficients(file, groups, &lattice, inputs, watch)?;
         let contact = contact(file, scales, &lattice, inputs, watch)?;
         let (shear, attached) = (shear::field(file, inputs, watch)?, attached(file, inputs, watch)?);
-        Ok((meshed, coefficients, contact, shear, attached))
+        let state = initial::state(file, scales, (&lattice, &slider), inputs, watch)?;
+        Ok((meshed, coefficients, contact, shear, attached, state))
     });
-    let ((meshed, in_blocks), coefficients, mut contact, shear, attached) = ranks.agree_on_rows(made)?;
+    let ((meshed, in_blocks), coefficients, mut contact, shear, attached, state) = ranks.agree_on_rows(made)?;
     ranks.agree(named.expect_unchanged(file))?;
     attach(&mut slider, file, &lattice, &rows, attached, ranks.communicator)?;
     if let Some(distance) = sharing_distance(file, scales, &lattice)? {
@@ -98,7 +100,7 @@ pub(super) fn make(
     let load = shear::dead_load(file, scales, &model, shear, ranks.communicator);
     let model = model.with_dead_load(load);
     shear::refuse_runaway(file, &model)?;
-    Ok((model, texture))
+    Ok((model, texture, state))
 }
 
 /// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.

@@ -143,9 +143,12 @@ impl Case {
             ("friction.mu_static_field", &file.friction.mu_static_field),
             ("friction.mu_kinetic_field", &file.friction.mu_kinetic_field),
         ];
-        if let Some((key, _)) = fields.iter().find(|(_, field)| field.is_some()) {
+        let initial = file.initial.files().into_iter().flatten();
+        let initial = initial.map(|(key, name)| (format!("initial.{key}"), name));
+        let mut fields = fields.map(|(key, name)| (key.to_owned(), name)).into_iter().chain(initial);
+        if let Some((key, _)) = fields.find(|(_, field)| field.is_some()) {
             return Err(file.source.error(
-                key,
+                &key,
                 format!("`{key}` has a value for each block of this case, and none for others: leave it out, or give a slope or a length in its place"),
             ));
         }

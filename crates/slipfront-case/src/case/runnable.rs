@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::surface::{CorrelatedField, Texture};
-use slipfront::{Communicator, Lattice, Model, Scales};
+use slipfront::{Communicator, Lattice, Model, Scales, State};
 
 use super::budget::Budget;
 use super::coefficients::correlated_field;
@@ -40,6 +40,8 @@ pub struct Case {
     /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of
     /// several.
     pub model: Arc<Model>,
+    /// State of these rows in which a run begins; none if it begins at rest.
+    pub initial: Option<Arc<State>>,
     /// Estimates of the run before it begins.
     pub expected: Expected,
     /// Texture as asked and as meshed.
@@ -204,7 +206,7 @@ impl Case {
             },
         };
 
-        let (model, texture) =
+        let (model, texture, initial) =
             model::make(&file, &derived, (lattice, rows), (&named, &inputs), watch, &ranks)?;
         let Derived {
             scales,
@@ -228,6 +230,7 @@ impl Case {
             groups,
             expected: Expected::of(&file, &scales, &model, ranks.communicator),
             model: Arc::new(model),
+            initial: initial.map(Arc::new),
             texture,
             time_plan,
             output,
@@ -256,6 +259,11 @@ impl Case {
     /// The field whose means over blocks are the random coefficients; none if every block draws its own.
     pub fn correlated_field(&self) -> Option<CorrelatedField> {
         correlated_field(&self.file, &self.model.lattice)
+    }
+
+    /// The state in which a run begins; none if it begins at rest.
+    pub fn state(&self) -> Option<State> {
+        self.initial.as_deref().cloned()
     }
 
     /// Largest number of steps times blocks, without the steps in which a held drive stands.

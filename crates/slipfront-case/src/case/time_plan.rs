@@ -145,8 +145,8 @@ impl TimePlan {
 /// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some
 /// blocks touch and bear f times the load, the onset comes before their own drive springs bear it all, at
 /// f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic window begins,
-/// which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly and
-/// adhesion delay the onset; under a program of speeds it is counted from the last of them.
+/// which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly,
+/// adhesion, and a dead load against the drive delay the onset; under a program of speeds it is counted from the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -159,14 +159,13 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
         8.0,
         load_factor(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
     );
-    let path = path * delay(file, scales) + path_against_load(model);
-    last.unwrap_or(0.0) + path / model.loading_speed()
+    last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales) + time_against_load(model)
 }
 
-/// Path of the drive by which a dead load against it delays the onset.
-fn path_against_load(model: &Model) -> f64 {
+/// Time by which a dead load against the drive delays the onset.
+fn time_against_load(model: &Model) -> f64 {
     let [along, _] = model.mean_dead_load();
-    (-along).max(0.0) / K_DRIVE
+    (-along).max(0.0) / K_DRIVE / model.loading_speed()
 }
 
 /// Factor by which adhesion delays the onset.
@@ -182,7 +181,7 @@ pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) ->
         2.0 * ONSET_PATH,
         load_factor(file, model).unwrap_or(1.0) / K_DRIVE,
     );
-    (path * delay(file, scales) + path_against_load(model)) / model.loading_speed()
+    path / model.loading_speed() * delay(file, scales) + time_against_load(model)
 }
 
 /// The window of kinetic friction under a drive that is held, and its loading: the largest mu* before the

@@ -91,6 +91,7 @@ impl Case {
             && load.profile.is_none()
             && load.pressure_field.is_none()
             && !model.dead_load().acts()
+            && self.initial.is_none()
             && *model.slider() == Slider::default()
             && model.sheets().is_empty()
             && model.drive.program.is_none()

@@ -12,6 +12,7 @@ use super::diagnose::syntax_error;
 use super::drive::{Attached, Drive};
 use super::error::CaseError;
 use super::friction::Friction;
+use super::initial::Initial;
 use super::key_table::keys_of;
 use super::keys;
 use super::load::read_text;
@@ -53,6 +54,9 @@ pub struct CaseFile {
     /// `[[texture]]`: the parts of the surface that do not touch; a block inside any of them is textured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub texture: Vec<Texture>,
+    /// `[initial]`: the state at the start.
+    #[serde(skip_serializing_if = "Initial::is_empty")]
+    pub initial: Initial,
     /// `[time]`: duration, step, end and averaging window.
     pub time: Time,
     /// `[output]`: the results that are written.
@@ -111,6 +115,10 @@ impl CaseFile {
             ("load.shear_field", &mut self.load.shear_field),
             ("friction.mu_static_field", &mut self.friction.mu_static_field),
             ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
+            ("initial.displacement_x", &mut self.initial.displacement_x),
+            ("initial.displacement_y", &mut self.initial.displacement_y),
+            ("initial.velocity_x", &mut self.initial.velocity_x),
+            ("initial.velocity_y", &mut self.initial.velocity_y),
         ];
         let fields = fields.into_iter();
         let attached = match &mut self.drive.attached {
@@ -145,6 +153,7 @@ impl CaseFile {
             let path = format!("texture.{index}");
             texture.check(&Check::new(&self.source, keys_of(texture.shape.name()), &path))?;
         }
+        self.initial.check(&check("initial"), body, contact)?;
         self.time.check(&check("time"), &self.drive.speed)?;
         self.output.check(&check("output"))
     }
@@ -341,6 +350,7 @@ impl<'t> ParsedCase<'t> {
             drive: table!(drive, tables.read("drive")?),
             friction: table!(friction, tables.read("friction")?),
             texture: table!(texture, tables.read_textures()?),
+            initial: table!(initial, tables.read("initial")?),
             time: table!(time, tables.read("time")?),
             output: table!(output, tables.read("output")?),
             source: Source::default(),

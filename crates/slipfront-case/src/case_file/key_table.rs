@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::drive::Drive;
 use super::friction::Friction;
+use super::initial::Initial;
 use super::key::{Key, KeyKind, StarUnit, Title};
 use super::motion::Load;
 use super::output::Output;
@@ -96,11 +97,12 @@ pub(super) fn fill_in_all(table: &mut DeTable<'_>, keys: &[Key]) {
 pub(super) const TEXTURE: &str = "texture";
 
 /// The sections that are tables.
-const TABLES: [Section; 6] = [
+const TABLES: [Section; 7] = [
     section(false, "slider", Slider::KEYS),
     section(false, "load", Load::KEYS),
     section(false, "drive", Drive::KEYS),
     section(false, "friction", Friction::KEYS),
+    section(false, "initial", Initial::KEYS),
     section(false, "time", Time::KEYS),
     section(false, "output", Output::KEYS),
 ];

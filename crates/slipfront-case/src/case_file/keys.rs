@@ -16,7 +16,9 @@ const MAX_NAME: usize = 100;
 const MIN_PART: usize = 4;
 
 /// The names of the tables, in the order of the design.
-pub const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture", "time", "output"];
+pub const TABLES: [&str; 8] = [
+    "slider", "load", "drive", "friction", "texture", "initial", "time", "output",
+];
 
 /// The names of the tables of a study file.
 pub const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];

@@ -11,6 +11,7 @@ mod drive;
 mod error;
 mod file;
 mod friction;
+mod initial;
 mod key;
 mod key_rows;
 mod key_table;
@@ -39,6 +40,7 @@ pub use drive::{Attached, AutoOrStiffness, Drive, DriveSpeed, DriveStiffness, Sp
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
 pub use friction::*;
+pub use initial::Initial;
 pub use key::{Bounds, Key, KeyKind, StarUnit, Title, key, whole};
 pub(crate) use key_table::star_unit;
 pub use key_table::{SECTIONS, Section, names_a_file, title_of};

@@ -56,6 +56,9 @@ fn loading(case: &Case) -> (String, Option<String>) {
 }
 
 fn onset(case: &Case) -> String {
+    if case.initial.is_some() {
+        return "onset             not known before: blocks begin displaced or in motion\n".to_owned();
+    }
     let late = |star: f64| {
         if star > case.time_plan.end_star() {
             ", after the end of the run: lengthen `time.duration_star`"

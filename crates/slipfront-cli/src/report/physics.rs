@@ -139,7 +139,25 @@ fn load(case: &Case) -> String {
             with_si_prefix(distance, "m")
         )
     });
-    format!("P = {pressure}, strain {:.2e}{within}", case.strain_of_load())
+    format!(
+        "P = {pressure}, strain {:.2e}{within}{}",
+        case.strain_of_load(),
+        shear(case)
+    )
+}
+
+/// The dead shear load, and what it takes of static friction.
+fn shear(case: &Case) -> String {
+    let [along, _] = case.model.mean_dead_load();
+    let share = case.share_of_shear().map_or(String::new(), |share| {
+        format!(", {} % of what the blocks hold at rest", four_digits(100.0 * share))
+    });
+    if case.model.dead_load().acts() {
+        let stress = with_si_prefix(along * case.scales.stress(), "Pa");
+        format!(", shear {stress} (mu* = {}{share})", four_digits(along))
+    } else {
+        String::new()
+    }
 }
 
 fn drive(case: &Case) -> String {

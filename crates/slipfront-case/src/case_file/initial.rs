@@ -1,0 +1,106 @@
+//! `[initial]`: the state in which a run begins.
+
+use serde::{Deserialize, Serialize};
+
+use super::check::Check;
+use super::error::CaseError;
+use super::friction::ContactModel;
+use super::key::{ARRAY, above, key, quantity};
+use super::words::Body;
+use crate::key_rows;
+use crate::quantity::{Length, Speed};
+
+key_rows! {
+    /// `[initial]`: displacements and velocities at the start, where the blocks do not begin at rest at their
+    /// rest sites.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Initial {
+        /// Displacements along x at t = 0, block by block.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub displacement_x: Option<String> = key("", ARRAY).without("0"),
+        /// Displacements along y at t = 0, block by block.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub displacement_y: Option<String> = key("", ARRAY).without("0"),
+        /// Displacement that a value of 1 in these files means.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub displacement_unit: Option<Length> = key("", quantity("m", above(0.0, 1e9)))
+            .without("that of u\\*, P mu_s l^2/(E h)"),
+        /// Velocities along x half a step before t = 0, block by block.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub velocity_x: Option<String> = key("", ARRAY).without("0"),
+        /// Velocities along y half a step before t = 0, block by block.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub velocity_y: Option<String> = key("", ARRAY).without("0"),
+        /// Velocity that a value of 1 in these files means.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub velocity_unit: Option<Speed> = key("", quantity("m/s", above(0.0, 1e9)))
+            .without("that of V\\*, P mu_s l/(h sqrt(E rho))"),
+    }
+}
+
+impl Initial {
+    /// Whether no key is given.
+    pub(super) fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The files of displacements and of velocities, along x and y, with their keys.
+    pub(crate) fn files(&self) -> [[(&'static str, &Option<String>); 2]; 2] {
+        [
+            [
+                ("displacement_x", &self.displacement_x),
+                ("displacement_y", &self.displacement_y),
+            ],
+            [
+                ("velocity_x", &self.velocity_x),
+                ("velocity_y", &self.velocity_y),
+            ],
+        ]
+    }
+
+    pub(super) fn check(
+        &self,
+        check: &Check,
+        body: Body,
+        contact: ContactModel,
+    ) -> Result<(), CaseError> {
+        check.value("displacement_unit", &self.displacement_unit)?;
+        check.value("velocity_unit", &self.velocity_unit)?;
+        let units = [
+            ("displacement_unit", self.displacement_unit.is_some()),
+            ("velocity_unit", self.velocity_unit.is_some()),
+        ];
+        for (files, (unit, has_unit)) in self.files().into_iter().zip(units) {
+            for (key, name) in files {
+                check.value(key, name)?;
+            }
+            if has_unit && files.iter().all(|(_, name)| name.is_none()) {
+                let [(x, _), (y, _)] = files;
+                return check.refuse(unit, |key| {
+                    format!("`{key}` is not read: it belongs to `initial.{x}` and `initial.{y}`; give one of them, or leave it out")
+                });
+            }
+        }
+        let [displacements, _] = self.files();
+        let all = self.files().into_iter().flatten();
+        let given = |files: &mut dyn Iterator<Item = (&'static str, &Option<String>)>| {
+            files.find(|(_, name)| name.is_some()).map(|(key, _)| key)
+        };
+        if body == Body::Bulk
+            && let Some(key) = given(&mut all.into_iter())
+        {
+            return check.refuse(key, |key| {
+                format!("`{key}` does not go with `slider.body` = \"bulk\": the sheets above the contact would be left behind; leave it out, or take \"sheet\"")
+            });
+        }
+        if contact == ContactModel::Springs
+            && let Some(key) = given(&mut displacements.into_iter())
+        {
+            return check.refuse(key, |key| {
+                format!("`{key}` does not go with `friction.contact` = \"springs\": where the springs of displaced blocks are attached is not known; leave it out, or take \"rigid\"")
+            });
+        }
+        Ok(())
+    }
+}
