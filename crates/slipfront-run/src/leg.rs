@@ -107,36 +107,14 @@ impl Running {
         }
 
         let steps = self.snapshot().step + 1;
-        let dt_star = before.time_plan.dt_star;
-        let time_star = steps as f64 * dt_star;
-        let path = self.snapshot().next_path();
+        let time_star = steps as f64 * before.time_plan.dt_star;
         let unit = before.scales.displacement();
         let per_displacement = unit / case.scales.displacement();
         let per_speed = before.scales.speed() / case.scales.speed();
-        let State {
-            mut displacement,
-            mut velocity,
-        } = self.motion();
-        let mut drive = VectorField::zeros(displacement.x.len());
-        for b in 0..displacement.x.len() {
-            let [along_x, along_y] = old.drive.direction_at(&old.lattice, b);
-            (drive.x[b], drive.y[b]) = (along_x * path, along_y * path);
+        let (state, mut drive) = self.end_of_step([per_displacement, per_speed]);
+        for x in drive.x.iter_mut().chain(&mut drive.y) {
+            *x *= unit;
         }
-        let axes = [
-            (&mut displacement.x, &mut velocity.x, &mut drive.x),
-            (&mut displacement.y, &mut velocity.y, &mut drive.y),
-        ];
-        for (displacement, velocity, drive) in axes {
-            for ((u, v), x) in displacement.iter_mut().zip(velocity).zip(drive) {
-                *u = (*u + dt_star * *v - *x) * per_displacement;
-                *v *= per_speed;
-                *x *= unit;
-            }
-        }
-        let state = State {
-            displacement,
-            velocity,
-        };
         if !state.is_finite() {
             return Err(ChangeError::NotFinite);
         }
@@ -147,6 +125,50 @@ impl Running {
             time_s: time_star * before.scales.time(),
             drive_m: drive,
         })
+    }
+
+    /// State of the blocks of these rows in which another run can go on, in metres and metres per second: that
+    /// at the end of the step that has begun, with displacements that count from the driven ends.
+    pub(crate) fn final_state(&self) -> State {
+        let scales = &self.case().scales;
+        let (mut state, _) = self.end_of_step([scales.displacement(), scales.speed()]);
+        let slider = self.case().model.slider();
+        for b in (0..state.displacement.x.len()).filter(|&b| !slider.exists(b)) {
+            (state.displacement.x[b], state.displacement.y[b]) = (0.0, 0.0);
+        }
+        state
+    }
+
+    /// State at the end of the step that has begun, with displacements that count from the driven ends, times
+    /// factors for displacements and velocities; and the displacements of these ends in units of this run.
+    fn end_of_step(&self, [per_displacement, per_speed]: [f64; 2]) -> (State, VectorField) {
+        let (model, dt_star) = (&self.case().model, self.case().time_plan.dt_star);
+        let path = self.snapshot().next_path();
+        let State {
+            mut displacement,
+            mut velocity,
+        } = self.motion();
+        let mut drive = VectorField::zeros(displacement.x.len());
+        let first = model.lattice.blocks_of(&model.rows).start;
+        for b in 0..displacement.x.len() {
+            let [along_x, along_y] = model.drive.direction_at(&model.lattice, first + b);
+            (drive.x[b], drive.y[b]) = (along_x * path, along_y * path);
+        }
+        let axes = [
+            (&mut displacement.x, &mut velocity.x, &drive.x),
+            (&mut displacement.y, &mut velocity.y, &drive.y),
+        ];
+        for (displacement, velocity, drive) in axes {
+            for ((u, v), x) in displacement.iter_mut().zip(velocity).zip(drive) {
+                *u = (*u + dt_star * *v - *x) * per_displacement;
+                *v *= per_speed;
+            }
+        }
+        let state = State {
+            displacement,
+            velocity,
+        };
+        (state, drive)
     }
 
     /// Takes the step that has begun to its end, where a leg after this one begins, also after the last step

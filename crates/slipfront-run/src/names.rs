@@ -12,6 +12,8 @@ pub const SERIES: &str = "series.csv";
 pub const KYMOGRAPH: &str = "kymograph.nc";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
+/// The last state of a run, if the case asks for it.
+pub const STATE: &str = "state.npy";
 /// The movie of a run, if the case asks for it.
 pub const MOVIE: &str = "movie.gif";
 /// The description of runs for data repositories, which `slipfront export` writes.

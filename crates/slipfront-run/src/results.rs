@@ -13,20 +13,47 @@ use tempfile::TempPath;
 
 use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields};
-use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, SUMMARY};
+use crate::final_state;
+use crate::folder_error::FolderError;
+use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, STATE, SUMMARY};
 use crate::run_folder::RunFolder;
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::RunData;
 use crate::series::{self, SeriesRow};
+use crate::shared_file::write_shared;
 
 /// Writes the results of a run on one rank to its folder, where the case stands already: the tables, then the
-/// fields, which are moved out of the data. Pictures and the manifest follow.
+/// numbers of blocks, which are moved out of the data. Pictures and the manifest follow.
 pub fn write(case: &Case, data: &mut RunData, folder: &mut RunFolder) -> Result<(), ResultsError> {
     write_tables(case, data, folder)?;
-    match write_fields(case, data, folder.path(), &Alone)? {
-        Some(fields) => Ok(folder.place(FIELDS, fields)?),
-        None => Ok(()),
+    for (name, file) in write_blocks(case, data, folder.path(), &Alone)? {
+        folder.place(name, file)?;
     }
+    Ok(())
+}
+
+/// Writes the files that have numbers of every block to temporary files of the run in folder `out`, each rank
+/// its own rows: the fields, and the last state if the case asks for it, which are moved out of the data. The
+/// first rank has the files, each with the name that it is to take.
+pub fn write_blocks(
+    case: &Case,
+    data: &mut RunData,
+    out: &Path,
+    communicator: &dyn Communicator,
+) -> Result<Vec<(&'static str, TempPath)>, ResultsError> {
+    let fields = write_fields(case, data, out, communicator)?.map(|file| (FIELDS, file));
+    let mut files: Vec<_> = fields.into_iter().collect();
+    if let Some(state) = data.final_state.take() {
+        let file = write_shared(
+            &Unfinished::of(out).temporary(),
+            communicator,
+            |output| final_state::create(case, output),
+            |output| final_state::write_rows(case, &state, output),
+        );
+        let file = file.map_err(FolderError::write(&out.join(STATE)))?;
+        files.extend(file.map(|file| (STATE, file)));
+    }
+    Ok(files)
 }
 
 /// Summary, series, kymograph and events, the first results of a run, by one of its ranks.
@@ -80,6 +107,13 @@ pub fn in_memory(case: &Case, data: &mut RunData) -> Result<Vec<(String, Vec<u8>
         Ok(bytes.into_inner())
     })?;
     files.push((FIELDS.to_owned(), fields));
+    if let Some(state) = data.final_state.take() {
+        let mut bytes = Cursor::new(Vec::new());
+        let written = final_state::create(case, &mut bytes)
+            .and_then(|()| final_state::write_rows(case, &state, &mut bytes));
+        written.map_err(FolderError::write(Path::new(STATE)))?;
+        files.push((STATE.to_owned(), bytes.into_inner()));
+    }
     Ok(files)
 }
 
@@ -113,7 +147,7 @@ fn surface_of(case: &Case) -> (Cow<'_, [bool]>, [Cow<'_, [f64]>; 2]) {
     )
 }
 
-/// The content of the [fields file](write_fields) of a run on one rank.
+/// The content of the [fields file](write_blocks) of a run on one rank.
 pub fn fields_of(case: &Case, data: &RunData) -> FieldsData {
     let lattice = &case.model.lattice;
     let (textured, [mu_static, mu_kinetic]) = surface_of(case);
@@ -140,7 +174,7 @@ pub fn fields_of(case: &Case, data: &RunData) -> FieldsData {
 
 /// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one
 /// has the file. The fields are moved out of the data.
-pub fn write_fields(
+fn write_fields(
     case: &Case,
     data: &mut RunData,
     out: &Path,

@@ -93,7 +93,12 @@ pub fn run_curve_unless(
     let steps = steps_to(case, along, end);
     let stop = Stop::at_step(steps);
     let dt_star = case.time_plan.dt_star;
-    let mut simulation = Simulation::new(Arc::clone(&case.model), dt_star, case.state(), Execution::default());
+    let mut simulation = Simulation::new(
+        Arc::clone(&case.model),
+        dt_star,
+        case.state(),
+        Execution::default(),
+    );
     let mut tracing = Tracing::of_steps(steps);
     while !ends() {
         let mut observers = [Scheduled::always(&mut tracing)];

@@ -39,7 +39,12 @@ pub fn run_summary(case: &Case) -> Result<Summary, RunError> {
 /// Runs a case as [`run_summary`] does until `ends` returns true; none if it was given up.
 pub fn run_summary_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Summary, RunError>> {
     let plan = &case.time_plan;
-    let mut simulation = Simulation::new(Arc::clone(&case.model), plan.dt_star, case.state(), Execution::default());
+    let mut simulation = Simulation::new(
+        Arc::clone(&case.model),
+        plan.dt_star,
+        case.state(),
+        Execution::default(),
+    );
     let mut numbers = SummaryObservers::without_curve(case);
     let mut instants = instants_of(case, Vec::new());
     while !ends() {

@@ -34,6 +34,8 @@ pub struct RunData {
     pub first_slip_time_star: Vec<f64>,
     /// Largest contact stress tau_c^max, in units of `P mu_s`.
     pub contact_stress_max: f64,
+    /// The last state, in which another case can begin, in m and m/s, if the case asks for it.
+    pub final_state: Option<State>,
 }
 
 /// Fewest blocks for which a thread is worth its share in keeping step with the others.
@@ -466,6 +468,7 @@ impl Running {
 
     /// All results of the run, once it has ended. All ranks must call this together.
     pub fn record(self, reason: StopReason) -> RunData {
+        let final_state = self.case.output.final_state.then(|| self.final_state());
         let (case, simulation) = (self.case, self.simulation);
         let Observers {
             summary,
@@ -492,6 +495,7 @@ impl Running {
             frames: lettered(instants, frames),
             contact_stress_max,
             first_slip_time_star,
+            final_state,
         }
     }
 }

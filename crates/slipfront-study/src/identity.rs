@@ -12,7 +12,7 @@ pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
 /// A base of points, with hashes of the tables that they leave unchanged.
 pub(crate) struct Prepared<'a> {
     pub(crate) case: ParsedCase<'a>,
-    texts: Option<[Vec<u8>; 6]>,
+    texts: Option<[Vec<u8>; 7]>,
 }
 
 impl<'a> Prepared<'a> {
@@ -25,7 +25,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// The case of the base, with the hashes of its tables.
-    pub(crate) fn known(&self) -> Option<(&CaseFile, &[Vec<u8>; 6])> {
+    pub(crate) fn known(&self) -> Option<(&CaseFile, &[Vec<u8>; 7])> {
         self.case.plain().zip(self.texts.as_ref())
     }
 }
@@ -33,7 +33,7 @@ impl<'a> Prepared<'a> {
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its
 /// files and the program; not the names of files, nor the output. Tables that equal those of a `known` case
 /// are not hashed again.
-pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result<blake3::Hash, CaseError> {
+pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 7])>) -> Result<blake3::Hash, CaseError> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(program::this_build().as_bytes());
     // This crate makes the recorded numbers of what a run leaves.
@@ -51,8 +51,8 @@ pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result
 fn texts(
     file: &CaseFile,
     inputs: &[Input],
-    known: Option<(&CaseFile, &[Vec<u8>; 6])>,
-) -> Result<[Vec<u8>; 6], CaseError> {
+    known: Option<(&CaseFile, &[Vec<u8>; 7])>,
+) -> Result<[Vec<u8>; 7], CaseError> {
     fn text<T: Serialize + PartialEq>(
         table: &T,
         known: Option<(&T, &Vec<u8>)>,
@@ -75,6 +75,7 @@ fn texts(
         drive: file.drive.clone(),
         friction: file.friction.clone(),
         texture: file.texture.clone(),
+        initial: file.initial.clone(),
         time: file.time.clone(),
         output: file.output.clone(),
         source: Source::default(),
@@ -90,6 +91,7 @@ fn texts(
         text(&hashed.drive, None)?,
         text(&hashed.friction, None)?,
         text(&hashed.texture, None)?,
-        text(&hashed.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,
+        text(&hashed.initial, None)?,
+        text(&hashed.time, known.map(|(file, texts)| (&file.time, &texts[6])))?,
     ])
 }

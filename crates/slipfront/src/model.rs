@@ -127,7 +127,10 @@ impl Model {
     pub fn with_dead_load(self, dead_load: DeadLoad) -> Self {
         if let Some(field) = &dead_load.field {
             let (forces, blocks) = (field.relative.len(), self.surface.n_blocks());
-            assert_eq!(forces, blocks, "there are {forces} forces for {blocks} blocks: give one each");
+            assert_eq!(
+                forces, blocks,
+                "there are {forces} forces for {blocks} blocks: give one each"
+            );
             assert!(self.sheets.is_empty(), "forces on a stack of sheets are alike");
         }
         assert!(
@@ -183,7 +186,8 @@ impl Model {
     pub fn mean_dead_load(&self) -> [f64; 2] {
         let n_blocks = self.n_blocks() as f64;
         let sum = self.dead_load.field.as_ref().map_or(n_blocks, |field| field.sum);
-        self.along_and_across(self.dead_load.force).map(|force| force * (sum / n_blocks))
+        self.along_and_across(self.dead_load.force)
+            .map(|force| force * (sum / n_blocks))
     }
 
     /// Components of a vector along the direction of a drive that does not rotate, and to the left of it.
@@ -457,7 +461,8 @@ impl Model {
     /// Dead load on block `b` along the drive and to the left of it.
     fn dead_load_on(&self, b: usize) -> [f64; 2] {
         let relative = self.dead_load.relative(b);
-        self.along_and_across(self.dead_load.force).map(|force| relative * force)
+        self.along_and_across(self.dead_load.force)
+            .map(|force| relative * force)
     }
 
     /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction (D12).

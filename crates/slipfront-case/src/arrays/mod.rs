@@ -24,7 +24,7 @@ use std::path::Path;
 pub use error::{ArrayError, extension};
 pub use height_map::{HeightMap, HeightMapUnits, Preparation, Room, Roughness, height_map};
 pub use mask::{mask_png, png_of_mask};
-pub use npy::{mask_npy, npy_of_mask};
+pub use npy::{head_of_state, mask_npy, npy_of_mask, state_npy};
 pub use slab::Slab;
 
 use error::{contents_error, unknown_extension};

@@ -32,6 +32,49 @@ pub fn mask_npy(
     Ok(values.iter().map(|value| *value == 1.0).collect())
 }
 
+/// Reads the last state of a run for some rows from a `.npy` file called `path`, of shape (4, ny, nx): the
+/// displacements of each block along x and y, and its velocities along both.
+///
+/// # Errors
+/// If the file is not a `.npy` file, of another shape or memory order, or has a value that is not finite.
+pub fn state_npy(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    slab: &Slab,
+) -> Result<[Vec<f64>; 4], ArrayError> {
+    let Slab { nx, ny, ref rows } = *slab;
+    let mut array = NpyArray::open(path, source, |shape| {
+        if shape == [4, ny as u64, nx as u64] {
+            Ok([4 * ny, nx])
+        } else {
+            let problem = format!(
+                "has the shape {} where the last state of a run of {nx} x {ny} blocks has (4, {ny}, {nx}); name `state.npy` of a run \
+                 with `output.final_state` and these blocks",
+                in_brackets(shape)
+            );
+            Err(contents_error(path, problem))
+        }
+    })?;
+    if array.fortran_order {
+        let problem = "has the first axis fastest; save the array with `np.ascontiguousarray`".to_owned();
+        return Err(contents_error(path, problem));
+    }
+    let mut found = [(); 4].map(|()| vec![0.0; slab.n_blocks()]);
+    for (layer, values) in found.iter_mut().enumerate() {
+        array.read((layer * ny + rows.start) * nx, values)?;
+        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+            let place = [rows.start + at / nx, at % nx];
+            return Err(value_error(
+                path,
+                &values[at].to_string(),
+                place,
+                "a finite number",
+            ));
+        }
+    }
+    Ok(found)
+}
+
 /// The rows of a slab of an array of shape (ny, nx), in row-major order.
 pub(super) fn values(
     path: &Path,
@@ -187,17 +230,29 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
 /// The bytes of a `.npy` file of the shape (ny, nx) that holds a mask of rows of `nx` blocks, the smallest y
 /// first. [`mask_npy`] gives it back.
 pub fn npy_of_mask(nx: usize, textured: &[bool]) -> Vec<u8> {
-    const BEFORE_HEADER: usize = 10;
     let ny = textured.len() / nx.max(1);
-    let mut header = format!("{{'descr': '|b1', 'fortran_order': False, 'shape': ({ny}, {nx}), }}");
+    let data = textured.iter().map(|&is_textured| u8::from(is_textured));
+    head("|b1", &[ny, nx]).into_iter().chain(data).collect()
+}
+
+/// The bytes before the numbers in a `.npy` file that holds the last state of `nx` x `ny` blocks: four layers
+/// of 64-bit numbers, which [`state_npy`] gives back.
+pub fn head_of_state(nx: usize, ny: usize) -> Vec<u8> {
+    head("<f8", &[4, ny, nx])
+}
+
+/// The bytes before the numbers in a `.npy` file of this type and shape.
+fn head(descr: &str, shape: &[usize]) -> Vec<u8> {
+    const BEFORE_HEADER: usize = 10;
+    let sizes: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    let sizes = sizes.join(", ");
+    let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({sizes}), }}");
     // Numpy begins the data at a multiple of 64 bytes, after a line break.
     let blanks = 63 - (BEFORE_HEADER + header.len()) % 64;
     header.extend(std::iter::repeat_n(' ', blanks));
     header.push('\n');
     let length = (header.len() as u16).to_le_bytes();
-    let data = textured.iter().map(|&is_textured| u8::from(is_textured));
-    let head = [&b"\x93NUMPY\x01\x00"[..], &length, header.as_bytes()].concat();
-    head.into_iter().chain(data).collect()
+    [&b"\x93NUMPY\x01\x00"[..], &length, header.as_bytes()].concat()
 }
 
 /// Reads the header from the first bytes of a file; returns it with the number of bytes before the data.
@@ -227,16 +282,20 @@ fn read_header<'a>(head: &'a [u8], path: &Path) -> Result<(NpyHeader<'a>, usize)
 }
 
 fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
-    let sizes: Vec<String> = found.iter().map(u64::to_string).collect();
     let remedy = if found == [nx as u64, ny as u64] {
         "transpose the array before saving it"
     } else {
         "save one value per block, or change `blocks`"
     };
-    let sizes = sizes.join(", ");
-    let problem =
-        format!("has the shape ({sizes}) where ({ny}, {nx}), that is (ny, nx), is wanted; {remedy}");
+    let sizes = in_brackets(found);
+    let problem = format!("has the shape {sizes} where ({ny}, {nx}), that is (ny, nx), is wanted; {remedy}");
     contents_error(path, problem)
+}
+
+/// A shape as numpy prints it.
+fn in_brackets(shape: &[u64]) -> String {
+    let sizes: Vec<String> = shape.iter().map(u64::to_string).collect();
+    format!("({})", sizes.join(", "))
 }
 
 /// Type of the stored numbers.

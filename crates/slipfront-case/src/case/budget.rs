@@ -82,6 +82,8 @@ pub struct Budget {
     kymograph: f64,
     /// Pictures of the movie.
     movie: f64,
+    /// Bytes of each block in the file of the last state.
+    state: f64,
     /// Bytes of the files that the case reads.
     inputs: f64,
 }
@@ -194,6 +196,7 @@ impl Budget {
             },
             kymograph: Kymograph::max_counts(lattice, most_steps) as f64,
             movie: if output.movie { frames } else { 0.0 },
+            state: if output.final_state { 4.0 * NUMBER } else { 0.0 },
             inputs: inputs.iter().map(|input| input.length as f64).sum(),
             ..self
         }
@@ -211,8 +214,9 @@ impl Budget {
                     remedy: "lower `slider.blocks`",
                 },
                 bytes: [
-                    self.blocks * NUMBER * self.numbers[1] * self.bands,
-                    26.0 * all_cells,
+                    // With the displacements of the driven ends, from which the last ones count.
+                    self.blocks * (NUMBER * self.numbers[1] * self.bands + 1.5 * self.state),
+                    26.0 * all_cells + self.state * self.all_blocks,
                     self.all_blocks * NUMBER * self.columns,
                 ],
             },
@@ -539,7 +543,9 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     let own = 2.0 * many(&varies) + 2.0 * many(&[has_outline, has_pressures]);
     let blocks_differ = own > 0.0;
     let (stepped, of_sheet) = match kernel(file, friction) {
-        Kernel::Fused if varies.contains(&true) || needs.varies => (22.0 + 2.0 * many(&varies[3..]), FUSED_NUMBERS_OF_SHEET),
+        Kernel::Fused if varies.contains(&true) || needs.varies => {
+            (22.0 + 2.0 * many(&varies[3..]), FUSED_NUMBERS_OF_SHEET)
+        }
         Kernel::Fused => (10.0 + own, FUSED_NUMBERS_OF_SHEET),
         Kernel::General => {
             let differing = if blocks_differ { 9.0 } else { 0.0 };
@@ -549,10 +555,10 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     };
     let of_sheets = of_sheet * file.slider.n_sheets_above() as f64;
     // Beside the state of the case stands a copy of it while a kernel is made.
-    let [state, begun] = if file.initial.files().into_iter().flatten().any(|(_, name)| name.is_some()) {
-        [4.0, 8.0]
-    } else {
+    let [state, begun] = if file.initial.is_at_rest() {
         [0.0; 2]
+    } else {
+        [4.0, 8.0]
     };
     [
         3.0 + own + state,

@@ -12,59 +12,97 @@ use slipfront_base::number_format::four_digits;
 pub(super) fn state(
     file: &CaseFile,
     scales: &Scales,
-    (lattice, slider): (&Lattice, &Slider),
+    blocks: (&Lattice, &Slider),
     inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<Option<State>, CaseError> {
-    let initial = &file.initial;
-    let [displacements, velocities] = initial.files();
-    if displacements.iter().chain(&velocities).all(|(_, name)| name.is_none()) {
+    if file.initial.is_at_rest() {
         return Ok(None);
     }
-    let unit = initial.displacement_unit.as_ref();
-    let per_displacement = unit.map_or(1.0, |unit| unit.si() / scales.displacement());
-    let unit = initial.velocity_unit.as_ref();
-    let per_velocity = unit.map_or(1.0, |unit| unit.si() / scales.speed());
     let mut state = State::at_rest(inputs.slab.n_blocks());
-    let first = inputs.slab.rows.start * lattice.nx;
     let State {
         displacement: u,
         velocity: v,
     } = &mut state;
-    for ((key, name), values, factor) in [
-        (displacements[0], &mut u.x, per_displacement),
-        (displacements[1], &mut u.y, per_displacement),
-        (velocities[0], &mut v.x, per_velocity),
-        (velocities[1], &mut v.y, per_velocity),
-    ] {
-        let key = format!("initial.{key}");
-        let Some(mut given) = inputs.read_signed_field(file, &key, name, watch)? else {
-            continue;
-        };
+    let components = [&mut u.x, &mut u.y, &mut v.x, &mut v.y];
+    let given = given(file, inputs, watch)?;
+    for ((number, (key, mut given)), values) in given.into_iter().enumerate().zip(components) {
+        let is_velocity = number >= 2;
+        let factor = over_units_of_model(file, scales)[usize::from(is_velocity)];
         given.iter_mut().for_each(|value| *value *= factor);
-        let refuse = |is_wrong: &dyn Fn(usize) -> bool, why: &str| {
-            let Some(b) = (0..given.len()).find(|&b| is_wrong(b)) else {
-                return Ok(());
-            };
-            let (i, j) = lattice.column_row(first + b);
-            let sentence = format!("block ({i}, {j}) has {} in units of the model: {why}", four_digits(given[b]));
-            Err(file.source.error(&key, sentence))
-        };
-        refuse(
-            &|b| !given[b].is_finite(),
-            "it must be finite; look at the unit of the file",
-        )?;
-        refuse(
-            &|b| given[b] != 0.0 && !slider.exists(b),
-            "it does not exist, so that it must be 0; look at `slider.outline`",
-        )?;
-        if file.drive.loading == Loading::Held && key.starts_with("initial.velocity") {
-            refuse(
-                &|b| given[b] != 0.0,
-                "a held drive begins over blocks at rest, so that it must be 0; leave velocities out, or take `drive.loading` = \"constant\"",
-            )?;
+        check(file, (&key, &given), is_velocity, blocks, inputs.slab.rows.start)?;
+        if !given.is_empty() {
+            *values = given;
         }
-        *values = given;
     }
     Ok(Some(state))
+}
+
+/// Displacements along x and y and velocities along both as the files have them, each with its key; without
+/// numbers where all are 0.
+fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String, Vec<f64>); 4], CaseError> {
+    if let Some(name) = &file.initial.state {
+        let key = "initial.state";
+        let of_run = inputs.read_state(file, (key, name), watch)?;
+        return Ok(of_run.map(|values| (key.to_owned(), values)));
+    }
+    let [[ux, uy], [vx, vy]] = file.initial.files();
+    let mut read = |(key, name): (&str, &Option<String>)| -> Result<_, CaseError> {
+        let key = format!("initial.{key}");
+        let values = inputs.read_signed_field(file, &key, name, watch)?;
+        Ok((key, values.unwrap_or_default()))
+    };
+    Ok([read(ux)?, read(uy)?, read(vx)?, read(vy)?])
+}
+
+/// What a displacement and a velocity of 1 in the files are in units of the model: the last state of a run is
+/// in metres and metres per second.
+fn over_units_of_model(file: &CaseFile, scales: &Scales) -> [f64; 2] {
+    let (initial, units) = (&file.initial, [scales.displacement(), scales.speed()]);
+    if initial.state.is_some() {
+        return units.map(|unit| 1.0 / unit);
+    }
+    let displacement = initial
+        .displacement_unit
+        .as_ref()
+        .map(|unit| unit.si() / units[0]);
+    let velocity = initial.velocity_unit.as_ref().map(|unit| unit.si() / units[1]);
+    [displacement, velocity].map(|factor| factor.unwrap_or(1.0))
+}
+
+/// Refuses numbers with which no block can begin.
+fn check(
+    file: &CaseFile,
+    (key, values): (&str, &[f64]),
+    is_velocity: bool,
+    (lattice, slider): (&Lattice, &Slider),
+    first_row: usize,
+) -> Result<(), CaseError> {
+    let is_held = is_velocity && file.drive.loading == Loading::Held;
+    let wrong: [(&dyn Fn(usize) -> bool, &str); 3] = [
+        (
+            &|b| !values[b].is_finite(),
+            "it must be finite; look at the unit of the file",
+        ),
+        (
+            &|b| values[b] != 0.0 && !slider.exists(b),
+            "it does not exist, so that it must have 0; look at `slider.outline`",
+        ),
+        (
+            &|b| values[b] != 0.0 && is_held,
+            "a held drive begins over blocks at rest, so that it must have the velocity 0; take `drive.loading` = \"constant\", or begin \
+             without velocities",
+        ),
+    ];
+    for (is_wrong, why) in wrong {
+        if let Some(b) = (0..values.len()).find(|&b| is_wrong(b)) {
+            let (i, j) = lattice.column_row(first_row * lattice.nx + b);
+            let sentence = format!(
+                "block ({i}, {j}) has {} in units of the model: {why}",
+                four_digits(values[b])
+            );
+            return Err(file.source.error(key, sentence));
+        }
+    }
+    Ok(())
 }

@@ -308,6 +308,7 @@ fn open(
     match holds {
         FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
         FileUse::HeightMap => arrays::limit_length_of_height_map(original, length)?,
+        FileUse::State => arrays::limit_length(original, length, nx, 4 * ny)?,
     }
     Ok((opened, length))
 }
@@ -407,6 +408,18 @@ impl Inputs {
             })
         };
         name.as_ref().map(read).transpose()
+    }
+
+    /// Reads the last state of a run from the file of this name, given by `key`.
+    pub(super) fn read_state(
+        &self,
+        file: &CaseFile,
+        (key, name): (&str, &str),
+        watch: &mut Watch,
+    ) -> Result<[Vec<f64>; 4], CaseError> {
+        self.read(file, (key, name), FileUse::State, watch, |path, source| {
+            arrays::state_npy(path, source, &self.slab)
+        })
     }
 
     /// Reads a number of any sign of every block from the file of this name, if the case names one.

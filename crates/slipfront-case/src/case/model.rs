@@ -56,7 +56,8 @@ pub(super) fn make(
         let state = initial::state(file, scales, (&lattice, &slider), inputs, watch)?;
         Ok((meshed, coefficients, contact, shear, attached, state))
     });
-    let ((meshed, in_blocks), coefficients, mut contact, shear, attached, state) = ranks.agree_on_rows(made)?;
+    let ((meshed, in_blocks), coefficients, mut contact, shear, attached, state) =
+        ranks.agree_on_rows(made)?;
     ranks.agree(named.expect_unchanged(file))?;
     attach(&mut slider, file, &lattice, &rows, attached, ranks.communicator)?;
     if let Some(distance) = sharing_distance(file, scales, &lattice)? {

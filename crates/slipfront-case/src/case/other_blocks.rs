@@ -144,8 +144,12 @@ impl Case {
             ("friction.mu_kinetic_field", &file.friction.mu_kinetic_field),
         ];
         let initial = file.initial.files().into_iter().flatten();
+        let initial = initial.chain([("state", &file.initial.state)]);
         let initial = initial.map(|(key, name)| (format!("initial.{key}"), name));
-        let mut fields = fields.map(|(key, name)| (key.to_owned(), name)).into_iter().chain(initial);
+        let mut fields = fields
+            .map(|(key, name)| (key.to_owned(), name))
+            .into_iter()
+            .chain(initial);
         if let Some((key, _)) = fields.find(|(_, field)| field.is_some()) {
             return Err(file.source.error(
                 &key,

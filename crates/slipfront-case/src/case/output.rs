@@ -20,6 +20,8 @@ pub struct Output {
     pub series_stride: u64,
     /// Whether a movie is drawn of the run.
     pub movie: bool,
+    /// Whether the last state is written.
+    pub final_state: bool,
 }
 
 /// The instants at which fields are recorded.
@@ -86,6 +88,7 @@ impl Output {
             stride: file.output.stride as usize,
             series_stride,
             movie: file.output.movie,
+            final_state: file.output.final_state,
         };
         output.check_movie(file, time_plan.last_step)?;
         Ok(output)

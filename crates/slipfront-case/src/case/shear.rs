@@ -95,8 +95,15 @@ impl Case {
 
     /// A warning where blocks slip at t = 0 already.
     pub(super) fn shear_warning(&self) -> Option<String> {
-        let AtOnce { count: n, first: [i, j] } = self.expected.at_once;
-        let (slip, their) = if n == 1 { ("slips", "its") } else { ("slip", "their") };
+        let AtOnce {
+            count: n,
+            first: [i, j],
+        } = self.expected.at_once;
+        let (slip, their) = if n == 1 {
+            ("slips", "its")
+        } else {
+            ("slip", "their")
+        };
         (n > 0).then(|| {
             format!(
                 "{} {slip} at t = 0, since the shear load is above {their} static friction; the first is ({i}, {j})",

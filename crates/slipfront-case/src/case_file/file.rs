@@ -127,7 +127,12 @@ impl CaseFile {
         };
         let of_fields =
             fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Blocks)));
-        (of_textures.chain(attached).chain(of_fields), &self.source)
+        let state = self.initial.state.as_mut();
+        let state = state.map(|name| named("initial.state", name, FileUse::State));
+        (
+            of_textures.chain(attached).chain(of_fields).chain(state),
+            &self.source,
+        )
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
@@ -155,7 +160,7 @@ impl CaseFile {
         }
         self.initial.check(&check("initial"), body, contact)?;
         self.time.check(&check("time"), &self.drive.speed)?;
-        self.output.check(&check("output"))
+        self.output.check(&check("output"), body)
     }
 
     /// Writes the case with every default filled in, in the order of the design; reading it back gives an
@@ -224,6 +229,8 @@ pub enum FileUse {
     Blocks,
     /// Measured heights, of any number of points.
     HeightMap,
+    /// Displacements and velocities of each block, four numbers.
+    State,
 }
 
 impl Default for CaseFile {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::check::Check;
 use super::error::CaseError;
 use super::friction::ContactModel;
-use super::key::{ARRAY, above, key, quantity};
+use super::key::{ARRAY, KeyKind, above, key, quantity};
 use super::words::Body;
 use crate::key_rows;
 use crate::quantity::{Length, Speed};
@@ -16,6 +16,10 @@ key_rows! {
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Initial {
+        /// The state in which another run has ended, `state.npy` of its folder, in place of the files below:
+        /// that run has `output.final_state`, and as many blocks. The drive goes on from where it stood.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub state: Option<String> = key("", KeyKind::File(&["npy"])),
         /// Displacements along x at t = 0, block by block.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_x: Option<String> = key("", ARRAY).without("0"),
@@ -45,6 +49,11 @@ impl Initial {
         *self == Self::default()
     }
 
+    /// Whether no file is given, so that blocks begin at rest at their rest sites.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.state.is_none() && self.files().into_iter().flatten().all(|(_, name)| name.is_none())
+    }
+
     /// The files of displacements and of velocities, along x and y, with their keys.
     pub(crate) fn files(&self) -> [[(&'static str, &Option<String>); 2]; 2] {
         [
@@ -52,19 +61,12 @@ impl Initial {
                 ("displacement_x", &self.displacement_x),
                 ("displacement_y", &self.displacement_y),
             ],
-            [
-                ("velocity_x", &self.velocity_x),
-                ("velocity_y", &self.velocity_y),
-            ],
+            [("velocity_x", &self.velocity_x), ("velocity_y", &self.velocity_y)],
         ]
     }
 
-    pub(super) fn check(
-        &self,
-        check: &Check,
-        body: Body,
-        contact: ContactModel,
-    ) -> Result<(), CaseError> {
+    pub(super) fn check(&self, check: &Check, body: Body, contact: ContactModel) -> Result<(), CaseError> {
+        check.value("state", &self.state)?;
         check.value("displacement_unit", &self.displacement_unit)?;
         check.value("velocity_unit", &self.velocity_unit)?;
         let units = [
@@ -82,20 +84,25 @@ impl Initial {
                 });
             }
         }
-        let [displacements, _] = self.files();
-        let all = self.files().into_iter().flatten();
-        let given = |files: &mut dyn Iterator<Item = (&'static str, &Option<String>)>| {
-            files.find(|(_, name)| name.is_some()).map(|(key, _)| key)
-        };
+        let [displacements, velocities] = self.files().map(|files| {
+            let given = files.into_iter().find(|(_, name)| name.is_some());
+            given.map(|(key, _)| key)
+        });
+        let state = self.state.as_ref().map(|_| "state");
+        if let Some(key) = state.and(displacements.or(velocities)) {
+            return check.refuse(key, |key| {
+                format!("`{key}` stands beside `initial.state`, which has displacements and velocities: leave one of them out")
+            });
+        }
         if body == Body::Bulk
-            && let Some(key) = given(&mut all.into_iter())
+            && let Some(key) = displacements.or(velocities).or(state)
         {
             return check.refuse(key, |key| {
                 format!("`{key}` does not go with `slider.body` = \"bulk\": the sheets above the contact would be left behind; leave it out, or take \"sheet\"")
             });
         }
         if contact == ContactModel::Springs
-            && let Some(key) = given(&mut displacements.into_iter())
+            && let Some(key) = displacements.or(state)
         {
             return check.refuse(key, |key| {
                 format!("`{key}` does not go with `friction.contact` = \"springs\": where the springs of displaced blocks are attached is not known; leave it out, or take \"rigid\"")

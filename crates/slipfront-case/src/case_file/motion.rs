@@ -108,7 +108,9 @@ impl Load {
         body: Body,
         contact: ContactModel,
     ) -> Result<(), CaseError> {
-        let Some(key) = self.shear_key() else { return Ok(()) };
+        let Some(key) = self.shear_key() else {
+            return Ok(());
+        };
         let reasons = [
             (
                 motion == Motion::Rotation,
@@ -125,7 +127,9 @@ impl Load {
         ];
         let reason = reasons.iter().find(|(is_given, _)| *is_given);
         reason.map_or(Ok(()), |(_, reason)| {
-            check.refuse(key, |key| format!("`{key}` does not go with {reason}; leave one of them out"))
+            check.refuse(key, |key| {
+                format!("`{key}` does not go with {reason}; leave one of them out")
+            })
         })
     }
 }

@@ -9,6 +9,7 @@ use super::key::{AUTO, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, key, number, or_wo
 use super::probe::names_of;
 use super::slider::MAX_BLOCKS;
 use super::values::{AutoOr, words};
+use super::words::Body;
 use crate::key_rows;
 use slipfront_base::number_format::exact;
 
@@ -39,6 +40,9 @@ key_rows! {
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         pub events: bool = key("false", KeyKind::Switch)
             .note("See [events](../guide/results.md#eventscsv). It takes `friction.contact` = `\"rigid\"`."),
+        /// Whether the last state is written, `state.npy`, in which another case can begin.
+        #[serde(skip_serializing_if = "std::ops::Not::not")]
+        pub final_state: bool = key("false", KeyKind::Switch).note("See [`[initial]`](#initial)."),
     }
 }
 
@@ -61,7 +65,12 @@ pub enum Snapshots {
 }
 
 impl Output {
-    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+    pub(super) fn check(&self, check: &Check, body: Body) -> Result<(), CaseError> {
+        if self.final_state && body == Body::Bulk {
+            return check.refuse("final_state", |key| {
+                format!("`{key}` does not go with `slider.body` = \"bulk\": no case can begin with the sheets above the contact in motion; leave it out, or take \"sheet\"")
+            });
+        }
         match &self.snapshots {
             Snapshots::Auto => {}
             // A table of its own in the file, or the value of `snapshots`: either has a place.

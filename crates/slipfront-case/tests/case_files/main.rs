@@ -20,6 +20,7 @@ mod lengths;
 mod ranks;
 mod reference;
 mod round_trip;
+mod start;
 mod stick_slip;
 mod texture_files;
 

@@ -96,6 +96,10 @@ fn make_on_ranks(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, Cas
     "friction = { mu_static_field = 'fortran.npy' }\nload.redistribute = false\ntexture = [{ shape = 'mask', file = 'mask.png' }]"
     ; "columns"
 )]
+#[test_case(
+    "load = { shear_star = 0.95, shear_field = 'fortran.npy' }\ninitial = { displacement_x = 'c.npy', velocity_y = 'mu.csv' }"
+    ; "load and start"
+)]
 fn ranks_make_the_case_that_one_process_makes(text: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
@@ -114,6 +118,21 @@ fn ranks_make_the_case_that_one_process_makes(text: &str) {
         assert_eq!(joined, bits(&whole.mu_kinetic), "{size} ranks");
         let joined: Vec<bool> = surfaces().flat_map(|surface| surface.textured.clone()).collect();
         assert_eq!(joined, whole.textured, "{size} ranks");
+        let loads = |case: &Case| {
+            let field = case.model.dead_load().field.as_ref();
+            field.map_or(Vec::new(), |field| bits(&field.relative))
+        };
+        assert_eq!(parts.iter().flat_map(loads).collect::<Vec<_>>(), loads(&alone));
+        let begins = |case: &Case| {
+            let state = case.initial.as_ref();
+            state.map_or(Vec::new(), |state| {
+                [&state.displacement.x, &state.velocity.y]
+                    .map(|values| bits(values))
+                    .concat()
+            })
+        };
+        let n_begins = parts.iter().map(|part| begins(part).len()).sum::<usize>();
+        assert_eq!(n_begins, begins(&alone).len());
         for (rank, part) in parts.iter().enumerate() {
             assert_eq!(part.model.rows, NY * rank / size..NY * (rank + 1) / size);
             assert_eq!(part.texture, alone.texture);

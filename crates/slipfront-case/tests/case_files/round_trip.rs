@@ -7,10 +7,10 @@ use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
     Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed,
-    DriveStiffness, Friction, Grade, Groove, GrooveSize, HeightMap, KineticFriction, Law, Level, Load,
-    Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon, Profile, Redistribute,
-    RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture,
-    Time, TimeStep, Velocity, VelocityLaw,
+    DriveStiffness, Friction, Grade, Groove, GrooveSize, HeightMap, Initial, KineticFriction, Law, Level,
+    Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon, Profile,
+    Redistribute, RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment,
+    Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -165,12 +165,23 @@ fn load() -> impl Strategy<Value = Load> {
     let pressure = quantity(-9, 14, &["kPa", "Pa"]);
     let near = length().prop_map(|within| Redistribute::Near(Near { within }));
     let redistribute = prop_oneof![2 => any::<bool>().prop_map(Redistribute::All), 1 => near];
-    (pressure, redistribute, local).prop_map(|(pressure, redistribute, (profile, pressure_field))| Load {
-        pressure,
-        redistribute,
-        profile,
-        pressure_field,
-    })
+    let field = || prop::option::of(file(&["npy", "csv"]));
+    let shear = prop_oneof![
+        Just((None, None, None)),
+        (quantity(-9, 14, &["kPa", "Pa"]), field()).prop_map(|(shear, field)| (Some(shear), None, field)),
+        (-1e3..1e3, field()).prop_map(|(star, field)| (None, Some(star), field)),
+    ];
+    (pressure, redistribute, local, shear).prop_map(
+        |(pressure, redistribute, (profile, pressure_field), (shear, shear_star, shear_field))| Load {
+            pressure,
+            redistribute,
+            profile,
+            pressure_field,
+            shear,
+            shear_star,
+            shear_field,
+        },
+    )
 }
 
 fn drive() -> impl Strategy<Value = Drive> {
@@ -537,16 +548,46 @@ fn output() -> impl Strategy<Value = Output> {
         fields,
         1..=100_000_u32,
         auto_or(1e-6..1e6),
-        any::<[bool; 2]>(),
+        any::<[bool; 3]>(),
     )
         .prop_map(
-            |(snapshots, fields, stride, series, [movie, events]): (_, Vec<Field>, _, _, _)| Output {
+            |(snapshots, fields, stride, series, [movie, events, final_state]): (_, Vec<Field>, _, _, _)| Output {
                 snapshots,
                 fields,
                 stride,
                 series,
                 movie,
                 events,
+                final_state,
+            },
+        )
+}
+
+fn initial() -> impl Strategy<Value = Initial> {
+    let name = || file(&["npy", "csv"]);
+    let field = || prop::option::of(name());
+    let displacement = (name(), field(), prop::option::of(length()));
+    let displacement = displacement.prop_map(|(x, y, unit)| (Some(x), y, unit));
+    let velocity = (field(), name(), prop::option::of(quantity(-18, 5, &["mm/s"])));
+    let velocity = velocity.prop_map(|(x, y, unit)| (x, Some(y), unit));
+    (
+        prop_oneof![Just((None, None, None)), displacement],
+        prop_oneof![Just((None, None, None)), velocity],
+    )
+        .prop_map(
+            |(
+                (displacement_x, displacement_y, displacement_unit),
+                (velocity_x, velocity_y, velocity_unit),
+            )| {
+                Initial {
+                    state: None,
+                    displacement_x,
+                    displacement_y,
+                    displacement_unit,
+                    velocity_x,
+                    velocity_y,
+                    velocity_unit,
+                }
             },
         )
 }
@@ -556,32 +597,49 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
     let loading = select(vec![Loading::Constant, Loading::Held]);
     let drive = (drive(), loading);
     let body = prop_oneof![3 => slider().boxed(), 1 => bulk().boxed()];
-    (body, load(), drive, friction(), textures, time(), output()).prop_map(
-        |(slider, load, (mut drive, loading), friction, texture, time, output)| {
-            let source = Source::default();
-            // Blocks of other laws do not stop, or grow stronger in time.
-            let stops = friction.law == Law::Projection && friction.contact == ContactModel::Rigid;
-            if stops && friction.ageing.is_none() && friction.healing_time_star.is_none() {
-                drive.loading = loading;
-            }
-            // A bulk body is driven by its whole upper face.
-            if slider.body == Body::Bulk {
-                drive.stiffness = DriveStiffness::Each(AutoOrStiffness::Auto);
-                drive.attached = Attached::At(AttachedEdge::All);
-                drive.motion = Motion::Translation;
-            }
-            CaseFile {
-                slider,
-                load,
-                drive,
-                friction,
-                texture,
-                time,
-                output,
-                source,
-            }
-        },
+    (
+        body,
+        load(),
+        drive,
+        friction(),
+        textures,
+        initial(),
+        time(),
+        output(),
     )
+        .prop_map(
+            |(slider, mut load, (mut drive, loading), friction, texture, mut initial, time, mut output)| {
+                let source = Source::default();
+                // Blocks of other laws do not stop, or grow stronger in time.
+                let stops = friction.law == Law::Projection && friction.contact == ContactModel::Rigid;
+                if stops && friction.ageing.is_none() && friction.healing_time_star.is_none() {
+                    drive.loading = loading;
+                }
+                // A bulk body is driven by its whole upper face.
+                if slider.body == Body::Bulk {
+                    drive.stiffness = DriveStiffness::Each(AutoOrStiffness::Auto);
+                    drive.attached = Attached::At(AttachedEdge::All);
+                    drive.motion = Motion::Translation;
+                }
+                // No shear load and no state at the start are derived for these.
+                if slider.body == Body::Bulk || friction.contact == ContactModel::Springs {
+                    (load.shear, load.shear_star, load.shear_field) = (None, None, None);
+                    initial = Initial::default();
+                    output.final_state = false;
+                }
+                CaseFile {
+                    slider,
+                    load,
+                    drive,
+                    friction,
+                    texture,
+                    initial,
+                    time,
+                    output,
+                    source,
+                }
+            },
+        )
 }
 
 proptest! {

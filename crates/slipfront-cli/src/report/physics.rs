@@ -150,7 +150,10 @@ fn load(case: &Case) -> String {
 fn shear(case: &Case) -> String {
     let [along, _] = case.model.mean_dead_load();
     let share = case.share_of_shear().map_or(String::new(), |share| {
-        format!(", {} % of what the blocks hold at rest", four_digits(100.0 * share))
+        format!(
+            ", {} % of what the blocks hold at rest",
+            four_digits(100.0 * share)
+        )
     });
     if case.model.dead_load().acts() {
         let stress = with_si_prefix(along * case.scales.stress(), "Pa");

@@ -1,6 +1,6 @@
 //! The meaning of the files of a run in words, and media types of files of results.
 
-use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RunPicture, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RunPicture, SERIES, STATE, SUMMARY};
 use crate::observers::tables;
 
 /// Media types of files of results by their endings.
@@ -40,6 +40,10 @@ pub(super) fn meaning_in_run(name: &str) -> String {
         (
             FIELDS,
             "Displacement, velocity, stress and sliding of every block at some instants",
+        ),
+        (
+            STATE,
+            "Displacement and velocity of every block after the last step, in m and m/s",
         ),
         (MOVIE, "The snapshots one after the other"),
         (

@@ -1,12 +1,10 @@
 //! Writing: the header, the entries of a record about its instant, and the rows of blocks, each at its place.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use slipfront::communicator::{Communicator, text_of};
+use slipfront::communicator::Communicator;
 use slipfront::observe::Field;
-use slipfront_base::disk::write_temp;
 use slipfront_base::ordered::map_of;
 use slipfront_case::field_info::field_info;
 use tempfile::TempPath;
@@ -15,7 +13,7 @@ use super::definition::define;
 use super::frame::*;
 use super::netcdf3::StoredNumber;
 use super::netcdf3_header::{HeaderBytes, ValuePlace};
-use crate::agree::agree_on_io;
+use crate::shared_file::write_shared;
 
 /// Number of bytes that are collected before they are written.
 const BUFFER: usize = 1 << 18;
@@ -46,30 +44,13 @@ pub fn write_fields(
         path: path.to_owned(),
         source,
     };
-    let is_first = communicator.rank() == 0;
-    let fill = |output: &mut File| {
-        writer.create(&mut *output)?;
-        writer.write_rows(output)
-    };
-    let created = if is_first {
-        write_temp(temporary, fill).map(Some)
-    } else {
-        Ok(None)
-    };
-    let created = agree_on_io(communicator, created).map_err(failed)?;
-    let name = created.as_ref().and_then(|path| path.file_name());
-    let name = name.unwrap_or_default().to_string_lossy();
-    let shared = temporary.join(text_of(communicator, 0, &name));
-    let write_own = || {
-        if is_first {
-            return Ok(());
-        }
-        let mut output = File::options().write(true).open(shared)?;
-        writer.write_rows(&mut output)?;
-        output.sync_all()
-    };
-    agree_on_io(communicator, write_own()).map_err(failed)?;
-    Ok(created)
+    write_shared(
+        temporary,
+        communicator,
+        |output| writer.create(output),
+        |output| writer.write_rows(output),
+    )
+    .map_err(failed)
 }
 
 /// A fields file whose layout is known, so that processes which hold some rows of the lattice each can write

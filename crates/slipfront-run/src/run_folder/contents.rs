@@ -7,14 +7,14 @@ use slipfront_base::disk::{found_at, is_folder, remove_if_there};
 use super::unfinished::Unfinished;
 use crate::folder_error::FolderError;
 use crate::manifest::{ManifestFile, is_one_of};
-use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RunPicture, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RunPicture, SERIES, STATE, SUMMARY};
 use crate::observers::tables;
 
 /// The files that a run writes beside its case and the copies in `inputs/`, the manifest first.
 pub(super) fn result_files() -> impl Iterator<Item = String> {
     let tables = tables().map(|table| table.file);
     let files = [MANIFEST, SUMMARY, SERIES].into_iter().chain(tables);
-    let files = files.chain([KYMOGRAPH, FIELDS, MOVIE]).map(str::to_owned);
+    let files = files.chain([KYMOGRAPH, FIELDS, STATE, MOVIE]).map(str::to_owned);
     files.chain(RunPicture::ALL.into_iter().flat_map(RunPicture::files))
 }
 

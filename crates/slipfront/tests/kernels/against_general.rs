@@ -2,7 +2,9 @@
 
 use slipfront::Totals;
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
+use slipfront::{
+    DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField,
+};
 use test_case::test_matrix;
 
 use crate::common::{self, Slider, cavity, groove};

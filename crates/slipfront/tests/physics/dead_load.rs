@@ -170,10 +170,7 @@ fn steady_sliding_takes_the_level_of_sliding_with_any_load() {
             .with_dead_load(DeadLoad::uniform([tau, 0.0]));
         let mut simulation = at_rest(&model, 0.1);
         simulation.run(Stop::at_step(3000), &mut []).unwrap();
-        (
-            simulation.snapshot().point.mu_star,
-            model.steady_level(&Alone),
-        )
+        (simulation.snapshot().point.mu_star, model.steady_level(&Alone))
     };
     for tau in [0.0, 0.3, 0.9] {
         let (found, exact) = level(tau);

@@ -55,7 +55,9 @@ impl Reference<'_> {
     /// Velocity half a step after t_n of block `b` of the blocks that the drive pulls: those of the highest
     /// sheet.
     pub(super) fn pulled_velocity(&self, b: usize) -> Vector {
-        self.sheets.last().map_or(self.velocity[b], |highest| highest.velocity[b])
+        self.sheets
+            .last()
+            .map_or(self.velocity[b], |highest| highest.velocity[b])
     }
 
     /// Displacement of block `b` of the blocks that the drive pulls.

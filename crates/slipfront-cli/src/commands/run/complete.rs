@@ -6,7 +6,7 @@ use std::sync::Arc;
 use slipfront_case::case::Case;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
-use slipfront_run::names::{CASE, FIELDS, KYMOGRAPH, RunPicture, SERIES, SUMMARY};
+use slipfront_run::names::{CASE, FIELDS, KYMOGRAPH, RunPicture, SERIES, STATE, SUMMARY};
 use slipfront_run::observers::tables;
 use slipfront_run::pictures;
 use slipfront_run::pictures::error::RunPictureError;
@@ -61,10 +61,12 @@ pub(super) fn complete(
         .as_mut()
         .map(|folder| results::write_tables(&case, &record, folder));
     ranks.agree(tables.transpose().map_err(|error| failed(error.into())))?;
-    let fields = results::write_fields(&case, &mut record, &out, &*ranks.communicator());
-    let fields = ranks.agree(fields.map_err(|error| failed(error.into())))?;
-    let finished = folder.zip(fields).map(|(mut folder, fields)| {
-        folder.place(FIELDS, fields)?;
+    let blocks = results::write_blocks(&case, &mut record, &out, &*ranks.communicator());
+    let blocks = ranks.agree(blocks.map_err(|error| failed(error.into())))?;
+    let finished = folder.map(|mut folder| {
+        for (name, file) in blocks {
+            folder.place(name, file)?;
+        }
         if draws {
             pictures::complete(&case, folder, started, threads)
         } else {
@@ -93,6 +95,7 @@ fn files(case: &Case, out: &Path) -> String {
         .chain([
             (KYMOGRAPH, "sliding blocks against place and time"),
             (FIELDS, "the fields, for ParaView, Python, MATLAB"),
+            (STATE, "the last state, in which another case can begin"),
             (SUMMARY, "the numbers above"),
             (CASE, "the case, every default filled in"),
         ]);

@@ -4,6 +4,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
+use super::aligned::Aligned;
 use super::aligned::chunks;
 use super::band::Band;
 use super::layout::{Layout, TILE};
@@ -12,7 +13,6 @@ use super::scratch::Scratch;
 use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
-use super::aligned::Aligned;
 use crate::kernel::block::{Block, Field};
 use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;

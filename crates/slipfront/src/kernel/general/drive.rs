@@ -153,7 +153,11 @@ fn add_dead_load(model: &Model, blocks: &Range<usize>, [fx, fy]: [&mut [f64]; 2]
             fy[k] += relative[k] * y;
         }
     } else {
-        for (k, _) in blocks.clone().enumerate().filter(|&(_, b)| model.slider.exists(b)) {
+        for (k, _) in blocks
+            .clone()
+            .enumerate()
+            .filter(|&(_, b)| model.slider.exists(b))
+        {
             fx[k] += x;
             fy[k] += y;
         }
