@@ -223,10 +223,134 @@ fn with_fields<T>(
 
 #[cfg(test)]
 mod tests {
-    use slipfront_case::case::Ranks;
+    use std::sync::Arc;
+
+    use slipfront::testing::Threads;
+    use slipfront::{Execution, VectorField};
+    use slipfront_case::case::{Files, FilesInMemory, Ranks};
     use slipfront_case::case_file::CaseFile;
 
     use super::*;
+    use crate::running::{Running, run};
+
+    /// A disc that slides with parts of it at rest, and leaves its last state.
+    const ENDED: &str = "slider = { blocks = [20, 20], outline = 'disc' }\ntexture = [{ shape = 'cavity', coverage = 10 }]\n\
+                         time.duration_star = 70\noutput.final_state = true\noutput.snapshots = []";
+
+    /// The bytes of the last state of a case.
+    fn last_state(case: &Arc<Case>) -> Vec<u8> {
+        let files = in_memory(case, &mut run(case, 1).unwrap()).unwrap();
+        files.into_iter().find(|(name, _)| name == STATE).unwrap().1
+    }
+
+    fn began_in(state: Vec<u8>, overrides: &[&str]) -> Arc<Case> {
+        let in_memory = FilesInMemory::from([(STATE.to_owned(), state.into())]);
+        let files = Files {
+            folder: Path::new(""),
+            in_memory: Some(&in_memory),
+        };
+        let overrides: Vec<String> = overrides.iter().map(|&set| set.to_owned()).collect();
+        let text = ENDED.replace("output.final_state = true", "initial.state = 'state.npy'");
+        let file = CaseFile::parse(&text, "case", &overrides).unwrap();
+        Arc::new(Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap())
+    }
+
+    /// Displacements since rest, m, of a run that was begun when the driven ends had moved by `path` along x.
+    fn in_metres(running: &Running, path: f64) -> Vec<f64> {
+        let unit = running.case().scales.displacement();
+        let VectorField { x, y } = running.motion().displacement;
+        let slider = running.case().model.slider();
+        let x = x
+            .iter()
+            .enumerate()
+            .map(|(b, x)| if slider.exists(b) { x * unit + path } else { 0.0 });
+        x.chain(y.into_iter().map(|y| y * unit)).collect()
+    }
+
+    /// A case that begins in the last state of a run goes on as this would have.
+    #[test]
+    fn a_case_goes_on_where_a_run_has_ended() {
+        let case = Arc::new(Case::parse(ENDED, "case", "", &[]).unwrap());
+        let steps = case.time_plan.last_step + 1;
+        let long = ["time.duration_star = 200".to_owned()];
+        let long = Arc::new(Case::parse(ENDED, "case", "", &long).unwrap());
+        let mut plain = Running::start(&long, None, Execution::default());
+        plain.advance(steps).unwrap();
+        let begun = began_in(last_state(&case), &["time.duration_star = 200"]);
+        let mut begun = Running::start(&begun, None, Execution::default());
+        let mu_star = [&plain, &begun].map(|running| running.snapshot().point.mu_star);
+        // Roundings of displacements that count from the drive, and of units.
+        assert!((mu_star[1] / mu_star[0] - 1.0).abs() < 1e-13, "{mu_star:?}");
+        let sliding = plain.snapshot().totals.n_slipping;
+        assert!(
+            sliding > 0 && sliding == begun.snapshot().totals.n_slipping,
+            "{sliding}"
+        );
+        let path = plain.snapshot().model.drive.path(plain.snapshot().time_star) * case.scales.displacement();
+        for running in [&mut plain, &mut begun] {
+            running.advance(200).unwrap();
+        }
+        let (one, other) = (in_metres(&plain, 0.0), in_metres(&begun, path));
+        let largest = one.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let apart = one
+            .iter()
+            .zip(&other)
+            .map(|(one, other)| (one - other).abs())
+            .fold(0.0, f64::max);
+        // One rounding a step, while springs pass them on.
+        assert!(apart < 1e-12 * largest, "{apart:e} {largest:e}");
+    }
+
+    /// Under twice the load the same metres and metres per second are half of the units; mu* is half, too.
+    #[test]
+    fn metres_are_kept_under_another_load() {
+        let case = Arc::new(Case::parse(ENDED, "case", "", &[]).unwrap());
+        let state = last_state(&case);
+        let [one, other] = [&[][..], &["load.pressure = '200 kPa'"]].map(|set| began_in(state.clone(), set));
+        let [one, other] = [one, other].map(|case| case.state().unwrap());
+        for (one, other) in [
+            (&one.displacement.x, &other.displacement.x),
+            (&one.velocity.y, &other.velocity.y),
+        ] {
+            assert!(one.iter().any(|&value| value != 0.0));
+            let is_half = |(one, other): (&f64, &f64)| (0.5 * one - other).abs() <= f64::EPSILON * one.abs();
+            assert!(one.iter().zip(other).all(is_half));
+        }
+    }
+
+    #[test]
+    fn ranks_write_the_last_state_of_one() {
+        let expected = last_state(&Arc::new(Case::parse(ENDED, "case", "", &[]).unwrap()));
+        for size in [2, 3, 7] {
+            let folder = tempfile::tempdir().unwrap();
+            Unfinished::of(folder.path()).create().unwrap();
+            let files = Threads::run(size, |communicator| {
+                let ranks = Ranks {
+                    communicator,
+                    on_node: size,
+                };
+                let file = CaseFile::parse(ENDED, "case", &[]).unwrap();
+                let case = Case::to_run(file, "case", Path::new(""), &mut |_| true, ranks).unwrap();
+                let case = Arc::new(case);
+                let execution = Execution {
+                    communicator: Arc::new(communicator.clone()),
+                    ..Execution::default()
+                };
+                let mut running = Running::start(&case, None, execution);
+                let reason = loop {
+                    if let Some(reason) = running.advance(u64::MAX).unwrap() {
+                        break reason;
+                    }
+                };
+                let mut data = running.record(reason);
+                let files = write_blocks(&case, &mut data, folder.path(), communicator).unwrap();
+                let state = files.into_iter().find(|(name, _)| *name == STATE);
+                state.map(|(_, file)| std::fs::read(file).unwrap())
+            });
+            assert!(files[0].as_ref() == Some(&expected), "{size} ranks");
+            assert!(files[1..].iter().all(Option::is_none));
+        }
+    }
 
     /// Blocks outside an outline have no values, and are no texture.
     #[test]
@@ -235,13 +359,13 @@ mod tests {
         let text = "slider.blocks = [6, 6]\nslider.outline = 'disc'\ntime.duration_star = 5\noutput.snapshots = [5]\n\
                     [[texture]]\nshape = 'cavity'\ncoverage = 12.5";
         let case = Case::parse(text, "case", "", &[]).unwrap();
-        let case = std::sync::Arc::new(case);
-        let mut data = crate::running::run(&case, 1).unwrap();
+        let case = Arc::new(case);
+        let mut data = run(&case, 1).unwrap();
         let in_memory = fields_of(&case, &data);
         let out = folder.path().join("out");
-        let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
-        write_case(&case, &mut run).unwrap();
-        write(&case, &mut data, &mut run).unwrap();
+        let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+        write_case(&case, &mut folder).unwrap();
+        write(&case, &mut data, &mut folder).unwrap();
         let fields = fields::read_fields(out.join(FIELDS)).unwrap();
         // NaN are equal as they are printed.
         assert_eq!(format!("{in_memory:?}"), format!("{fields:?}"));

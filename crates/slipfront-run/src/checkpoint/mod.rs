@@ -260,7 +260,7 @@ mod tests {
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [
             "slider.blocks = [14, 13]\ndrive.v_star = 0.02\ntime.duration_star = 300\noutput.stride = 2\n",
-            "slider.blocks = [12, 11]\ndrive.v_star = 0.1\ntime.duration_star = 60\noutput.snapshots = { every = 4.0 }\n",
+            "slider.blocks = [12, 11]\nload.shear_star = 0.6\ndrive.v_star = 0.1\ntime.duration_star = 60\noutput.snapshots = { every = 4.0 }\n",
             "slider.blocks = [12, 11]\ndrive.v_star = 0.1\ntime.duration_star = 100\noutput = { events = true, snapshots = [] }\n",
         ] {
             let parsed = || CaseFile::parse(text, "case", &[]).unwrap();

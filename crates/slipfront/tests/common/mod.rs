@@ -12,8 +12,9 @@ use slipfront::surface::{
     cavity_lambda, mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
-    Communicator, Coulomb, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice, Loading,
-    Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField, Weakening, scales,
+    Communicator, Coulomb, DeadLoad, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice,
+    Loading, Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField,
+    Weakening, scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -50,6 +51,8 @@ pub(crate) struct Slider {
     /// Axis and relative slope of a pressure that rises along it.
     pub(crate) pressure: Option<(usize, f64)>,
     pub(crate) adhesion: Adhesion,
+    /// Dead load along x and y, and whether it differs from block to block.
+    pub(crate) dead_load: ([f64; 2], bool),
     pub(crate) v_star: f64,
     pub(crate) degrees: f64,
     pub(crate) r_star: f64,
@@ -76,6 +79,7 @@ impl Default for Slider {
             load: Load::Redistributed,
             pressure: None,
             adhesion: Adhesion::default(),
+            dead_load: ([0.0; 2], false),
             v_star: 0.03,
             degrees: 0.0,
             r_star: 0.5,
@@ -147,7 +151,7 @@ impl Slider {
 
     pub(crate) fn model(&self) -> Model {
         let lattice = self.lattice();
-        self.model_with(lattice, 0..lattice.ny, self.surface(), self.body.clone())
+        self.model_with(lattice, 0..lattice.ny, self.surface(), self.body.clone(), &Alone)
     }
 
     /// The model of one of several ranks.
@@ -159,7 +163,7 @@ impl Slider {
         let contact = self.contact(rows.clone());
         let body = part(&self.body, lattice.blocks_of(&rows));
         let surface = Surface::of_ranks(coefficients, meshed.textured, contact, &body, rank).unwrap();
-        self.model_with(lattice, rows, surface, body)
+        self.model_with(lattice, rows, surface, body, rank)
     }
 
     fn model_with(
@@ -168,6 +172,7 @@ impl Slider {
         rows: Range<usize>,
         surface: Surface,
         body: slipfront::Slider,
+        ranks: &dyn Communicator,
     ) -> Model {
         let drive = Drive {
             program: self.program.clone(),
@@ -180,7 +185,17 @@ impl Slider {
             ..self.law.into()
         });
         let damping = scales::damping(self.omega_star);
-        Model::of_rows(lattice, rows, surface, drive, damping, self.epsilon, friction).with_slider(body)
+        let (force, differs) = self.dead_load;
+        let load = if differs {
+            let blocks = lattice.blocks_of(&rows);
+            let relative = blocks.map(|b| 0.3 + 0.7 * (1.9 * b as f64).sin()).collect();
+            DeadLoad::of_blocks(force, relative, &body, ranks)
+        } else {
+            DeadLoad::uniform(force)
+        };
+        Model::of_rows(lattice, rows, surface, drive, damping, self.epsilon, friction)
+            .with_slider(body)
+            .with_dead_load(load)
     }
 
     /// Steps to t* = `turns`/V*.

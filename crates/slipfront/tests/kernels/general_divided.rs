@@ -25,6 +25,8 @@ enum Variety {
     Stack,
     /// Moduli and densities that differ, and blocks that do not exist.
     Differ,
+    /// A dead load, from block to block if these differ.
+    Loaded,
 }
 
 const BLOCKS: [usize; 2] = [19, 17];
@@ -45,6 +47,7 @@ fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
         match *option {
             Law(law) => slider.law = law,
             Differ => slider.body = varied(blocks[0] * blocks[1], true),
+            Loaded => slider.dead_load = ([0.3, 0.2], options.contains(&Differ)),
             Viscous => (slider.body.viscosity_time, slider.dt_star) = (0.2, 0.05),
             Ages | RateState | Springs | Turns | Stack => {}
         }
@@ -55,7 +58,7 @@ fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
 fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
     for option in options {
         match option {
-            Law(_) | Viscous | Differ => {}
+            Law(_) | Viscous | Differ | Loaded => {}
             Ages => {
                 model.friction = Friction::Coulomb(Coulomb {
                     ageing: Some(Ageing {
@@ -93,13 +96,13 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
     }
 }
 
-use Variety::{Ages, Differ, Law, RateAndState as RateState, Springs, Stack, Turns, Viscous};
+use Variety::{Ages, Differ, Law, Loaded, RateAndState as RateState, Springs, Stack, Turns, Viscous};
 
 #[test_matrix(
     [
         &[Law(FrictionLaw::Reversal)], &[Law(FrictionLaw::Literal), Differ], &[Viscous], &[Ages], &[RateState],
         &[Springs], &[Turns], &[Stack, RateState], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
-        &[Springs, Turns, Differ]
+        &[Springs, Turns, Differ], &[Ages, Loaded], &[Viscous, Differ, Loaded]
     ],
     [Edges::Free, Edges::Periodic]
 )]
@@ -111,7 +114,7 @@ fn the_same_bits_over_ranks(options: &'static [Variety], edges: Edges) {
     assert_same_with(&slider, &change, Some(&from), 100);
 }
 
-#[test_matrix([&[Viscous, Differ, Ages], &[RateState], &[Springs, Turns], &[Stack, Ages]])]
+#[test_matrix([&[Viscous, Differ, Ages, Loaded], &[RateState], &[Springs, Turns], &[Stack, Ages, Loaded]])]
 fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_goes_on(&slider(BLOCKS, Edges::Free, options), &change);
@@ -121,7 +124,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
     [
         &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Stack, Springs],
         &[Viscous, Differ, Turns],
-        &[Viscous, Differ, RateState], &[Springs, Turns, Differ]
+        &[Viscous, Differ, RateState, Loaded], &[Springs, Turns, Differ], &[Ages, Loaded]
     ],
     [Edges::Free, Edges::Periodic]
 )]

@@ -1,5 +1,5 @@
-//! Heterogeneous sliders, kinetic friction that weakens and drives by a program on the fused kernel: it
-//! agrees with the general kernel to rounding, and has the same bits however it is executed.
+//! Heterogeneous sliders, dead loads, kinetic friction that weakens and drives by a program on the fused
+//! kernel: it agrees with the general kernel to rounding, and has the same bits however it is executed.
 
 use std::sync::Arc;
 
@@ -26,6 +26,10 @@ enum Variety {
     },
     /// A program with a stop and a way back.
     Program,
+    /// A dead load that is alike, or differs from block to block.
+    Load {
+        differs: bool,
+    },
 }
 
 const BLOCKS: [usize; 2] = [40, 31];
@@ -59,6 +63,7 @@ fn with(slider: Slider, options: &[Variety]) -> Slider {
                     healing_time: heals.then_some(3.0),
                 });
             }
+            Variety::Load { differs } => slider.dead_load = ([0.5, -0.2], *differs),
             Variety::Program => {
                 let v_star = slider.v_star;
                 let until = |turns: f64| (turns / v_star / slider.dt_star).round() * slider.dt_star;
@@ -89,11 +94,14 @@ use Variety::{EdgeDrive, Grading, Outline as Cut, Program as Changes, Weakening 
 
 const SLIPS: Variety = Variety::SlipWeakening { heals: false };
 const HEALS: Variety = Variety::SlipWeakening { heals: true };
+const LOADED: Variety = Variety::Load { differs: false };
+const LOADS: Variety = Variety::Load { differs: true };
 
 #[test_matrix(
     [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[Grading, Cut], &[EdgeDrive, Cut, Weakens],
-        &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, SLIPS]
+        &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, SLIPS], &[LOADED], &[LOADS],
+        &[LOADED, EdgeDrive, Cut], &[LOADS, Grading, Cut, SLIPS]
     ],
     [0.0, 1e-6, 1e-2],
     [Edges::Free, Edges::Periodic]
@@ -106,7 +114,8 @@ fn the_general_kernel_agrees(options: &[Variety], epsilon: f64, edges: Edges) {
 #[test_matrix(
     [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[EdgeDrive, Cut, Weakens],
-        &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, HEALS]
+        &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, HEALS], &[LOADED], &[LOADS],
+        &[LOADS, EdgeDrive, Cut, Changes]
     ],
     [1e-6, 2e-3],
     [Edges::Free, Edges::Periodic]
@@ -117,7 +126,9 @@ fn the_same_bits_however_executed(options: &[Variety], epsilon: f64, edges: Edge
 }
 
 /// Between slips most of a slow slider is skipped.
-#[test_matrix([&[EdgeDrive], &[Grading, Cut, Weakens], &[Changes], &[SLIPS], &[HEALS]])]
+#[test_matrix([
+    &[EdgeDrive], &[Grading, Cut, Weakens], &[Changes], &[SLIPS], &[HEALS], &[LOADED], &[LOADS], &[LOADS, EdgeDrive, Cut]
+])]
 fn slow_sliders_have_the_same_bits(options: &[Variety]) {
     let slider = with(sliders::slow(BLOCKS, Edges::Free, 0.0, 1e-6), options);
     executions::assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
@@ -126,7 +137,7 @@ fn slow_sliders_have_the_same_bits(options: &[Variety]) {
 #[test_matrix(
     [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes], &[SLIPS],
-        &[HEALS]
+        &[HEALS], &[LOADED, Cut], &[LOADS]
     ],
     [Edges::Free, Edges::Periodic]
 )]
