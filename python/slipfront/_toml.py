@@ -98,10 +98,13 @@ _HEADERS: dict[tuple[np.dtype[Any], tuple[int, ...]], bytes] = {}
 _MOST_HEADERS = 64
 
 
+_NAMES_OF_FILES = frozenset(("file", "state", "displacement_x", "displacement_y", "velocity_x", "velocity_y"))
+
+
 def names_file(key: str) -> bool:
     """Whether the value of a key is the name of a file, in whose place an array may stand."""
     name = key.rpartition(".")[2]
-    return name == "file" or name.endswith(("_file", "_field"))
+    return name in _NAMES_OF_FILES or name.endswith(("_file", "_field"))
 
 
 def value(given: Any, arrays: Arrays, of: str = "") -> str:

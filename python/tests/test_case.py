@@ -253,6 +253,33 @@ def test_arrays_in_memory_are_what_numpy_saves(dtype: Any) -> None:
             assert npy(array)[:end] == expected[:end] and (array.dtype == object or npy(array) == expected)
 
 
+def test_arrays_are_a_load_and_a_start(tmp_path: Path) -> None:
+    """Arrays in place of files: a shear load, displacements and velocities, and the last state of a run."""
+    shear, push = np.full((6, 8), 2.0), np.zeros((6, 8))
+    push[:, 0] = 0.5
+    tables: dict[str, Any] = {
+        "slider": {"blocks": [8, 6]},
+        "load": {"shear_star": 0.2, "shear_field": shear},
+        "initial": {"velocity_x": push, "displacement_y": push.tolist(), "displacement_unit": "1 pm"},
+        "time": {"duration_star": 5},
+        "output": {"final_state": True, "snapshots": [0]},
+    }
+    case = sf.Case(tables)
+    run = sf.run(case, progress=False)
+    # Twice 0.2, and the stretch of half a step of the velocities.
+    assert run.series["mu_star"].values[0] == pytest.approx(0.4, abs=1e-3)
+    assert (run.front[:, 0] == 0).all()
+    with pytest.raises(sf.CaseError, match=r"`initial.velocity_x` has the shape \(6, 7\) where \(6, 8\)"):
+        case.replace({"initial.velocity_x": push[:, 1:]})
+    with pytest.raises(sf.CaseError, match=r"`initial.state` has the shape \(6, 8\) where the last state"):
+        case.replace({"initial": {"state": push}})
+    state = np.zeros((4, 6, 8))
+    state[2, 0, 0] = 1e-3
+    begun = sf.run(case.replace({"initial": {"state": state}}), progress=False)
+    assert begun.front[0, 0] == 0 and (run.save(tmp_path / "run") / "state.npy").is_file()
+    assert np.load(tmp_path / "run" / "state.npy").shape == (4, 6, 8)
+
+
 def test_arrays_of_objects_are_refused() -> None:
     mask = np.array([[None, 1]])
     with pytest.raises(sf.CaseError, match="`texture.0.file`"):

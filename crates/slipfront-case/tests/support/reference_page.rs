@@ -120,7 +120,11 @@ fn bounds(kind: &KeyKind) -> String {
         KeyKind::File(formats) => {
             let formats: Vec<String> = formats.iter().map(|format| format!("`.{format}`")).collect();
             let (last, others) = formats.split_last().unwrap();
-            format!("a {} or {last} file", others.join(", "))
+            let others = match others.join(", ") {
+                others if others.is_empty() => others,
+                others => format!("{others} or "),
+            };
+            format!("a {others}{last} file")
         }
         // Its keys have a table of their own.
         KeyKind::Table("", _) => String::new(),
