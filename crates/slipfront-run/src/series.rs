@@ -46,7 +46,7 @@ pub struct SeriesRow {
     pub torque_n_m: Option<f64>,
     /// Share of sliding blocks N*, %.
     pub sliding_percent: f64,
-    /// Work of the drive since the start, J.
+    /// Work of the drive and of a dead load since the start, J.
     pub work_j: f64,
     /// Kinetic energy, J.
     pub kinetic_energy_j: f64,

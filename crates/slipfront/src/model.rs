@@ -458,11 +458,19 @@ impl Model {
         (threshold * threshold - across * across).sqrt() - along
     }
 
+    /// Dead load on block `b` along x and y; none where no block exists.
+    pub(crate) fn dead_load_of(&self, b: usize) -> [f64; 2] {
+        let relative = if self.slider.exists(b) {
+            self.dead_load.relative(b)
+        } else {
+            0.0
+        };
+        self.dead_load.force.map(|force| relative * force)
+    }
+
     /// Dead load on block `b` along the drive and to the left of it.
     fn dead_load_on(&self, b: usize) -> [f64; 2] {
-        let relative = self.dead_load.relative(b);
-        self.along_and_across(self.dead_load.force)
-            .map(|force| relative * force)
+        self.along_and_across(self.dead_load_of(b))
     }
 
     /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction (D12).

@@ -141,6 +141,7 @@ prop_compose! {
             load: if kept { Load::Kept } else { Load::Redistributed },
             pressure,
             adhesion: adhesion.map_or(Adhesion::default(), |[of_static, of_kinetic]| Adhesion { of_static, of_kinetic }),
+            dead_load: ([0.0; 2], false),
             v_star,
             degrees,
             r_star,

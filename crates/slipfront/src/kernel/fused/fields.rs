@@ -21,11 +21,9 @@ use crate::vector_field::length;
 /// Force of the drive spring on block `b` (Eq. 2), with the dead load.
 pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displacement: [f64; 2]) -> [f64; 2] {
     let drive_spring = model.slider.drive_spring(b);
-    let (spring, load) = (
-        model.drive.force(displacement, drive_time_star),
-        model.dead_load.relative(b),
-    );
-    [0, 1].map(|axis| drive_spring * spring[axis] + load * model.dead_load.force[axis])
+    let spring = model.drive.force(displacement, drive_time_star);
+    let load = model.dead_load_of(b);
+    [0, 1].map(|axis| drive_spring * spring[axis] + load[axis])
 }
 
 /// Block `b` under the given force of its drive spring or of the sheet above. `motion` gives displacement and
