@@ -20,7 +20,7 @@ mod workbook;
 use crate::target::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 23] = [
+pub const TARGETS: [Target; 24] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
