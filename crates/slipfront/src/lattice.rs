@@ -279,6 +279,18 @@ impl Lattice {
         let j = neighbour_coordinate(j, offset[1], self.ny, self.edges[1])?;
         Some(self.block(i, j))
     }
+
+    /// Whether the spring from block (i, j) to the block `offset` away runs along a free edge.
+    pub(crate) fn is_along_edge(&self, [i, j]: [usize; 2], offset: [isize; 2]) -> bool {
+        let is_at_end = |coordinate: usize, count: usize, edges: Edges| {
+            edges == Edges::Free && (coordinate == 0 || coordinate + 1 == count)
+        };
+        match offset {
+            [_, 0] => is_at_end(j, self.ny, self.edges[1]),
+            [0, _] => is_at_end(i, self.nx, self.edges[0]),
+            _ => false,
+        }
+    }
 }
 
 /// Coordinate along one axis of the neighbour `offset` away; none beyond a free edge.

@@ -105,12 +105,15 @@ impl Model {
     /// of the highest one.
     ///
     /// # Panics
-    /// If blocks differ, there are dampers between them, or the drive rotates: no sheet above has these.
+    /// If blocks differ, there are dampers between them, the drive rotates, or friction acts along x alone: no
+    /// sheet above has these.
     pub fn with_sheets(self, sheets: Vec<Sheet>, springs: SpringStiffness) -> Self {
-        let is_plain = self.slider == Slider::default() && self.drive.rotation.is_none();
+        let is_plain = self.slider == Slider::default()
+            && self.drive.rotation.is_none()
+            && self.friction.interface().is_none();
         assert!(
             is_plain || sheets.is_empty(),
-            "a stack of sheets has equal blocks without dampers, and a drive that does not rotate"
+            "a stack of sheets has equal blocks without dampers, a drive that does not rotate, and friction in the plane"
         );
         Self {
             sheets,

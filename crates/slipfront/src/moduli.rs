@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::communicator::Communicator;
-use crate::lattice::{Edges, Lattice, harmonic_mean};
+use crate::lattice::{Edges, Lattice};
 use crate::slider::Slider;
 
 /// Moduli `E_i/E` of the blocks of some rows and of the rows below the first and above the last; 0 for blocks
@@ -63,12 +63,13 @@ impl<'a> Moduli<'a> {
     }
 
     /// Stiffness of the spring from block (i, j) of these rows to the block `offset` away, over the stiffness
-    /// of its bond: the harmonic mean of their moduli; 0 beyond a free edge.
+    /// of its bond (see [`Slider::spring`]); 0 beyond a free edge.
     pub(crate) fn spring(&self, [i, j]: [usize; 2], offset: [isize; 2]) -> f64 {
         let Some(other) = self.lattice.neighbour(i, j, offset) else {
             return 0.0;
         };
         let (other_i, other_j) = self.lattice.column_row(other);
-        harmonic_mean(self.at(i, j), self.at(other_i, other_j))
+        let moduli = [self.at(i, j), self.at(other_i, other_j)];
+        self.slider.spring(&self.lattice, [i, j], offset, moduli)
     }
 }

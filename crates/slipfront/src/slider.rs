@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::communicator::Communicator;
 use crate::fixed_point::sum_over;
-use crate::lattice::{Edge, Lattice};
+use crate::lattice::{Edge, Lattice, harmonic_mean};
 
 /// Heterogeneous properties of the slider; arrays have one value per block. Without any of them, as in the
 /// paper, all blocks are alike.
@@ -28,6 +28,9 @@ pub struct Slider {
     /// Time of the dampers beside all springs between blocks, `tau_v = eta_ij/k_ij` (Kelvin-Voigt); 0 for
     /// none.
     pub viscosity_time: f64,
+    /// Whether the springs along a free edge of the lattice are half as stiff as those inside, as in a
+    /// continuum of which every square between four blocks is a piece. In the paper they are not.
+    pub halves_edge_springs: bool,
 }
 
 /// Drive springs of different stiffness.
@@ -60,6 +63,7 @@ impl Default for Slider {
             drives_some: false,
             outline: None,
             viscosity_time: 0.0,
+            halves_edge_springs: false,
         }
     }
 }
@@ -212,6 +216,7 @@ impl Slider {
                 n_blocks: outline.n_blocks,
             }),
             viscosity_time: self.viscosity_time,
+            halves_edge_springs: self.halves_edge_springs,
         }
     }
 
@@ -291,6 +296,24 @@ impl Slider {
 
     /// Whether all springs between blocks are those of the paper.
     pub fn has_equal_springs(&self) -> bool {
-        self.stiffness.is_none() && self.outline.is_none()
+        self.stiffness.is_none() && self.outline.is_none() && !self.halves_edge_springs
+    }
+
+    /// Stiffness of the spring from block (i, j) of the lattice to the block `offset` away, of these moduli,
+    /// over the stiffness of its bond: the harmonic mean of the moduli, and half of it along a free edge
+    /// where [`halves_edge_springs`](Self::halves_edge_springs) says so.
+    pub(crate) fn spring(
+        &self,
+        lattice: &Lattice,
+        place: [usize; 2],
+        offset: [isize; 2],
+        moduli: [f64; 2],
+    ) -> f64 {
+        let mean = harmonic_mean(moduli[0], moduli[1]);
+        if self.halves_edge_springs && lattice.is_along_edge(place, offset) {
+            0.5 * mean
+        } else {
+            mean
+        }
     }
 }

@@ -151,6 +151,33 @@ impl Snapshot<'_> {
         }
     }
 
+    /// Energy of the foundation under an interface and of the load on it, over that at rest; 0 without an
+    /// interface. All ranks must call this together.
+    pub fn foundation_energy(&self) -> f64 {
+        let Some(interface) = self.model.friction.interface() else {
+            return 0.0;
+        };
+        let (surface, mut terms) = (&self.model.surface, [0.0; CHUNK]);
+        let mut sum = [RunningSum::default()];
+        loop {
+            for first in (0..surface.n_blocks()).step_by(CHUNK) {
+                let terms = &mut terms[..CHUNK.min(surface.n_blocks() - first)];
+                self.engine.read_column(BlockColumn::DisplacementY, first, terms);
+                for (b, term) in (first..).zip(terms.iter_mut()) {
+                    *term = if surface.textured[b] {
+                        0.0
+                    } else {
+                        interface.energy(surface.load(b), *term)
+                    };
+                }
+                sum[0].add(terms);
+            }
+            if let Some([energy]) = RunningSum::finish(self.communicator, &mut sum) {
+                return energy;
+            }
+        }
+    }
+
     /// Energy that falling strength takes since the start, a part of the loss to friction: for each block the
     /// integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this together.
     pub fn weakening_energy(&self) -> f64 {

@@ -45,6 +45,11 @@ impl Model {
             let springs = 4.0 * self.springs.along();
             return stable_step(springs, held, 0.0).min(dt_star_limit());
         }
+        let foundation = self
+            .friction
+            .interface()
+            .map_or(0.0, |interface| interface.foundation);
+        let contact = contact.max(foundation);
         let is_plain = self.slider == Slider::default() && contact == 0.0;
         if is_plain && self.drive.k_drive <= K_DRIVE {
             return dt_star_limit();

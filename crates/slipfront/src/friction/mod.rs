@@ -26,6 +26,7 @@ use crate::fixed_point::RunningSum;
 use crate::forces::Forces;
 use crate::state::State;
 use crate::surface::Surface;
+use crate::vector_field::VectorField;
 
 /// The law of friction of all blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +87,11 @@ impl Friction {
             Self::Coulomb(law) => Some(law),
             Self::RateAndState(_) | Self::ContactSprings(_) => None,
         }
+    }
+
+    /// The interface of an upright sheet, if friction acts along x alone.
+    pub fn interface(&self) -> Option<Interface> {
+        self.coulomb()?.interface
     }
 
     /// Law by which strength falls with slip, if there is one.
@@ -237,6 +243,20 @@ impl BandContact {
         }
     }
 
+    /// Adds the forces of the foundation under some blocks of an upright sheet to the forces on them.
+    #[inline(always)]
+    pub(crate) fn add_reactions(
+        &self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        displacement: &VectorField,
+        force: &mut VectorField,
+    ) {
+        if let Self::Coulomb(thresholds) = self {
+            thresholds.add_reactions(surface, blocks, displacement, force);
+        }
+    }
+
     /// Eqs. 4-7: friction and damping of some blocks, their velocities half a step later and whether they
     /// slide. `limits`: static and kinetic thresholds of all blocks; `integrator`: one for each of these
     /// blocks.
@@ -252,7 +272,7 @@ impl BandContact {
     ) {
         match self {
             Self::Coulomb(thresholds) => {
-                thresholds.apply(blocks, limits, state, integrator, forces, time_star);
+                thresholds.apply(surface, blocks, limits, state, integrator, forces, time_star);
             }
             Self::RateAndState(contact) => contact.apply(blocks, state, integrator, forces),
             Self::Springs(springs) => springs.apply(surface, blocks, state, limits[0], integrator, forces),

@@ -11,20 +11,19 @@ pub struct Block {
     pub displacement: [f64; 2],
     /// Velocity at `t_n + dt/2`.
     pub velocity: [f64; 2],
-    /// Force `F_s` of the drive spring (Eq. 2), with any constant force.
+    /// Force `F_s` of the drive spring (Eq. 2), with any constant force and the change of the normal force of
+    /// an [`Interface`](crate::Interface).
     pub force_drive: [f64; 2],
     /// Force `F_c` of the lattice springs (Eq. 3).
     pub force_lattice: [f64; 2],
     /// Force `F_f` of friction (Eq. 4).
     pub force_friction: [f64; 2],
+    /// Whether the block slides from t_n on: its velocity (D12), or at an [`Interface`](crate::Interface) its
+    /// velocity along x, is not zero.
+    pub slides: bool,
 }
 
 impl Block {
-    /// Whether the block slides from t_n on: its velocity is not zero (D12).
-    pub fn slides(&self) -> bool {
-        self.velocity != [0.0, 0.0]
-    }
-
     /// Contact stress, `tau_c = |F_f + F_c|/l^2` (Eq. 10), in units of `P mu_s`.
     ///
     /// For a stuck block `F_f + F_c = -F_s`: Eq. 10 then shows the pull of the block's own drive spring and
@@ -88,7 +87,7 @@ impl Field {
             Field::DisplacementY => block.displacement[1],
             Field::VelocityX => block.velocity[0],
             Field::VelocityY => block.velocity[1],
-            Field::Sliding => f64::from(u8::from(block.slides())),
+            Field::Sliding => f64::from(u8::from(block.slides)),
         }
     }
 }

@@ -23,6 +23,8 @@ pub struct Energies {
     pub viscous_loss: f64,
     /// Energy stored in springs between blocks and substrate at this instant.
     pub contact_springs: f64,
+    /// Energy stored in the foundation under an interface at this instant, with that of the load on it.
+    pub foundation: f64,
     /// Energy lost with springs between blocks and substrate that broke since the start.
     pub broken_springs_loss: f64,
     /// Part of the loss to friction since the start that is the energy that falling strength takes, see
@@ -52,7 +54,7 @@ impl Energies {
     /// so that in steady sliding the error is that of rounding.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
-        let stored = self.stored.total() + self.contact_springs;
+        let stored = self.stored.total() + self.contact_springs + self.foundation;
         let losses = self.friction_loss + self.damping_loss + self.viscous_loss + self.broken_springs_loss;
         let missing = self.work - (stored - self.stored_at_start) - losses;
         if supplied > 0.0 { missing / supplied } else { 0.0 }
@@ -111,7 +113,7 @@ impl Ledger {
                 self.totals.viscous_loss += half * (before.viscous + powers.viscous);
             }
             None => {
-                self.totals.stored_at_start = now.stored_energy().total();
+                self.totals.stored_at_start = now.stored_energy().total() + now.foundation_energy();
                 self.dead_load_at_start = now.dead_load_work();
             }
         }
@@ -122,6 +124,7 @@ impl Ledger {
     pub(crate) fn counts(&self, now: &Snapshot) -> Energies {
         Energies {
             work: self.totals.work + (now.dead_load_work() - self.dead_load_at_start),
+            foundation: now.foundation_energy(),
             weakening_loss: now.weakening_energy(),
             ..self.totals
         }

@@ -170,6 +170,11 @@ impl Surface {
         self.load_factor * pressure
     }
 
+    /// Normal force `F_n,i` on block `b` in units of `P mu_s l^2`, those of all other forces; 0 over a texture.
+    pub(crate) fn load(&self, b: usize) -> f64 {
+        self.normal_force(b) / self.contact.mu_static_mean
+    }
+
     /// Static threshold `mu_si F_n,i + tau_a l^2` of block `b` in units of `P mu_s l^2`; 0 over a texture.
     #[inline(always)]
     pub fn static_limit(&self, b: usize) -> f64 {

@@ -12,7 +12,7 @@ use slipfront::surface::{
     cavity_lambda, mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
-    Communicator, Coulomb, DeadLoad, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice,
+    Communicator, Coulomb, DeadLoad, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Interface, Lattice,
     Loading, Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField,
     Weakening, scales,
 };
@@ -45,6 +45,7 @@ pub(crate) struct Slider {
     pub(crate) body: slipfront::Slider,
     pub(crate) weakening: Option<Weakening>,
     pub(crate) slip_weakening: Option<SlipWeakening>,
+    pub(crate) interface: Option<Interface>,
     pub(crate) program: Option<Arc<Program>>,
     pub(crate) loading: Loading,
     pub(crate) load: Load,
@@ -74,6 +75,7 @@ impl Default for Slider {
             body: slipfront::Slider::default(),
             weakening: None,
             slip_weakening: None,
+            interface: None,
             program: None,
             loading: Loading::Constant,
             load: Load::Redistributed,
@@ -182,6 +184,7 @@ impl Slider {
         let friction = Friction::Coulomb(Coulomb {
             weakening: self.weakening,
             slip_weakening: self.slip_weakening,
+            interface: self.interface,
             ..self.law.into()
         });
         let damping = scales::damping(self.omega_star);
@@ -271,6 +274,7 @@ fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
             n_blocks: outline.n_blocks,
         }),
         viscosity_time: body.viscosity_time,
+        halves_edge_springs: body.halves_edge_springs,
     }
 }
 

@@ -182,7 +182,7 @@ fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64)
         velocity,
     };
     let mut simulation = from_state(&model, dt, thrown.clone());
-    assert!(simulation.snapshot().block(0).slides());
+    assert!(simulation.snapshot().block(0).slides);
     let found = energies(&model, dt, 100_000, thrown);
     simulation.run(Stop::at_step(100_000), &mut []).unwrap();
     let last = found.last().unwrap();

@@ -106,7 +106,7 @@ fn friction_balances_all_other_forces_until_then() {
             let block = simulation.snapshot().block(b);
             assert_eq!(block.force_friction, block.force_drive.map(|f| -f));
             assert_eq!(block.force_lattice, [0.0, 0.0]);
-            assert!(!block.slides());
+            assert!(!block.slides);
         }
         simulation.step();
     }

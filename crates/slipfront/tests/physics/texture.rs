@@ -72,7 +72,7 @@ fn textured_blocks_move_at_once(law: FrictionLaw) {
         assert_eq!(now.point.sliding_percent, 100.0 * n_textured as f64 / 625.0);
         let traction = &traction.capture(&now).values[0];
         for (b, &over) in model.surface.textured.iter().enumerate() {
-            assert_eq!(now.block(b).slides(), over);
+            assert_eq!(now.block(b).slides, over);
             assert_eq!(traction[b].is_nan(), over);
         }
     }

@@ -11,7 +11,7 @@ use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Kernel,
+    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Interface, Kernel,
     Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, SlipWeakening, Snapshot,
     State, Stop, Surface, VectorField, Weakening, scales,
 };
@@ -51,6 +51,9 @@ struct Options {
     start: Option<(f64, usize)>,
     /// Whether the reference is given the state of the kernel before each step.
     follows: bool,
+    /// Stiffness of the foundation under an upright sheet.
+    foundation: Option<f64>,
+    halves_edge_springs: bool,
 }
 
 fn friction() -> impl Strategy<Value = Friction> {
@@ -60,6 +63,7 @@ fn friction() -> impl Strategy<Value = Friction> {
             weakening,
             ageing,
             slip_weakening: None,
+            interface: None,
         })
     };
     let of_slip = |(length, healing_time)| {
@@ -126,10 +130,12 @@ prop_compose! {
         mu_static_mean in 0.5..2.0,
         start in prop::option::of((prop_oneof![1e-3..0.1, 0.1..2.0], 1..5_usize)),
         follows in any::<bool>(),
+        foundation in prop::option::weighted(0.3, prop_oneof![Just(0.0), 0.05..2.0]),
+        halves_edge_springs in prop::bool::weighted(0.3),
     ) -> Options {
         Options {
             friction, graded, outline, sheets, along_to_across, attached, viscosity_time, program, rotates, held, k_drive, dead_load, uneven_load, mu_static_mean,
-            start, follows,
+            start, follows, foundation, halves_edge_springs,
         }
     }
 }
@@ -175,6 +181,7 @@ impl Setting {
         }
         if !is_stack {
             body.viscosity_time = options.viscosity_time;
+            body.halves_edge_springs = options.halves_edge_springs;
         }
         let mut contact = Contact {
             mu_static_mean: options.mu_static_mean,
@@ -189,7 +196,16 @@ impl Setting {
             ..Drive::at_angle(slider.v_star, slider.degrees)
         };
         let damping = scales::damping(slider.omega_star);
-        let mut model = Model::new(lattice, surface, drive, damping, slider.epsilon, options.friction);
+        let mut friction = options.friction;
+        if let (Friction::Coulomb(law), Some(foundation), false) =
+            (&mut friction, options.foundation, is_stack)
+            && law.law == FrictionLaw::Projection
+            && law.ageing.is_none()
+        {
+            law.interface = Some(Interface { foundation });
+        }
+        let is_upright = friction.interface().is_some();
+        let mut model = Model::new(lattice, surface, drive, damping, slider.epsilon, friction);
         let springs = if is_stack {
             SpringStiffness::with_ratio(options.along_to_across)
         } else {
@@ -208,7 +224,7 @@ impl Setting {
             model.drive.program = Some(Arc::new(Program::new(segments)));
         }
         // A single block has no arm.
-        if options.rotates && model.n_blocks() > 1 && !is_stack {
+        if options.rotates && model.n_blocks() > 1 && !is_stack && !is_upright {
             let rotation = Rotation::about_centroid(&lattice, &model.rows, model.slider(), &Alone);
             model.drive.rotation = Some(rotation);
         }
@@ -235,7 +251,7 @@ impl Setting {
     }
 
     /// All options, and whether this setting uses them.
-    fn options(&self) -> [(&'static str, bool); 36] {
+    fn options(&self) -> [(&'static str, bool); 40] {
         let (model, body, load) = (&self.model, self.model.slider(), self.model.dead_load());
         let coulomb = match model.friction {
             Friction::Coulomb(coulomb) => Some(coulomb),
@@ -263,6 +279,24 @@ impl Setting {
             ),
             ("contact springs", springs(false)),
             ("contact springs drawn anew", springs(true)),
+            (
+                "interface",
+                coulomb.is_some_and(|coulomb| coulomb.interface.is_some()),
+            ),
+            (
+                "interface on a foundation",
+                model
+                    .friction
+                    .interface()
+                    .is_some_and(|interface| interface.foundation > 0.0),
+            ),
+            (
+                "interface whose strength changes",
+                coulomb.is_some_and(|law| {
+                    law.interface.is_some() && (law.weakening.is_some() || law.slip_weakening.is_some())
+                }),
+            ),
+            ("halved springs along edges", body.halves_edge_springs),
             ("free edges", model.lattice.edges.contains(&Edges::Free)),
             ("periodic edges", model.lattice.edges.contains(&Edges::Periodic)),
             ("chain", model.lattice.ny == 1),
@@ -501,8 +535,9 @@ fn agree(what: &str, found: f64, expected: f64, tolerance: f64) -> TestCaseResul
 /// rounding, since the forces on it cancel or a wave has just come to it. For other blocks it decides with a
 /// chance of 1e-13 per block and step, where a force comes so close to a threshold.
 fn is_undecided(model: &Model, state: &State, reference: &Reference, tolerance: &Tolerance) -> bool {
+    let is_upright = model.friction.interface().is_some();
     let is_tiny = |[x, y]: [f64; 2]| {
-        let speed = x.hypot(y);
+        let speed = if is_upright { x.abs() } else { x.hypot(y) };
         speed > 0.0 && speed <= 2.0 * tolerance.velocity
     };
     let is_free = |b: &usize| model.surface.static_limit(*b) == 0.0;
@@ -607,6 +642,7 @@ fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) ->
             energies.contact_springs,
             reference.contact_energy(),
         ),
+        ("foundation", energies.foundation, reference.foundation_energy()),
         ("work", energies.work, losses.work),
         ("friction loss", energies.friction_loss, losses.friction),
         ("damping loss", energies.damping_loss, losses.damping),

@@ -136,6 +136,7 @@ prop_compose! {
             body: slipfront::Slider::default(),
             weakening: None,
             slip_weakening: None,
+            interface: None,
             program: None,
             loading: Loading::Constant,
             load: if kept { Load::Kept } else { Load::Redistributed },
@@ -287,7 +288,7 @@ proptest! {
             prop_assert!((row.point.sliding_percent - 100.0 * row.point.n_sliding as f64 / n as f64).abs() < 1e-12);
         }
         let moving = |b: &usize| state.velocity.at(*b) != [0.0, 0.0];
-        prop_assert!((0..n).all(|b| now.block(b).slides() == moving(&b)));
+        prop_assert!((0..n).all(|b| now.block(b).slides == moving(&b)));
         prop_assert_eq!(now.point.n_sliding, (0..n).filter(moving).count());
         let slips = |b: &usize| moving(b) && !model.surface.textured[*b];
         prop_assert_eq!(now.totals.n_slipping, (0..n).filter(slips).count());
@@ -309,7 +310,7 @@ proptest! {
                 let block = now.block(b);
                 let ([fx, fy], [vx, vy]) = (block.force_friction, block.velocity);
                 let friction = (fx * fx + fy * fy).sqrt();
-                if block.slides() {
+                if block.slides {
                     prop_assert!((friction - model.surface.kinetic_force(b)).abs() < 1e-12);
                     prop_assert!(fx * vx + fy * vy <= 0.0);
                 } else if before.at(b) == [0.0, 0.0] {
@@ -496,7 +497,7 @@ proptest! {
             let block = now.block(b);
             prop_assert_eq!(frame.values[0][at], block.displacement[0] as f32);
             prop_assert_eq!(frame.values[1][at], block.velocity[1] as f32);
-            prop_assert_eq!(frame.values[2][at], f32::from(u8::from(block.slides())));
+            prop_assert_eq!(frame.values[2][at], f32::from(u8::from(block.slides)));
             prop_assert_eq!(frame.values[3][at].is_nan(), model.surface.textured[b]);
         }
     }

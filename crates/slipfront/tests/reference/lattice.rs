@@ -51,9 +51,12 @@ fn beside(from: usize, step: i64, count: usize, edges: Edges) -> Option<usize> {
 /// ```text
 /// k_ij = k 2 e_i e_j/(e_i + e_j)     k_1 = 3/4, d = 1 (straight)     k_2 = k_1/2, d = sqrt(2) (diagonal)
 /// ```
+///
+/// and half of it for springs along a free edge, if the slider halves those.
 pub(crate) fn springs(model: &Model, b: usize) -> Vec<Spring> {
     let lattice = &model.lattice;
     let (i, j) = (b % lattice.nx, b / lattice.nx);
+    let is_end = |place: usize, count: usize, edges| edges == Edges::Free && [0, count - 1].contains(&place);
     let mut springs = Vec::new();
     for [di, dj] in [
         [1, 0],
@@ -83,10 +86,17 @@ pub(crate) fn springs(model: &Model, b: usize) -> Vec<Spring> {
             (false, false) => of_stack.diagonal,
         };
         let (here, there) = (modulus(model, b), modulus(model, to));
+        let along_edge = (dj == 0 && is_end(j, lattice.ny, lattice.edges[1]))
+            || (di == 0 && is_end(i, lattice.nx, lattice.edges[0]));
+        let half = if model.slider().halves_edge_springs && along_edge {
+            0.5
+        } else {
+            1.0
+        };
         springs.push(Spring {
             to,
             rest: [di as f64, dj as f64],
-            stiffness: k * 2.0 * here * there / (here + there),
+            stiffness: half * k * 2.0 * here * there / (here + there),
         });
     }
     springs

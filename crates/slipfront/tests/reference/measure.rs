@@ -134,6 +134,22 @@ impl Reference<'_> {
         })
     }
 
+    /// Energy of the foundation under an interface and of the load on it: the work against `N - F_n`.
+    pub(crate) fn foundation_energy(&self) -> f64 {
+        let Some(interface) = self.interface() else {
+            return 0.0;
+        };
+        let stiffness = interface.foundation;
+        self.sum_over(|b| {
+            let (load, rise) = (self.load(b), self.displacement[b][1]);
+            match self.blocks[b].in_contact {
+                true if stiffness * rise < load => 0.5 * stiffness * rise * rise,
+                true if stiffness > 0.0 => load * (rise - 0.5 * load / stiffness),
+                _ => 0.0,
+            }
+        })
+    }
+
     /// Energy of the springs in contacts that break now, which is lost.
     fn broken_energy(&self) -> f64 {
         let Friction::ContactSprings(law) = self.model.friction else {

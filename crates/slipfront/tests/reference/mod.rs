@@ -7,6 +7,7 @@
 mod contact_springs;
 mod coulomb;
 mod drive;
+mod interface;
 mod lattice;
 mod load;
 mod measure;
@@ -17,7 +18,7 @@ mod step;
 mod vector;
 
 use slipfront::surface::Contact;
-use slipfront::{Friction, Model, State};
+use slipfront::{Friction, Interface, Model, State};
 
 use self::lattice::Spring;
 use self::load::Threshold;
@@ -78,7 +79,8 @@ pub(crate) struct Reference<'a> {
     pub(crate) velocity: Vec<Vector>,
     /// Sheets above the lattice.
     sheets: Vec<sheets::Blocks>,
-    /// Drive forces `F_s` with the dead load; of a stack the forces of the sheet above.
+    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface; of a stack the
+    /// forces of the sheet above.
     pub(crate) force_drive: Vec<Vector>,
     /// Forces `F_v` of the dampers.
     force_dampers: Vec<Vector>,
@@ -199,7 +201,7 @@ impl<'a> Reference<'a> {
         for b in 0..self.blocks.len() {
             let moved = times(self.dt, self.velocity[b]);
             self.displacement[b] = sum(self.displacement[b], moved);
-            self.memory[b].slip += self.dt * length(self.velocity[b]);
+            self.memory[b].slip += self.dt * length(self.slip_velocity(self.velocity[b]));
             if let Friction::RateAndState(law) = &self.model.friction {
                 let speed = length(self.velocity[b]);
                 self.memory[b].theta = rate_and_state::evolved(law, self.memory[b].theta, speed, self.dt);
@@ -215,7 +217,7 @@ impl<'a> Reference<'a> {
     /// measures.
     fn evaluate(&mut self) {
         for b in 0..self.blocks.len() {
-            self.force_drive[b] = self.pull_on(None, b);
+            self.force_drive[b] = sum(self.pull_on(None, b), self.reaction(b));
             self.force_dampers[b] = self.damper_force(b);
             self.force_lattice[b] = sum(self.elastic_force(b), self.force_dampers[b]);
         }
@@ -256,6 +258,8 @@ impl<'a> Reference<'a> {
         };
         match &self.model.friction {
             Friction::Coulomb(law) => {
+                let velocity = self.slip_velocity(motion.velocity);
+                let is_stuck = velocity == [0.0, 0.0];
                 let age = now - memory.stopped_at;
                 let coefficient = self.model.surface.mu_static[b];
                 let holds = self
@@ -263,17 +267,23 @@ impl<'a> Reference<'a> {
                     .scaled(coulomb::aged(law.ageing, age));
                 let slows = block
                     .kinetic
-                    .scaled(coulomb::weakened(law.weakening, length(motion.velocity)));
-                if !motion.is_at_rest() {
+                    .scaled(coulomb::weakened(law.weakening, length(velocity)));
+                if !is_stuck {
                     self.memory[b].moved_at = now;
                 } else if coulomb::is_whole_again(law.slip_weakening, now - memory.moved_at) {
                     self.memory[b].slip = 0.0;
                 }
                 let slip = self.memory[b].slip;
                 let [holds, slows] = coulomb::after_slip(law.slip_weakening, [holds, slows], slip);
-                let update = coulomb::update(law.law, &motion, force, holds, slows);
-                self.slides[b] = update.velocity != [0.0, 0.0];
-                if !motion.is_at_rest() && !self.slides[b] {
+                let update = match law.interface {
+                    Some(interface) => {
+                        let factor = interface::factor(&interface, self.load(b), self.displacement[b][1]);
+                        interface::update(&motion, force, factor * holds, factor * slows)
+                    }
+                    None => coulomb::update(law.law, &motion, force, holds, slows),
+                };
+                self.slides[b] = self.slip_velocity(update.velocity) != [0.0, 0.0];
+                if !is_stuck && !self.slides[b] {
                     self.memory[b].stopped_at = now;
                 }
                 update
@@ -300,6 +310,38 @@ impl<'a> Reference<'a> {
                 velocity: motion.accelerated(force),
                 friction: [0.0, 0.0],
             },
+        }
+    }
+
+    /// The interface of an upright sheet, if friction acts along x alone.
+    fn interface(&self) -> Option<Interface> {
+        match &self.model.friction {
+            Friction::Coulomb(law) => law.interface,
+            Friction::RateAndState(_) | Friction::ContactSprings(_) => None,
+        }
+    }
+
+    /// The part of a velocity that friction knows: all of it, or along an interface.
+    fn slip_velocity(&self, velocity: Vector) -> Vector {
+        match self.interface() {
+            Some(_) => [velocity[0], 0.0],
+            None => velocity,
+        }
+    }
+
+    /// Normal force `F_n,i` of the load in units of `P mu_s l^2`, those of all other forces.
+    fn load(&self, b: usize) -> f64 {
+        self.blocks[b].normal_force / self.contact.mu_static_mean
+    }
+
+    /// Force along y by which the normal force differs from the load.
+    fn reaction(&self, b: usize) -> Vector {
+        match self.interface() {
+            Some(interface) if self.blocks[b].in_contact => [
+                0.0,
+                interface::reaction(&interface, self.load(b), self.displacement[b][1]),
+            ],
+            _ => [0.0, 0.0],
         }
     }
 

@@ -1,6 +1,7 @@
 //! Eq. 4, and the laws that its thresholds may follow.
 
 mod ageing;
+mod interface;
 mod reading;
 mod slip_weakening;
 mod update;
@@ -9,11 +10,13 @@ mod weakening;
 use std::ops::Range;
 
 pub use self::ageing::Ageing;
+pub use self::interface::Interface;
 pub use self::reading::FrictionLaw;
 pub use self::slip_weakening::SlipWeakening;
 pub use self::weakening::Weakening;
 
 use self::ageing::Aged;
+use self::interface::{AlongX, InterfaceContact};
 use self::reading::{Literal, Projection, Reversal};
 use self::slip_weakening::Slipped;
 use self::update::friction_forces;
@@ -36,6 +39,9 @@ pub struct Coulomb {
     pub ageing: Option<Ageing>,
     /// Strength that falls with slip; not combined with weakening by speed or ageing.
     pub slip_weakening: Option<SlipWeakening>,
+    /// Friction of an upright sheet, which acts along x alone; only under the default reading of Eq. 4, and
+    /// not combined with ageing.
+    pub interface: Option<Interface>,
 }
 
 impl From<FrictionLaw> for Coulomb {
@@ -45,6 +51,7 @@ impl From<FrictionLaw> for Coulomb {
             weakening: None,
             ageing: None,
             slip_weakening: None,
+            interface: None,
         }
     }
 }
@@ -60,6 +67,7 @@ impl Coulomb {
             .and(self.weakening.map(|_| Weakening::NEEDS))
             .and(self.ageing.map(|_| Ageing::NEEDS))
             .and(self.slip_weakening.map(|law| law.needs()))
+            .and(self.interface.map(|_| Interface::NEEDS))
     }
 
     /// Kinetic friction in steady sliding at `speed`, from the kinetic friction `at_rest`, of which a part is
@@ -87,6 +95,7 @@ pub(crate) struct CoulombContact {
     weakened: Option<Weakened>,
     aged: Option<Aged>,
     slipped: Option<Slipped>,
+    interface: Option<InterfaceContact>,
 }
 
 impl CoulombContact {
@@ -98,6 +107,9 @@ impl CoulombContact {
                 .map(|law| Weakened::new(law, adhesion, n_blocks)),
             aged: coulomb.ageing.map(|law| Aged::new(law, adhesion, n_blocks)),
             slipped: coulomb.slip_weakening.map(|law| Slipped::new(law, n_blocks)),
+            interface: coulomb
+                .interface
+                .map(|interface| InterfaceContact::new(interface, n_blocks)),
         }
     }
 
@@ -120,15 +132,35 @@ impl CoulombContact {
     #[inline(always)]
     pub(super) fn add_slip(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
         if let Some(slipped) = &mut self.slipped {
+            let velocity = match &mut self.interface {
+                Some(interface) => interface.slip_velocity(blocks, velocity),
+                None => velocity,
+            };
             slipped.add_slip(blocks, velocity, dt_star);
+        }
+    }
+
+    /// Adds the forces of the foundation under some blocks to the forces on them.
+    #[inline(always)]
+    pub(super) fn add_reactions(
+        &self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        displacement: &VectorField,
+        force: &mut VectorField,
+    ) {
+        if let Some(interface) = &self.interface {
+            interface.add_reactions(surface, blocks, displacement, force);
         }
     }
 
     /// Finds friction, the next velocities and the blocks that slide, among some blocks. `limits`: static
     /// thresholds of age 0 and kinetic thresholds at rest.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // As many as the law needs, each once.
     pub(super) fn apply(
         &mut self,
+        surface: &Surface,
         blocks: &Range<usize>,
         [young, at_rest]: [&[f64]; 2],
         state: &State,
@@ -136,15 +168,19 @@ impl CoulombContact {
         forces: &mut Forces,
         time_star: f64,
     ) {
+        let velocity = match &mut self.interface {
+            Some(interface) => interface.slip_velocity(blocks, &state.velocity),
+            None => &state.velocity,
+        };
         if let Some(weakened) = &mut self.weakened {
-            weakened.update(blocks, at_rest, &state.velocity);
+            weakened.update(blocks, at_rest, velocity);
         }
         if let Some(aged) = &mut self.aged {
             let pull = [&forces.drive, &forces.lattice];
-            aged.update(blocks, young, &state.velocity, pull, time_star);
+            aged.update(blocks, young, velocity, pull, time_star);
         }
         if let Some(slipped) = &mut self.slipped {
-            slipped.update(blocks, [young, at_rest], &state.velocity, time_star);
+            slipped.update(blocks, [young, at_rest], velocity, time_star);
         }
         let now = match &self.slipped {
             Some(slipped) => [&slipped.static_limit[..], &slipped.kinetic_force],
@@ -155,6 +191,11 @@ impl CoulombContact {
                     .map_or(at_rest, |weakened| &weakened.kinetic_force),
             ],
         };
+        if let Some(interface) = &mut self.interface {
+            let now = interface.under_normal_force(surface, blocks, &state.displacement, now);
+            friction_forces(&AlongX, integrator, blocks, now, state, forces);
+            return;
+        }
         match self.law {
             FrictionLaw::Projection => friction_forces(&Projection, integrator, blocks, now, state, forces),
             FrictionLaw::Reversal => friction_forces(&Reversal, integrator, blocks, now, state, forces),

@@ -10,6 +10,7 @@ use super::blocks::{
     FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, times_factor, upward_springs,
     vector_energy, zero_missing,
 };
+use super::interface::Interface;
 use super::layout::{Layout, TILE};
 use super::pull::Above;
 use super::quanta::Quanta;
@@ -128,6 +129,8 @@ pub(super) struct Band {
     pub(super) variations: Option<Variations>,
     /// Thresholds of a law of friction under which they change.
     pub(super) thresholds: Option<Thresholds>,
+    /// The interface of an upright sheet, along which friction acts.
+    pub(super) interface: Option<Interface>,
     /// The sheets above, which friction does not reach.
     pub(super) upper: Vec<UpperSheet>,
     /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone,
@@ -207,6 +210,7 @@ impl Band {
             variations: blocks_differ
                 .then(|| Variations::new(layout, model, moduli, halo, first..first + len)),
             thresholds: Thresholds::of(model, len),
+            interface: Interface::of(layout, model, first, len),
             upper: model
                 .sheets
                 .iter()
@@ -307,17 +311,18 @@ impl Band {
         }
     }
 
-    /// Adds the blocks in contact of the band to `counts`, each in its bin: those that move, or those that do
-    /// not.
+    /// Adds the blocks in contact of the band to `counts`, each in its bin: those that slide, or those that
+    /// do not.
     pub(super) fn count_in_contact(
         &self,
         layout: &Layout,
         bins: &PositionBins,
-        moving: bool,
+        sliding: bool,
         counts: &mut [i64],
     ) {
-        for (v, (contact, moves)) in self.in_contact.iter().zip(&self.moving).enumerate() {
-            let mut counted = contact & if moving { *moves } else { !moves };
+        for (v, contact) in self.in_contact.iter().enumerate() {
+            let slides = self.sliding(v);
+            let mut counted = contact & if sliding { slides } else { !slides };
             if counted == 0 {
                 continue;
             }
@@ -596,6 +601,10 @@ impl Band {
         t: usize,
         arrays: (&mut Scratch, &[UpperSheet]),
     ) {
+        if G::BLOCKS_DIFFER && self.interface.is_some() {
+            self.interface_of_tile(simd, step, quanta, t, arrays.0);
+            return;
+        }
         match (G::BLOCKS_DIFFER, energies) {
             // With all energies: compiled once more without them, it would save little.
             (true, _) => self.friction_of_tile::<S, true, true, HAS_ABOVE>(simd, step, quanta, t, arrays),
@@ -631,7 +640,7 @@ impl Band {
                     Some(above) if HAS_ABOVE => above.above(first, n),
                     _ => Above::default(),
                 };
-                let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0);
+                let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0, None);
                 let mut sums = Sums::zero(simd);
                 friction::<S, ENERGY, DIFFER, HAS_ABOVE>(simd, *step, quanta, (arrays, above), &mut sums);
                 let vectors = self.vectors(t).len();
@@ -751,7 +760,8 @@ impl Band {
     }
 
     /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, whose lattice forces are at
-    /// `place` in the scratch array. `next`: the elements that need friction next, and those that move next.
+    /// `place` in the scratch array. `next`: the elements that need friction next, and those that move next;
+    /// `across`: velocities along y for the thresholds, if they are not those of the elements.
     #[inline(always)]
     pub(super) fn friction_loop<'a, S: Simd, const DIFFER: bool>(
         &'a mut self,
@@ -760,6 +770,7 @@ impl Band {
         (elements, [next, moving_next]): (Range<usize>, [usize; 2]),
         scratch: &'a mut Scratch,
         place: usize,
+        across: Option<Chunks>,
     ) -> FrictionLoop<'a> {
         let (start, n) = (self.halo + elements.start, elements.len());
         let prefetched = [
@@ -779,7 +790,8 @@ impl Band {
         // Here and not in a pass of its own: the velocities are about to be read anyway, and blocks that are
         // skipped do not slip.
         if let Some(thresholds) = &mut self.thresholds {
-            let velocity = chunks(&self.velocity, elements.start, n);
+            let [vx, vy] = chunks(&self.velocity, elements.start, n);
+            let velocity = [vx, across.unwrap_or(vy)];
             let at_rest = (kinetic_impulses, variation.inverse_mass);
             thresholds.update(simd, &step, &elements, velocity, at_rest);
             kinetic_impulses = thresholds.kinetic_impulses(elements.clone());

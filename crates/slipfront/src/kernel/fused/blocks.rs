@@ -309,6 +309,21 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) variation: Variation<'a>,
 }
 
+/// Eight blocks that do not rest, in a step whose next velocities are known.
+pub(super) struct Moved<S: Simd> {
+    /// Mask of the elements that are blocks.
+    pub(super) blocks: u8,
+    pub(super) displacement: Vec2x8<S>,
+    /// Velocities at `t - dt/2`.
+    pub(super) before: Vec2x8<S>,
+    /// Velocities at `t + dt/2`, 0 of elements that are no blocks.
+    pub(super) after: Vec2x8<S>,
+    /// Minus the friction force.
+    pub(super) against: Vec2x8<S>,
+    /// Contact stress (Eq. 10), with any sign; 0 where nothing is in contact.
+    pub(super) stress: Vec2x8<S>,
+}
+
 /// Sums over the blocks of a tile, as integers of type `I` in their [`Quanta`], and maxima. While the tile is
 /// swept, both are one number for each of eight lanes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -441,6 +456,48 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         let stretch = weighted::<S, DIFFER>(simd, stretch, drive_springs, chunk);
         let shift = splat(simd, quanta.displacement_square.shift());
         self.displacement_square += integers(stretch, shift);
+    }
+
+    /// Adds eight blocks that do not rest to the sums of every step and to the maxima; `c`: their place in
+    /// `variation`.
+    #[inline(always)]
+    pub(super) fn add_moved<const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
+        &mut self,
+        simd: S,
+        quanta: &Quanta,
+        shifts: &Shifts<S>,
+        moved: &Moved<S>,
+        (variation, c): (Variation, usize),
+    ) {
+        let &Moved {
+            blocks,
+            displacement,
+            before,
+            after,
+            against,
+            stress,
+        } = moved;
+        // Ghosts have velocities too, and count with their blocks alone.
+        let both = zero_missing(simd, blocks, add(before, after));
+        let displacement = or_else(simd, blocks, displacement, shifts.centres);
+        let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
+        if !HAS_ABOVE {
+            self.add_displacement::<DIFFER>(simd, shifts, displacement, variation.drive_springs, c);
+            self.add_velocity::<DIFFER>(simd, shifts, after, variation.drive_springs, c);
+        }
+        self.motion_square += integers(motion_square, shifts.motion_square);
+        self.friction_work += integers(dot(against, both), shifts.friction_work);
+        self.speed_square = self.speed_square.max(square(after));
+        self.stress_square = self.stress_square.max(square(stress));
+        if ENERGY {
+            let motion = square(before) + square(after);
+            let motion = weighted::<S, DIFFER>(simd, motion, variation.mass, c);
+            let motion = zero_missing(simd, blocks, [motion, splat(simd, 0.0)])[0];
+            self.velocity_squares += integers(motion, shifts.motion_square);
+            if !HAS_ABOVE {
+                self.add_stretch::<DIFFER>(simd, quanta, shifts, displacement, variation.drive_springs, c);
+            }
+        }
     }
 
     /// Adds the zeros that `vectors` vectors at rest contribute to the sums over moving blocks.
@@ -717,30 +774,20 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
         let velocity_to_force = weighted::<S, DIFFER>(simd, velocity_to_force, variation.mass, c);
         let kinetic = scale(removed_fraction * velocity_to_force, free);
         let against = select(slides, kinetic, force);
-        // Ghosts have velocities too, and count with their blocks alone.
-        let both = zero_missing(simd, blocks[c], add(before, after));
-        let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
-        let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
-        if !HAS_ABOVE {
-            sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
-            sums.add_velocity::<DIFFER>(simd, &shifts, after, variation.drive_springs, c);
-        }
-        sums.motion_square += integers(motion_square, shifts.motion_square);
-        sums.friction_work += integers(dot(against, both), shifts.friction_work);
-        sums.speed_square = sums.speed_square.max(square(after));
-        // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
-        let stress = select(slides, subtract(lattice, kinetic), drive);
-        let stress = zero_missing(simd, in_contact[c], stress);
-        sums.stress_square = sums.stress_square.max(square(stress));
-        if ENERGY {
-            let motion = square(before) + square(after);
-            let motion = weighted::<S, DIFFER>(simd, motion, variation.mass, c);
-            let motion = zero_missing(simd, blocks[c], [motion, zero])[0];
-            sums.velocity_squares += integers(motion, shifts.motion_square);
-            if !HAS_ABOVE {
-                sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
-            }
-        }
+        let moved = Moved {
+            blocks: blocks[c],
+            displacement: load_vec2(simd, u, c),
+            before,
+            after,
+            against,
+            // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
+            stress: zero_missing(
+                simd,
+                in_contact[c],
+                select(slides, subtract(lattice, kinetic), drive),
+            ),
+        };
+        sums.add_moved::<ENERGY, DIFFER, HAS_ABOVE>(simd, quanta, &shifts, &moved, (variation, c));
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
     }
     sums.add_zeros::<ENERGY>(simd, quanta, resting);
@@ -748,7 +795,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
 
 /// Numbers of eight blocks, times the weight of each block for a heterogeneous slider.
 #[inline(always)]
-fn weighted<S: Simd, const DIFFER: bool>(
+pub(super) fn weighted<S: Simd, const DIFFER: bool>(
     simd: S,
     numbers: f64x8<S>,
     weights: Chunks,
@@ -763,7 +810,7 @@ fn weighted<S: Simd, const DIFFER: bool>(
 
 /// Records the step for those of eight blocks that slip for the first time.
 #[inline(always)]
-fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [u32; LANES], number: u32) {
+pub(super) fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [u32; LANES], number: u32) {
     let new = slips & !*slipped;
     // Seldom true: at most once per block in a run.
     if new != 0 {

@@ -12,18 +12,25 @@ use super::pull::{pull, pull_from_above, pull_of_differing};
 use super::scratch::Scratch;
 use super::springs::Geometry;
 use super::step::Step;
-use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
+use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, splat, square};
 use crate::kernel::block::{Block, Field};
-use crate::lattice::{Bond, harmonic_mean};
+use crate::lattice::Bond;
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Force of the drive spring on block `b` (Eq. 2), with the dead load.
+/// Force of the drive spring on block `b` (Eq. 2), with the dead load and the change of the normal force of an
+/// interface.
 pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displacement: [f64; 2]) -> [f64; 2] {
     let drive_spring = model.slider.drive_spring(b);
     let spring = model.drive.force(displacement, drive_time_star);
     let load = model.dead_load_of(b);
-    [0, 1].map(|axis| drive_spring * spring[axis] + load[axis])
+    let [x, y] = [0, 1].map(|axis| drive_spring * spring[axis] + load[axis]);
+    match model.friction.interface() {
+        Some(interface) if !model.surface.textured[b] => {
+            [x, y + interface.reaction(model.surface.load(b), displacement[1])]
+        }
+        _ => [x, y],
+    }
 }
 
 /// Block `b` under the given force of its drive spring or of the sheet above. `motion` gives displacement and
@@ -37,12 +44,21 @@ pub(super) fn block(
 ) -> Block {
     let [displacement, velocity] = motion(b);
     let force_lattice = lattice_force(model, b, displacement, |b| motion(b)[0]);
+    let (slip_velocity, kinetic_force, along) = match model.friction.interface() {
+        Some(interface) => {
+            let share = interface.share(model.surface.load(b), displacement[1]);
+            ([velocity[0], 0.0], share * kinetic_force, [1.0, 0.0])
+        }
+        None => (velocity, kinetic_force, [1.0; 2]),
+    };
+    let friction = friction(kinetic_force, slip_velocity, force_drive, force_lattice);
     Block {
         displacement,
         velocity,
         force_drive,
         force_lattice,
-        force_friction: friction(kinetic_force, velocity, force_drive, force_lattice),
+        force_friction: [along[0] * friction[0], along[1] * friction[1]],
+        slides: slip_velocity != [0.0, 0.0],
     }
 }
 
@@ -56,7 +72,8 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
         let neighbour = |offset| {
             let other = model.lattice.neighbour(i, j, offset)?;
             let slider = &model.slider;
-            let factor = harmonic_mean(slider.modulus(b), slider.modulus(other));
+            let moduli = [slider.modulus(b), slider.modulus(other)];
+            let factor = slider.spring(&model.lattice, [i, j], offset, moduli);
             Some((displacement(other), factor))
         };
         let ahead = neighbour([di, dj]).map_or([0.0; 2], |(v, factor)| force(u, v).map(|f| factor * f));
@@ -129,9 +146,11 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
                 Field::VelocityX => round(&mut values, &band.velocity.x[elements.clone()]),
                 Field::VelocityY => round(&mut values, &band.velocity.y[elements.clone()]),
                 Field::Sliding => {
-                    let [x, y] = [&band.velocity.x, &band.velocity.y].map(|v| &v[elements.clone()]);
-                    for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
-                        *value = f32::from(u8::from([*x, *y] != [0.0, 0.0]));
+                    for (values, v) in values.chunks_mut(LANES).zip(band.vectors(t)) {
+                        let sliding = band.sliding(v);
+                        for (lane, value) in values.iter_mut().enumerate() {
+                            *value = f32::from(sliding >> lane & 1);
+                        }
                     }
                 }
             }
@@ -198,12 +217,17 @@ fn stresses<S: Simd, G: Geometry>(
     let lattice_forces = chunks(&scratch.lattice, 0, n);
     let above = band.upper.first();
     let above = above.map(|above| above.above(band.halo + elements.start, n));
+    let interface = band
+        .interface
+        .as_ref()
+        .map(|interface| interface.of_elements(elements.clone()));
     for (c, stress) in forces[..n / LANES].iter_mut().enumerate() {
-        let velocity = load_vec2(simd, velocities, c);
+        let mut velocity = load_vec2(simd, velocities, c);
+        let mut kinetic_force = load(simd, stress);
         let lattice = load_vec2(simd, lattice_forces, c);
         let u = load_vec2(simd, displacements, c);
         let variations = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER);
-        let drive = match (above, variations) {
+        let mut drive = match (above, variations) {
             (Some(above), _) => pull_from_above::<S, true>(simd, step, above, c, u),
             (None, Some(variations)) => {
                 let first = elements.start + c * LANES;
@@ -213,12 +237,20 @@ fn stresses<S: Simd, G: Geometry>(
             }
             (None, None) => pull(simd, step, u),
         };
+        if let Some(interface) = &interface {
+            let [reaction, share] = interface.reaction(simd, c, u[1]);
+            drive[1] += reaction;
+            (kinetic_force, velocity[1]) = (share * kinetic_force, splat(simd, 0.0));
+        }
         let [x, y] = add(drive, lattice);
         let mut force = [-x, -y];
         let stuck = is_zero(simd, velocity);
         if bits(simd, stuck) != u8::MAX {
-            let per_velocity = load(simd, stress) / square(velocity).sqrt();
+            let per_velocity = kinetic_force / square(velocity).sqrt();
             force = select(stuck, force, scale(-per_velocity, velocity));
+        }
+        if interface.is_some() {
+            force[1] = splat(simd, 0.0);
         }
         if field == Field::ContactStress {
             force = add(force, lattice);

@@ -24,6 +24,7 @@ mod columns;
 mod fields;
 #[cfg(feature = "testing")]
 pub(crate) mod for_tests;
+mod interface;
 mod layout;
 mod neighbours;
 mod pull;
@@ -167,8 +168,8 @@ impl Fused {
             inner,
             threads,
             level: vectors::level(),
-            // Of a stack nothing rests, see `sheets`.
-            skips: skips && model.sheets.is_empty(),
+            // Of a stack nothing rests, see `sheets`, nor does an upright sheet, which moves freely along y.
+            skips: skips && model.sheets.is_empty() && model.friction.interface().is_none(),
             touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
             active_from_step: 0,
             swept_step: None,

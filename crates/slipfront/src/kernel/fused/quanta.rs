@@ -87,6 +87,9 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         if largest.coupling > 0.0 {
             force += largest.couplings_over_thickness * (high - low);
         }
+        if axis == 1 && largest.foundation > 0.0 {
+            force += largest.foundation * low.abs().max(high.abs());
+        }
     }
     MARGIN * (bounds.speed + largest.inverse_mass * step.integrator.force_to_velocity * force)
 }

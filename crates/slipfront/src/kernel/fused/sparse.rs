@@ -127,7 +127,7 @@ impl Band {
                     let (elements, place) = (v * LANES..(v + 1) * LANES, number * LANES);
                     let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
                     let arrays =
-                        self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, place);
+                        self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, place, None);
                     let arrays = (arrays, Above::default());
                     friction::<S, true, DIFFER, false>(simd, *step, quanta, arrays, &mut sums);
                     let rests = task.touched >> (v % VECTORS) & 1 == 0 && self.moving[v] == 0;

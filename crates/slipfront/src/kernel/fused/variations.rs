@@ -65,6 +65,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
         .as_ref()
         .is_some_and(|springs| largest.drive_spring > 1.0 || springs.sum != model.n_blocks() as f64);
     slider.stiffness.is_some()
+        || slider.halves_edge_springs
         || slider.density.is_some()
         || drive_springs_differ
         || model.dead_load.field.is_some()
@@ -92,6 +93,8 @@ pub(super) struct LargestFactors {
     /// Largest stiffness of the springs of a block to the sheets above and below, over the thickness of its
     /// own.
     pub(super) couplings_over_thickness: f64,
+    /// Stiffness of the foundation under an interface; 0 without one.
+    pub(super) foundation: f64,
 }
 
 impl LargestFactors {
@@ -128,6 +131,10 @@ impl LargestFactors {
             inverse_thickness,
             coupling,
             couplings_over_thickness: 2.0 * coupling * inverse_thickness,
+            foundation: model
+                .friction
+                .interface()
+                .map_or(0.0, |interface| interface.foundation),
             modulus,
             drive_spring,
             mass,

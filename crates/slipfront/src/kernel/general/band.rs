@@ -310,6 +310,7 @@ impl Band {
             force_drive: self.forces.drive.at(b),
             force_lattice: self.forces.lattice.at(b),
             force_friction: self.forces.friction.at(b),
+            slides: self.forces.slides[b],
         }
     }
 
@@ -335,6 +336,8 @@ impl Band {
         let (upper, driven) = (&mut self.sheets, &self.driven);
         let drive = &mut self.forces.drive;
         sheets::pull(upper, driven, model, blocks, displacement, drive_time_star, drive);
+        self.contact
+            .add_reactions(&model.surface, blocks, displacement, drive);
         let Forces { lattice, springs, .. } = &mut self.forces;
         let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
         let state = rows.state(&self.state);

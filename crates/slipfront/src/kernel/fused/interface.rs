@@ -1,0 +1,211 @@
+//! Friction along x alone, of an upright sheet, whose blocks move freely along y or stand on a foundation.
+
+use std::ops::Range;
+
+use fearless_simd::{Select, Simd, SimdBase, f64x8, i64x8};
+
+use super::aligned::Aligned;
+use super::band::Band;
+use super::blocks::{FrictionLoop, Moved, Shifts, Sums, mark_first_slips, zero_missing};
+use super::layout::{Layout, TILE};
+use super::pull::pull_of_differing;
+use super::quanta::Quanta;
+use super::scratch::Scratch;
+use super::step::Step;
+use super::vector::{Chunks, LANES, add, bits, is_zero, load, load_vec2, or_zero_below, scale, splat};
+use crate::friction::{Interface as Law, SMALLEST_VELOCITY};
+use crate::model::Model;
+
+/// The interface under the elements of a band.
+#[derive(Debug)]
+pub(super) struct Interface {
+    /// Stiffness of the foundation under each element; 0 where there is no block in contact.
+    foundation: Aligned,
+    /// Normal forces `F_n` of the load.
+    load: Aligned,
+    /// `1/F_n`, or 0 without load.
+    inverse_load: Aligned,
+    /// Velocities along y as far as friction knows them: zeros.
+    still: Aligned,
+}
+
+/// Numbers of the interface under some elements, in vectors of eight.
+#[derive(Clone, Copy)]
+pub(super) struct InterfaceLoop<'a> {
+    foundation: Chunks<'a>,
+    load: Chunks<'a>,
+    inverse_load: Chunks<'a>,
+}
+
+impl Interface {
+    /// The interface of a model under `n` elements from `first` on; none where friction acts in the plane.
+    pub(super) fn of(layout: &Layout, model: &Model, first: usize, n: usize) -> Option<Self> {
+        let law: Law = model.friction.interface()?;
+        let zeros = |n| Aligned::filled(n, 0.0);
+        let mut interface = Self {
+            foundation: zeros(n),
+            load: zeros(n),
+            inverse_load: zeros(n),
+            still: zeros(TILE),
+        };
+        for k in 0..n {
+            let Some(b) = layout.block(first + k).filter(|&b| !model.surface.textured[b]) else {
+                continue;
+            };
+            let load = model.surface.load(b);
+            interface.foundation[k] = law.foundation;
+            interface.load[k] = load;
+            interface.inverse_load[k] = if load > 0.0 { 1.0 / load } else { 0.0 };
+        }
+        Some(interface)
+    }
+
+    /// The interface under some elements of the band.
+    pub(super) fn of_elements(&self, elements: Range<usize>) -> InterfaceLoop<'_> {
+        InterfaceLoop {
+            foundation: self.foundation[elements.clone()].as_chunks().0,
+            load: self.load[elements.clone()].as_chunks().0,
+            inverse_load: self.inverse_load[elements].as_chunks().0,
+        }
+    }
+
+    /// Zeros in place of the velocities of `n` elements of a tile along y.
+    fn still(&self, n: usize) -> Chunks<'_> {
+        self.still[..n].as_chunks().0
+    }
+}
+
+impl InterfaceLoop<'_> {
+    /// Change of the normal forces on eight blocks that have risen by `rise`, by the operations of
+    /// [`Law::reaction`], and the normal forces over those of the load.
+    #[inline(always)]
+    pub(super) fn reaction<S: Simd>(&self, simd: S, chunk: usize, rise: f64x8<S>) -> [f64x8<S>; 2] {
+        let [foundation, bears, inverse] =
+            [self.foundation, self.load, self.inverse_load].map(|array| load(simd, &array[chunk]));
+        let held = foundation * rise;
+        let reaction = -held.simd_lt(bears).select(held, bears);
+        [reaction, splat(simd, 1.0) + reaction * inverse]
+    }
+}
+
+/// Eqs. 2 and 4-7 along an interface: the operations of [`crate::friction::AlongX`], eight blocks at a time,
+/// and all sums that observers need at every step. Returns whether any of the blocks moves.
+#[inline(always)]
+pub(super) fn friction_along_x<S: Simd>(
+    simd: S,
+    step: Step,
+    quanta: &Quanta,
+    (arrays, interface): (FrictionLoop, InterfaceLoop),
+    sums: &mut Sums<i64x8<S>, f64x8<S>>,
+) -> bool {
+    let (zero, shifts) = (splat(simd, 0.0), Shifts::of(simd, quanta));
+    let [vx, vy] = arrays.velocity;
+    let has_loads = !arrays.variation.loads.is_empty();
+    let mut moves = false;
+    for c in 0..vx.len() {
+        let (blocks, in_contact) = (arrays.blocks[c], arrays.in_contact[c]);
+        let displacement = load_vec2(simd, arrays.displacement, c);
+        let lattice = load_vec2(simd, arrays.lattice, c);
+        let before = [load(simd, &vx[c]), load(simd, &vy[c])];
+        let drive_springs = load(simd, &arrays.variation.drive_springs[c]);
+        let loads = has_loads.then(|| load(simd, &arrays.variation.loads[c]));
+        let mut drive = pull_of_differing(simd, step, drive_springs, loads, displacement);
+        let [reaction, share] = interface.reaction(simd, c, displacement[1]);
+        drive[1] += reaction;
+        let force = add(drive, lattice);
+        let force_to_velocity =
+            splat(simd, step.integrator.force_to_velocity) * load(simd, &arrays.variation.inverse_mass[c]);
+        let free = add(
+            scale(splat(simd, step.integrator.velocity_decay), before),
+            scale(force_to_velocity, force),
+        );
+        let free = or_zero_below(simd, SMALLEST_VELOCITY, free);
+
+        // As in `friction`, but by the components along x alone.
+        let removed_fraction = share * load(simd, &arrays.kinetic_impulses[c]) / free[0].abs();
+        let limit_square = share * share * load(simd, &arrays.static_limit_squares[c]);
+        let sticks = before[0].simd_eq(zero) & (force[0] * force[0]).simd_le(limit_square);
+        let remaining = splat(simd, 1.0) - removed_fraction;
+        let slides = !sticks & remaining.simd_gt(zero);
+        let after = [slides.select(remaining * free[0], zero), free[1]];
+        let after = zero_missing(simd, blocks, after);
+        after[0].store_array(&mut vx[c]);
+        after[1].store_array(&mut vy[c]);
+        let (sliding, moving) = (bits(simd, slides), !bits(simd, is_zero(simd, after)));
+        let slips = sliding & in_contact;
+        arrays.moving[c] = moving;
+        moves |= moving != 0;
+        sums.sliding += sliding.count_ones();
+        sums.slipping += slips.count_ones();
+
+        let velocity_to_force =
+            splat(simd, step.integrator.velocity_to_force) * load(simd, &arrays.variation.mass[c]);
+        let kinetic = removed_fraction * velocity_to_force * free[0];
+        let stress = [slides.select(lattice[0] - kinetic, -drive[0]), lattice[1]];
+        let moved = Moved {
+            blocks,
+            displacement,
+            before,
+            after,
+            against: [slides.select(kinetic, force[0]), zero],
+            stress: zero_missing(simd, in_contact, stress),
+        };
+        sums.add_moved::<true, true, false>(simd, quanta, &shifts, &moved, (arrays.variation, c));
+        mark_first_slips(
+            slips,
+            &mut arrays.slipped[c],
+            &mut arrays.first_slip[c],
+            step.number as u32,
+        );
+    }
+    moves
+}
+
+impl Band {
+    /// Eqs. 2 and 4-7 along the interface under a tile whose lattice forces are known. A function of its own,
+    /// compiled once for all formulas of springs.
+    #[inline(never)]
+    pub(super) fn interface_of_tile<S: Simd>(
+        &mut self,
+        simd: S,
+        step: &Step,
+        quanta: &Quanta,
+        t: usize,
+        scratch: &mut Scratch,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let elements = self.elements(t);
+                let mut sums = Sums::zero(simd);
+                // Taken out while the other arrays of the band are changed.
+                let interface = self.interface.take();
+                let mut moves = false;
+                if let Some(interface) = &interface {
+                    let under = interface.of_elements(elements.clone());
+                    let next = [elements.end; 2];
+                    let still = Some(interface.still(elements.len()));
+                    let arrays =
+                        self.friction_loop::<S, true>(simd, *step, (elements, next), scratch, 0, still);
+                    moves = friction_along_x(simd, *step, quanta, (arrays, under), &mut sums);
+                }
+                self.interface = interface;
+                let vectors = self.vectors(t).len();
+                let tile = &mut self.tiles[t];
+                tile.sums = sums.totals::<true>(quanta, vectors);
+                tile.moving = moves;
+                tile.settled = false;
+                tile.active_from_step = 0;
+            },
+        );
+    }
+
+    /// Mask of the elements of vector `v` that slide: those that move, or at an interface move along x.
+    pub(super) fn sliding(&self, v: usize) -> u8 {
+        if self.interface.is_none() {
+            return self.moving[v];
+        }
+        let along_x = &self.velocity.x[v * LANES..(v + 1) * LANES];
+        (0..LANES).fold(0, |mask, k| mask | u8::from(along_x[k] != 0.0) << k)
+    }
+}
