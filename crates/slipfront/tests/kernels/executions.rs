@@ -29,6 +29,7 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
         contact.broken_energy,
         contact.mean_state,
         now.weakening_energy(),
+        now.foundation_energy(),
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
         numbers.extend(pair);

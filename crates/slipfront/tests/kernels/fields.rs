@@ -3,7 +3,7 @@
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Frames, Schedule, Scheduled};
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Edges, Execution, FrictionLaw, Simulation, Stop};
+use slipfront::{Edges, Execution, FrictionLaw, Interface, Simulation, SlipWeakening, Stop};
 use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, groove, thrown};
@@ -98,6 +98,28 @@ fn every_friction_law(law: FrictionLaw) {
         simulation.step();
     }
     assert_fields_match_blocks(&simulation);
+}
+
+/// Friction along x alone, on a foundation, whose strength falls with slip.
+#[test_matrix([fused(), general()])]
+fn upright_sheets(execution: Execution) {
+    let slider = Slider {
+        blocks: [40, 12],
+        interface: Some(Interface { foundation: 0.3 }),
+        slip_weakening: Some(SlipWeakening {
+            length: 0.4,
+            healing_time: None,
+        }),
+        degrees: 25.0,
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    let state = thrown(480, 0.3, 5);
+    let mut simulation = Simulation::new(slider.model(), 0.1, Some(state), execution);
+    for _ in 0..100 {
+        simulation.step();
+        assert_fields_match_blocks(&simulation);
+    }
 }
 
 /// Frames keep every n-th block along each axis, in the order of the lattice.

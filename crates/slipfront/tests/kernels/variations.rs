@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use slipfront::communicator::Alone;
-use slipfront::{DriveSprings, Edges, Outline, Program, SlipWeakening, Weakening};
+use slipfront::{DriveSprings, Edges, Interface, Outline, Program, SlipWeakening, Weakening};
 use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, varied};
@@ -30,6 +30,10 @@ enum Variety {
     Load {
         differs: bool,
     },
+    /// Friction along x alone, on a foundation along y.
+    Interface,
+    /// Springs along free edges half as stiff.
+    HalvedEdges,
 }
 
 const BLOCKS: [usize; 2] = [40, 31];
@@ -64,6 +68,8 @@ fn with(slider: Slider, options: &[Variety]) -> Slider {
                 });
             }
             Variety::Load { differs } => slider.dead_load = ([0.5, -0.2], *differs),
+            Variety::Interface => slider.interface = Some(Interface { foundation: 0.3 }),
+            Variety::HalvedEdges => slider.body.halves_edge_springs = true,
             Variety::Program => {
                 let v_star = slider.v_star;
                 let until = |turns: f64| (turns / v_star / slider.dt_star).round() * slider.dt_star;
@@ -92,6 +98,9 @@ fn base(epsilon: f64, edges: Edges) -> Slider {
 
 use Variety::{EdgeDrive, Grading, Outline as Cut, Program as Changes, Weakening as Weakens};
 
+/// An upright sheet.
+const UPRIGHT: Variety = Variety::Interface;
+const HALVED: Variety = Variety::HalvedEdges;
 const SLIPS: Variety = Variety::SlipWeakening { heals: false };
 const HEALS: Variety = Variety::SlipWeakening { heals: true };
 const LOADED: Variety = Variety::Load { differs: false };
@@ -101,7 +110,8 @@ const LOADS: Variety = Variety::Load { differs: true };
     [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[Grading, Cut], &[EdgeDrive, Cut, Weakens],
         &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, SLIPS], &[LOADED], &[LOADS],
-        &[LOADED, EdgeDrive, Cut], &[LOADS, Grading, Cut, SLIPS]
+        &[LOADED, EdgeDrive, Cut], &[LOADS, Grading, Cut, SLIPS], &[UPRIGHT], &[UPRIGHT, HALVED, Weakens],
+        &[UPRIGHT, LOADS, Grading, Cut, HEALS]
     ],
     [0.0, 1e-6, 1e-2],
     [Edges::Free, Edges::Periodic]
@@ -115,7 +125,8 @@ fn the_general_kernel_agrees(options: &[Variety], epsilon: f64, edges: Edges) {
     [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[EdgeDrive, Cut, Weakens],
         &[Grading, Cut, Weakens, Changes], &[SLIPS], &[HEALS], &[Grading, Cut, HEALS], &[LOADED], &[LOADS],
-        &[LOADS, EdgeDrive, Cut, Changes]
+        &[LOADS, EdgeDrive, Cut, Changes], &[UPRIGHT], &[HALVED], &[UPRIGHT, LOADED, HALVED, Weakens],
+        &[UPRIGHT, LOADS, Grading, Cut, HEALS]
     ],
     [1e-6, 2e-3],
     [Edges::Free, Edges::Periodic]
@@ -137,7 +148,7 @@ fn slow_sliders_have_the_same_bits(options: &[Variety]) {
 #[test_matrix(
     [
         &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes], &[SLIPS],
-        &[HEALS], &[LOADED, Cut], &[LOADS]
+        &[HEALS], &[LOADED, Cut], &[LOADS], &[HALVED], &[UPRIGHT, HALVED, LOADS, SLIPS]
     ],
     [Edges::Free, Edges::Periodic]
 )]

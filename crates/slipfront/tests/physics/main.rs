@@ -27,6 +27,7 @@ mod front_speed;
 mod graded;
 mod growth;
 mod held;
+mod interface;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;
