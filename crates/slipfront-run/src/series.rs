@@ -67,6 +67,9 @@ pub struct SeriesRow {
     /// Energy of the springs in contact, J; none if contacts are no springs.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub contact_spring_energy_j: Option<f64>,
+    /// Energy of the foundation under an upright sheet, J; none without a foundation.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub foundation_energy_j: Option<f64>,
     /// Energy lost with springs in contact that broke since the start, J.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
@@ -127,6 +130,11 @@ impl SeriesRow {
             viscous_loss_j: model.slider().is_viscous().then_some(viscous_loss),
             sheet_coupling_energy_j: is_stack.then_some(row.energies.stored.between_sheets * energy),
             contact_spring_energy_j: law.stores_energy.then_some(row.energies.contact_springs * energy),
+            foundation_energy_j: model
+                .friction
+                .interface()
+                .filter(|interface| interface.foundation > 0.0)
+                .map(|_| row.energies.foundation * energy),
             broken_spring_loss_j: law
                 .stores_energy
                 .then_some(row.energies.broken_springs_loss * energy),
@@ -153,7 +161,7 @@ macro_rules! columns_of {
 const COLUMNS: &[Column] = columns_of! {
     time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
     torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
-    viscous_loss_j sheet_coupling_energy_j contact_spring_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
+    viscous_loss_j sheet_coupling_energy_j contact_spring_energy_j foundation_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
 };
 
 /// Columns that count from the start of a run, on which a leg after it goes on.
@@ -343,6 +351,7 @@ mod tests {
             viscous_loss_j: Some(0.0),
             sheet_coupling_energy_j: Some(0.0),
             contact_spring_energy_j: Some(0.0),
+            foundation_energy_j: Some(0.0),
             broken_spring_loss_j: Some(0.0),
             weakening_loss_j: Some(0.0),
             ..row

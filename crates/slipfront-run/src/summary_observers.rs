@@ -214,7 +214,7 @@ fn topographies(case: &Case) -> Option<Vec<TopographySummary>> {
 
 fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_max: f64) -> SiSummary {
     let (scales, model) = (&case.scales, &case.model);
-    let area = model.n_blocks() as f64 * scales.block_size * scales.block_size;
+    let area = model.surface.n_facing() as f64 * scales.block_size * scales.contact_width;
     let unit = FrictionUnit::of(scales, model);
     SiSummary {
         pressure_pa: scales.pressure,

@@ -250,16 +250,17 @@ impl Model {
     /// them, in units of `E h`; none under laws whose strength does not fall with slip.
     pub fn weakening(&self) -> Option<f64> {
         let law = self.friction.strength_over_slip()?;
-        let share_in_contact = self.surface.n_contact() as f64 / self.n_blocks() as f64;
+        let share_in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
         let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
         Some(drop / law.length)
     }
 
-    /// Divisor of the sum of the forces of the drive springs in mu*: the number of blocks that exist; for a
-    /// rotation `sum r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
+    /// Divisor of the sum of the forces of the drive springs in mu*: the number of [facing
+    /// blocks](Surface::n_facing); for a rotation `sum r_i/r_max`, which makes mu* the torque of the
+    /// drive springs over `P mu_s l^2 sum r_i`.
     pub fn mu_star_divisor(&self) -> f64 {
         match &self.drive.rotation {
-            None => self.n_blocks() as f64,
+            None => self.surface.n_facing() as f64,
             Some(rotation) => rotation.sum_radii,
         }
     }
@@ -291,7 +292,7 @@ impl Model {
     /// Share of the load that the blocks in contact bear: less than 1 where that of textured blocks is not
     /// redistributed.
     pub fn share_of_load(&self) -> f64 {
-        let in_contact = 1.0 - 0.01 * self.surface.texture_percent();
+        let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
         (in_contact * self.surface.load_factor()).min(1.0)
     }
 
@@ -354,7 +355,8 @@ impl Model {
     pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
         let drag = self.damping * self.drive.steady_speed();
         let Some(rotation) = &self.drive.rotation else {
-            return drag * self.slider.mean_mass * sheets::mass(&self.sheets);
+            let blocks_per_facing = self.n_blocks() as f64 / self.surface.n_facing() as f64;
+            return drag * self.slider.mean_mass * sheets::mass(&self.sheets) * blocks_per_facing;
         };
         let torque = sum_over(ranks, self.surface.n_blocks(), |b| {
             if self.slider.exists(b) {
@@ -369,13 +371,14 @@ impl Model {
     /// Level of mu* in steady sliding at V*:
     ///
     /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i) (1 + sum h_k)
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i) (1 + sum h_k) N/N_facing
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// The last factor is the mass of a stack of sheets of relative thickness h_k. V* counts as 0 under a
-    /// held drive; a coefficient that depends on the speed is taken at V*; for springs in contact half the
-    /// mean threshold stands for kinetic friction. All `ranks` of a lattice must call this together.
+    /// The factor in brackets is the mass of a stack of sheets of relative thickness h_k, and `N_facing` the
+    /// number of [facing blocks](Surface::n_facing). V* counts as 0 under a held drive; a coefficient that
+    /// depends on the speed is taken at V*; for springs in contact half the mean threshold stands for kinetic
+    /// friction. All `ranks` of a lattice must call this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self

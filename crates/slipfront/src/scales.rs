@@ -2,7 +2,8 @@
 //!
 //! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count
 //! in blocks, masses in block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements
-//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. The case parser builds a [`Scales`]; writers of results ask
+//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. An upright sheet touches the substrate with its edge, a block
+//! on `l h` in place of `l^2`, which takes its place in all units. The case parser builds a [`Scales`]; writers of results ask
 //! it for units.
 
 use crate::lattice::K_STRAIGHT;
@@ -14,6 +15,9 @@ pub struct Scales {
     pub block_size: f64,
     /// Thickness of the sheet, `h`, m.
     pub thickness: f64,
+    /// Width of the area on which a block touches the substrate, m: `l`, or the thickness `h` under the edge
+    /// of an upright sheet.
+    pub contact_width: f64,
     /// Young's modulus `E`, Pa.
     pub young_modulus: f64,
     /// Density `rho`, kg/m^3.
@@ -40,7 +44,7 @@ impl Scales {
     /// ```
     /// // Case 8 of Table 1: 0.0949 mm/s is V* = 0.03.
     /// let case8 = slipfront::Scales {
-    ///     block_size: 1e-6, thickness: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    ///     block_size: 1e-6, thickness: 1e-6, contact_width: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
     /// };
     /// // 0.0949 is printed to half a unit of its last digit.
     /// assert!((0.0949e-3 / case8.speed() - 0.03).abs() < 0.00005e-3 / case8.speed());
@@ -56,7 +60,7 @@ impl Scales {
 
     /// One unit of force, `P mu_s l^2`, N.
     pub fn force(&self) -> f64 {
-        self.stress() * self.block_size * self.block_size
+        self.stress() * self.block_size * self.contact_width
     }
 
     /// One unit of energy, `P mu_s l^2` times `P mu_s l^2/(E h)`, J.
@@ -74,12 +78,12 @@ impl Scales {
     ///
     /// ```
     /// let scales = slipfront::Scales {
-    ///     block_size: 1e-6, thickness: 2e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    ///     block_size: 1e-6, thickness: 2e-6, contact_width: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
     /// };
     /// assert!((scales.stiffness_of_area(0.4e17) - 0.2).abs() < 1e-15);
     /// ```
     pub fn stiffness_of_area(&self, per_area: f64) -> f64 {
-        per_area * (self.block_size * self.block_size) / self.stiffness()
+        per_area * self.contact_area() / self.stiffness()
     }
 
     /// The load's strain, `eps = P mu_s l/(E h)`, which measures how nonlinear the springs are.
@@ -87,9 +91,14 @@ impl Scales {
         self.pressure * self.mu_static_mean / self.young_modulus * self.slenderness()
     }
 
-    /// Edge of a block over its thickness; exactly 1 for the paper's cubes.
+    /// Area on which a block touches the substrate, `l^2`, m^2; `l h` under the edge of an upright sheet.
+    pub fn contact_area(&self) -> f64 {
+        self.block_size * self.contact_width
+    }
+
+    /// Width of the contact of a block over its thickness; exactly 1 for the paper's cubes.
     fn slenderness(&self) -> f64 {
-        self.block_size / self.thickness
+        self.contact_width / self.thickness
     }
 
     /// A length in m, counted in blocks, to a billionth of a block: "2.5 um" over "1 um" is 2.5, not the
@@ -97,7 +106,7 @@ impl Scales {
     ///
     /// ```
     /// let scales = slipfront::Scales {
-    ///     block_size: 1e-6, thickness: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    ///     block_size: 1e-6, thickness: 1e-6, contact_width: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
     /// };
     /// assert_eq!(scales.in_blocks(22.5e-6), 22.5);
     /// ```

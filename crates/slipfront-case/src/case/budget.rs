@@ -732,7 +732,7 @@ mod tests {
             "load.shear_star=0.5",
         ] {
             let case = case(&[set]);
-            let friction = case.file.friction.in_model(case.groups.v_star, &case.scales);
+            let friction = case.file.friction.in_model(case.groups.v_star, &case.scales, 0.0);
             assert_eq!(friction, case.model.friction, "{set}");
             let kernel = kernel(&case.file, &friction);
             assert_eq!(Kernel::default().for_model(&case.model), kernel, "{set}");

@@ -10,7 +10,7 @@ use super::files::Watch;
 use super::groups::Groups;
 use super::inputs::Inputs;
 use super::textures::pitch;
-use crate::case_file::{Body, CaseError, CaseFile, Near, Redistribute};
+use crate::case_file::{Body, CaseError, CaseFile, FrictionAlong, Near, Redistribute};
 use slipfront_base::number_format::four_digits;
 
 /// Refuses a correlation length with which coefficients could not be drawn, before any file is read.
@@ -132,6 +132,10 @@ pub(super) fn contact(
         Redistribute::All(false) => Load::Kept,
         Redistribute::All(true) | Redistribute::Near(_) => Load::Redistributed,
     };
+    // An upright sheet stands on its lowest row.
+    let is_upright = file.friction.along == FrictionAlong::X;
+    let blocks = lattice.blocks_of(&inputs.slab.rows);
+    let faces = is_upright.then(|| blocks.map(|b| b < lattice.nx).collect());
     let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field, watch)?;
     let pressure = match &file.load.profile {
         Some(profile) => Some(pressure_along(
@@ -150,6 +154,7 @@ pub(super) fn contact(
             of_static,
             of_kinetic,
         },
+        faces,
         ..Contact::new(load, scales.mu_static_mean)
     })
 }

@@ -10,7 +10,7 @@ use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::ranks::Ranks;
 use super::stack::{Stack, longest_wave};
-use crate::case_file::{CaseError, CaseFile, DriveStiffness};
+use crate::case_file::{CaseError, CaseFile, DriveStiffness, FrictionAlong};
 use crate::quantity::Length;
 
 /// Quantities that follow from a case file without the files that it names.
@@ -48,7 +48,9 @@ impl Derived {
         if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
             return Err(file.source.error(key, why));
         }
-        let friction = file.friction.in_model(groups.v_star, &scales);
+        let friction =
+            file.friction
+                .in_model(groups.v_star, &scales, file.load.foundation_of_a_block(&scales));
         let budget = Budget::of_model(lattice, rows, ranks, file, &friction);
         budget.check_case(file, to_run)?;
         Ok(Self {
@@ -85,9 +87,14 @@ fn scales_of_sheet(file: &CaseFile) -> Scales {
         DriveStiffness::Total(total) if file.slider.rigid => total.si() / (K_DRIVE * thickness),
         _ => file.slider.young_modulus.si(),
     };
+    let contact_width = match file.friction.along {
+        FrictionAlong::Plane => block_size,
+        FrictionAlong::X => thickness,
+    };
     Scales {
         block_size,
         thickness,
+        contact_width,
         young_modulus,
         density: file.slider.density.si(),
         pressure: file.load.pressure.si(),

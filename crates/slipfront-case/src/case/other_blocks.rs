@@ -17,7 +17,7 @@ use super::runnable::Case;
 use super::time_plan::auto_onset_end;
 use crate::case_file::{
     Attached, AttachedEdge, AutoOr, AutoOrStiffness, CaseError, CaseFile, DriveSpeed, DriveStiffness,
-    MAX_BLOCKS, Override, RunTime, StarUnit, star_unit,
+    FrictionAlong, MAX_BLOCKS, Override, RunTime, StarUnit, star_unit,
 };
 use crate::quantity::Length;
 
@@ -28,7 +28,7 @@ fn size(unit: StarUnit, scales: &Scales) -> f64 {
         StarUnit::Time => scales.time(),
         StarUnit::Rate => 1.0 / scales.time(),
         StarUnit::Displacement => scales.displacement(),
-        StarUnit::SpringOfBlock => scales.stiffness() / (scales.block_size * scales.block_size),
+        StarUnit::SpringOfBlock => scales.stiffness() / scales.contact_area(),
         StarUnit::Stiffness => scales.stiffness(),
         StarUnit::One => 1.0,
     }
@@ -45,8 +45,10 @@ impl Case {
     pub fn on_other_blocks(&self, finer: f64) -> Result<Vec<Override>, CaseError> {
         self.refuse_values_of_blocks()?;
         let blocks = self.other_blocks(finer)?;
+        let block_size = self.scales.block_size / finer;
         let scales = Scales {
-            block_size: self.scales.block_size / finer,
+            block_size,
+            contact_width: block_size,
             thickness: if self.file.slider.thickness_is_a_block() {
                 self.scales.thickness / finer
             } else {
@@ -77,7 +79,7 @@ impl Case {
             }
         }
         if let DriveStiffness::Each(AutoOrStiffness::Stiffness(stiffness)) = &self.file.drive.stiffness {
-            let area = (scales.block_size / self.scales.block_size).powi(2);
+            let area = scales.contact_area() / self.scales.contact_area();
             set.push((
                 "drive.stiffness".to_owned(),
                 Value::from(format!("{:e} N/m", stiffness.si() * area)),
@@ -135,6 +137,13 @@ impl Case {
     /// Refuses values that belong to the blocks of the case, and have no meaning on others.
     fn refuse_values_of_blocks(&self) -> Result<(), CaseError> {
         let file = &self.file;
+        if file.friction.along != FrictionAlong::Plane {
+            return Err(file.source.error(
+                "friction.along",
+                "an upright sheet touches its substrate with one row of blocks, which its texture leaves: on others it would be \
+                 another row",
+            ));
+        }
         let fields = [
             ("slider.stiffness_field", &file.slider.stiffness_field),
             ("slider.density_field", &file.slider.density_field),
@@ -277,7 +286,7 @@ mod tests {
             model.drive.v_star * scales.speed(),
             model.damping / scales.time(),
             case.time_plan.end_star() * scales.time(),
-            spring / (scales.block_size * scales.block_size),
+            spring / scales.contact_area(),
         ]
     }
 

@@ -5,7 +5,7 @@ use slipfront::{Communicator, Lattice, Outline, Slider};
 use super::files::Watch;
 use super::inputs::Inputs;
 use crate::arrays::Slab;
-use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, Grade};
+use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, EdgeSprings, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
 
 /// Marks the blocks of some rows that exist, if the slider does not fill its lattice.
@@ -88,6 +88,7 @@ impl GivenBlocks {
         }
         Ok(Slider {
             viscosity_time: file.slider.viscosity_time_star,
+            halves_edge_springs: file.slider.edge_springs == EdgeSprings::Halved,
             ..Slider::new(self.stiffness, self.density, outline, ranks)
         })
     }

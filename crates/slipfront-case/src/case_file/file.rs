@@ -148,6 +148,7 @@ impl CaseFile {
         self.friction.check(&check("friction"))?;
         let (motion, body, contact) = (self.drive.motion, self.slider.body, self.friction.contact);
         self.load.check_shear(&check("load"), motion, body, contact)?;
+        self.check_interface()?;
         if self.drive.loading == Loading::Held {
             self.friction.check_held(&check("friction"))?;
         }

@@ -12,6 +12,7 @@ mod error;
 mod file;
 mod friction;
 mod initial;
+mod interface;
 mod key;
 mod key_rows;
 mod key_table;
@@ -64,7 +65,7 @@ pub use tables::Tables;
 pub use texture::Texture;
 pub use time::{RunTime, Time, TimeStep};
 pub use values::AutoOr;
-pub use words::{Arrangement, AttachedEdge, Body, Loading, Motion, Outline};
+pub use words::{Arrangement, AttachedEdge, Body, EdgeSprings, FrictionAlong, Loading, Motion, Outline};
 
 #[cfg(test)]
 mod tests;

@@ -1,16 +1,19 @@
 //! `[load]`: the normal load, and a dead shear load.
 
 use serde::{Deserialize, Serialize};
+use slipfront::Scales;
 
 use super::check::{Check, Checked};
 use super::error::CaseError;
 use super::friction::ContactModel;
-use super::key::{ARRAY, KeyKind, StarUnit, between, key, number, quantity, within};
+use super::key::{
+    ARRAY, KeyKind, STIFFNESS_PER_AREA, StarUnit, above, between, key, number, quantity, within,
+};
 use super::probe::names_of;
 use super::values::word;
 use super::words::{Body, Motion};
 use crate::key_rows;
-use crate::quantity::{Length, Pressure};
+use crate::quantity::{Length, Pressure, StiffnessPerArea};
 
 key_rows! {
     /// `[load]`: the normal load, and a dead shear load.
@@ -45,6 +48,18 @@ key_rows! {
         /// Local shear load over `shear` or `shear_star`, block by block; it may be below 0.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shear_field: Option<String> = key("", ARRAY),
+        /// Stiffness per area of the foundation along y under the blocks in contact of an upright sheet, which
+        /// bears their load: normal forces follow it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub foundation: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA).or("foundation_star")
+            .title("stiffness of the foundation", "K\u{2099}", "N/m\u{b3}")
+            .note("See [upright sheets](../model.md#an-upright-sheet)."),
+        /// Stiffness of the foundation under a block in contact over E h, with the thickness h.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub foundation_star: Option<f64> = key("", number(above(0.0, 1e3),
+            "it is over E h, with the thickness h, and a spring between blocks has 0.75"))
+            .star(StarUnit::SpringOfBlock).or("foundation")
+            .title("stiffness of the foundation", "k\u{2099}*", ""),
     }
 }
 
@@ -86,6 +101,8 @@ impl Load {
         check.value("shear", &self.shear)?;
         check.value("shear_star", &self.shear_star)?;
         check.value("shear_field", &self.shear_field)?;
+        check.value("foundation", &self.foundation)?;
+        check.value("foundation_star", &self.foundation_star)?;
         if self.shear_field.is_some() && self.shear_key().is_none() {
             return check.refuse("shear_field", |key| {
                 format!("`{key}` is relative to `load.shear` or `load.shear_star`: give one of them")
@@ -131,6 +148,13 @@ impl Load {
                 format!("`{key}` does not go with {reason}; leave one of them out")
             })
         })
+    }
+
+    /// Stiffness of the foundation under a block in contact, in units of `E h`; 0 without one.
+    pub(crate) fn foundation_of_a_block(&self, scales: &Scales) -> f64 {
+        let per_area = self.foundation.as_ref();
+        let of_area = per_area.map(|per_area| scales.stiffness_of_area(per_area.si()));
+        self.foundation_star.or(of_area).unwrap_or(0.0)
     }
 }
 

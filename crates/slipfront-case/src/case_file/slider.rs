@@ -9,7 +9,7 @@ use super::key::{ARRAY, Key, KeyKind, STIFFNESS_PER_AREA, StarUnit, key, number,
 use super::motion::Along;
 use super::probe::names_of;
 use super::values::{Pair, pair, word};
-use super::words::{Body, Outline};
+use super::words::{Body, EdgeSprings, Outline};
 use crate::key_rows;
 use crate::quantity::{Density, Length, Pressure, Rate, StiffnessPerArea};
 use slipfront_base::number_format::count;
@@ -93,6 +93,11 @@ key_rows! {
         #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
         pub edges: [Edges; 2] = key("\"free\"", KeyKind::Words(names_of::<Edges>))
             .further_bounds(", or a pair of them"),
+        /// Springs between neighbours along a free edge: as stiff as those inside, as in the paper, or half as
+        /// stiff, as a continuum of squares between four blocks has them.
+        #[serde(deserialize_with = "word", skip_serializing_if = "EdgeSprings::are_whole")]
+        pub edge_springs: EdgeSprings = key("\"whole\"", KeyKind::Words(names_of::<EdgeSprings>))
+            .note("See [springs along edges](../model.md#an-upright-sheet)."),
         /// Shape of the slider: blocks outside do not exist. A disc has as many blocks along x as along y.
         #[serde(deserialize_with = "word")]
         pub outline: Outline = key("\"rectangle\"", KeyKind::Words(names_of::<Outline>)),
@@ -217,7 +222,27 @@ impl Slider {
                 check.value_of(&RELATIVE_PROPERTY, &format!("{grade}.to"), to)?;
             }
         }
+        self.check_edge_springs(check)?;
         self.check_outline(check)
+    }
+
+    /// Refuses halved springs where not every edge is that of a sheet of squares between blocks.
+    fn check_edge_springs(&self, check: &Check) -> Result<(), CaseError> {
+        let [nx, ny] = self.blocks;
+        let why = if self.edge_springs.are_whole() {
+            return Ok(());
+        } else if self.body == Body::Bulk {
+            "a bulk body has the springs of its sheets"
+        } else if self.outline != Outline::Rectangle {
+            "an outline has corners and necks of single blocks, between which there is no square"
+        } else if nx.min(ny) == 1 {
+            "a chain has no square between four blocks"
+        } else {
+            return Ok(());
+        };
+        check.refuse("edge_springs", |key| {
+            format!("`{key}` = \"halved\" has no meaning here: {why}; take \"whole\"")
+        })
     }
 
     /// Refuses a rigid slider of several blocks, or with a modulus.

@@ -31,6 +31,40 @@ impl Body {
     }
 }
 
+/// Direction in which friction acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FrictionAlong {
+    /// The plane of the slider, which lies on its substrate.
+    #[default]
+    Plane,
+    /// The axis along rows, of a sheet that stands upright on its substrate.
+    X,
+}
+
+impl FrictionAlong {
+    pub(super) fn is_plane(&self) -> bool {
+        *self == Self::Plane
+    }
+}
+
+/// Stiffness of the springs along free edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EdgeSprings {
+    /// Springs as stiff as those inside, as in the paper.
+    #[default]
+    Whole,
+    /// Springs half as stiff.
+    Halved,
+}
+
+impl EdgeSprings {
+    pub(super) fn are_whole(&self) -> bool {
+        *self == Self::Whole
+    }
+}
+
 /// The words of `attach`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

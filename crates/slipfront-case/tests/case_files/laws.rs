@@ -26,6 +26,7 @@ fn keys_become_the_law_in_units_of_the_model() {
             time: 3.0,
         }),
         slip_weakening: None,
+        interface: None,
     };
     assert_eq!(varying.model.friction, Friction::Coulomb(coulomb));
 
@@ -205,4 +206,44 @@ fn a_field_that_is_longer_than_the_slider_is_warned_of() {
     assert_eq!(said("friction.correlation_length = '5 um'"), None);
     let even = "friction = { correlation_length = '25 um', sigma_static_star = 0, sigma_kinetic_star = 0 }";
     assert_eq!(said(even), None);
+}
+
+/// The lowest row of an upright sheet touches with the thickness of the sheet, and its load is the whole load.
+#[test]
+fn an_upright_sheet_stands_on_its_lowest_row() {
+    let text = "slider = { blocks = [20, 8], block_size = '2.5 mm', thickness = '6 mm', young_modulus = '3 GPa' }\n\
+        load = { pressure = '0.2 MPa', foundation = '1e11 N/m^3' }\n\
+        friction = { along = 'x', mu_static = 0.5 }\n";
+    let upright = case(text);
+    let (scales, surface) = (&upright.scales, &upright.model.surface);
+    // A block touches with 2.5 mm x 6 mm: 3 N, and the foundation has 1.5e6 N/m there.
+    assert!((scales.force() - 0.5 * 3.0).abs() < 1e-12, "{scales:?}");
+    let Friction::Coulomb(Coulomb {
+        interface: Some(interface),
+        ..
+    }) = upright.model.friction
+    else {
+        panic!("{:?}", upright.model.friction)
+    };
+    assert!(
+        (interface.foundation - 1.5e6 / (3e9 * 6e-3)).abs() < 1e-15,
+        "{interface:?}"
+    );
+    assert!((0..160).all(|b| surface.textured[b] == (b >= 20)));
+    assert_eq!(
+        (surface.n_contact(), surface.n_facing(), surface.load_factor()),
+        (20, 20, 1.0)
+    );
+    assert_eq!(
+        (surface.texture_percent(), upright.model.mu_star_divisor()),
+        (0.0, 20.0)
+    );
+
+    // A groove across the row leaves its load to the other blocks of it.
+    let grooved = case(&format!(
+        "{text}[[texture]]\nshape = 'groove'\norientation = 'across'\nwidth = '12.5 mm'\n"
+    ));
+    let surface = &grooved.model.surface;
+    assert_eq!((surface.n_contact(), surface.load_factor()), (15, 20.0 / 15.0));
+    assert_eq!(surface.texture_percent(), 25.0);
 }

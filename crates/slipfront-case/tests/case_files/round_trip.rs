@@ -7,7 +7,7 @@ use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
     Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed,
-    DriveStiffness, Friction, Grade, Groove, GrooveSize, HeightMap, Initial, KineticFriction, Law, Level,
+    DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap, Initial, KineticFriction, Law, Level,
     Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon, Profile,
     Redistribute, RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment,
     Texture, Time, TimeStep, Velocity, VelocityLaw,
@@ -103,6 +103,12 @@ fn slider() -> impl Strategy<Value = Slider> {
                 } else {
                     [Edges::Free; 2]
                 },
+                // A chain has no halved springs, nor has an outline.
+                edge_springs: if outline == Outline::Rectangle && nx.min(ny) > 1 && nx % 2 == 0 {
+                    EdgeSprings::Halved
+                } else {
+                    EdgeSprings::Whole
+                },
                 outline,
                 outline_file,
                 viscosity_time_star,
@@ -131,6 +137,7 @@ fn bulk() -> impl Strategy<Value = Slider> {
     (slider(), prop_oneof![by_height, sheets]).prop_map(
         |(slider, (height, poisson, longest_wave, sheets))| Slider {
             body: Body::Bulk,
+            edge_springs: EdgeSprings::Whole,
             thickness: None,
             height,
             poisson,
@@ -180,6 +187,8 @@ fn load() -> impl Strategy<Value = Load> {
             shear,
             shear_star,
             shear_field,
+            foundation: None,
+            foundation_star: None,
         },
     )
 }

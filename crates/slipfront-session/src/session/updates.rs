@@ -220,7 +220,7 @@ impl Session {
             block: [i, j],
             exists: case.model.slider().exists(b),
             textured,
-            sliding: block.slides(),
+            sliding: block.slides,
             mu_static: surface.mu_static[b],
             mu_kinetic: surface.mu_kinetic[b],
             contact_stress_pa: block.contact_stress() * case.scales.stress(),

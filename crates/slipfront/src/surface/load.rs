@@ -35,6 +35,10 @@ pub struct Contact {
     pub pressure: Option<Vec<f64>>,
     /// Friction that does not depend on the load.
     pub adhesion: Adhesion,
+    /// Whether every block that this process holds faces the substrate, and bears a load there unless it is
+    /// textured: all blocks if there are none, those of the lowest row of an upright sheet. Means over the
+    /// surface are means over these.
+    pub faces: Option<Vec<bool>>,
 }
 
 /// Shear strength of the contact without load, in units of `P mu_s`.
@@ -54,6 +58,7 @@ impl Contact {
             mu_static_mean,
             pressure: None,
             adhesion: Adhesion::default(),
+            faces: None,
         }
     }
 }

@@ -102,13 +102,17 @@ impl Surface {
                 *textured |= !exists;
             }
         }
+        for (textured, faces) in textured.iter_mut().zip(contact.faces.iter().flatten()) {
+            *textured |= !faces;
+        }
         let negative_draws = coefficients.restrict(&textured);
+        let exists = slider.outline.as_ref().map(|outline| &outline.exists[..]);
         let whole = Whole::find(
             &coefficients,
             negative_draws,
             &textured,
             contact.pressure.as_deref(),
-            slider.outline.as_ref(),
+            [exists, contact.faces.as_deref()],
             ranks,
         );
         if whole.sum_pressure[1] <= 0.0 {
@@ -143,6 +147,11 @@ impl Surface {
             mu_kinetic: some(&self.mu_kinetic),
             contact: Contact {
                 pressure: self.contact.pressure.as_deref().map(some),
+                faces: self
+                    .contact
+                    .faces
+                    .as_ref()
+                    .map(|faces| faces[blocks.clone()].to_vec()),
                 ..self.contact
             },
             whole: self.whole,
@@ -222,6 +231,12 @@ impl Surface {
         self.whole.n_contact
     }
 
+    /// Number of blocks of the whole surface that face the substrate, textured or not: all that exist, or
+    /// those at the lower edge of an upright sheet, see [`Contact::faces`].
+    pub fn n_facing(&self) -> usize {
+        self.whole.n_blocks
+    }
+
     /// Negative draws of coefficients that were set to 0, static and kinetic together, of all blocks of the
     /// whole surface in contact.
     pub fn negative_draws(&self) -> usize {
@@ -246,12 +261,12 @@ impl Surface {
         self.whole.sum_kinetic / self.whole.n_contact as f64
     }
 
-    /// Mean of the local pressures over all blocks that exist, in units of `P`.
+    /// Mean of the local pressures over the [facing blocks](Self::n_facing), in units of `P`.
     pub fn mean_pressure(&self) -> f64 {
         self.whole.sum_pressure[0] / self.whole.n_blocks as f64
     }
 
-    /// Mean kinetic friction over all blocks that exist, textured ones included:
+    /// Mean kinetic friction over the [facing blocks](Self::n_facing), textured ones included:
     /// `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
     pub fn mean_kinetic_force(&self) -> f64 {
         let whole = &self.whole;
@@ -259,7 +274,7 @@ impl Surface {
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
     }
 
-    /// Mean static threshold over all blocks that exist, textured ones included:
+    /// Mean static threshold over the [facing blocks](Self::n_facing), textured ones included:
     /// `mean(mu_si F_n,i + tau_as l^2)` in units of `P mu_s l^2`.
     pub fn mean_static_force(&self) -> f64 {
         let whole = &self.whole;
@@ -273,7 +288,8 @@ impl Surface {
         self.load_factor
     }
 
-    /// Mean normal force over all blocks, textured ones included, in units of `P l^2`.
+    /// Mean normal force over the [facing blocks](Self::n_facing), textured ones included, in units of
+    /// `P l^2`.
     pub fn mean_normal_force(&self) -> f64 {
         self.load_factor * self.whole.sum_pressure[1] / self.whole.n_blocks as f64
     }

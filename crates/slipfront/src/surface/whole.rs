@@ -7,12 +7,11 @@ use super::coefficients::Coefficients;
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::parallel::*;
-use crate::slider::Outline;
 
 /// Numbers of the whole surface, equal to the last bit on every rank and for any number of ranks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Whole {
-    /// Blocks that exist.
+    /// Blocks that exist and face the substrate.
     pub(super) n_blocks: usize,
     pub(super) n_contact: usize,
     pub(super) negative_draws: usize,
@@ -24,7 +23,7 @@ pub(super) struct Whole {
     pub(super) sum_static_pressure: f64,
     /// Sum `sum mu_ki p_i/P` over the blocks in contact.
     pub(super) sum_kinetic_pressure: f64,
-    /// Sum `sum p_i/P` over all blocks that exist, and over those in contact.
+    /// Sum `sum p_i/P` over all these blocks, and over those in contact.
     pub(super) sum_pressure: [f64; 2],
 }
 
@@ -38,20 +37,21 @@ const SUMS: usize = 6;
 impl Whole {
     /// Finds the numbers together with all other ranks that hold a part of the surface, from coefficients as
     /// [restricted](Coefficients::restrict), the number of negative draws, and local pressures in units of
-    /// `P`, 1 everywhere if there are none. Blocks that do not exist count as textured.
+    /// `P`, 1 everywhere if there are none. `faces`: whether each block exists, and whether it faces the
+    /// substrate; the others count as textured.
     pub(super) fn find(
         coefficients: &Coefficients,
         negative_draws: usize,
         textured: &[bool],
         pressure: Option<&[f64]>,
-        outline: Option<&Outline>,
+        faces: [Option<&[bool]>; 2],
         ranks: &dyn Communicator,
     ) -> Self {
         let [mu_static, mu_kinetic] = [&coefficients.mu_static, &coefficients.mu_kinetic];
+        let is_facing = |b: usize| faces.iter().flatten().all(|is_so| is_so[b]);
         let terms = |b: usize| {
-            let exists = outline.is_none_or(|outline| outline.exists[b]);
             let p = match pressure {
-                _ if !exists => 0.0,
+                _ if !is_facing(b) => 0.0,
                 Some(pressure) => pressure[b],
                 None => 1.0,
             };
@@ -89,7 +89,8 @@ impl Whole {
         let added = |one: [i128; SUMS], other: [i128; SUMS]| array::from_fn(|k| one[k] + other[k]);
         let sums: [i128; SUMS] = reduce(parts().map(sum), || [0; SUMS], added);
         let n_contact = parts().map(|blocks| textured[blocks].iter().filter(|&&textured| !textured).count());
-        let counts = [textured.len(), n_contact.sum(), negative_draws];
+        let n_facing = parts().map(|blocks| blocks.filter(|&b| is_facing(b)).count());
+        let counts = [n_facing.sum::<usize>(), n_contact.sum(), negative_draws];
         let mut words = [[0; 2]; SUMS + 2];
         for (words, sum) in words.iter_mut().zip(sums) {
             *words = split(sum);
@@ -99,7 +100,7 @@ impl Whole {
         ranks.sum(words.as_flattened_mut());
         let value = |k: usize| fixed[k].value(join(words[k]));
         Self {
-            n_blocks: outline.map_or(words[SUMS][0] as usize, |outline| outline.n_blocks),
+            n_blocks: words[SUMS][0] as usize,
             n_contact: words[SUMS][1] as usize,
             negative_draws: words[SUMS + 1][0] as usize,
             sum_static: value(0),
@@ -128,7 +129,7 @@ mod tests {
         }
         coefficients.mu_static[PART + 1] = 1e6;
         (coefficients.mu_static[n - 1], coefficients.mu_kinetic[n - 1]) = (0.0, 1.0);
-        let found = Whole::find(&coefficients, 7, &textured, None, None, &Alone);
+        let found = Whole::find(&coefficients, 7, &textured, None, [None; 2], &Alone);
         let expected = Whole {
             n_blocks: n,
             n_contact: n - 3,
@@ -143,7 +144,7 @@ mod tests {
         // Half the pressure on every other block, from the first on; of those without contact, one has the
         // whole.
         let pressure: Vec<f64> = (0..n).map(|b| if b % 2 == 0 { 0.5 } else { 1.0 }).collect();
-        let found = Whole::find(&coefficients, 0, &textured, Some(&pressure), None, &Alone);
+        let found = Whole::find(&coefficients, 0, &textured, Some(&pressure), [None; 2], &Alone);
         let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;
         assert_eq!(found.sum_pressure, [all, all - 2.0]);
         // The block of 10^6 has an odd index; the last has an even one, and the coefficients 0 and 1.

@@ -450,6 +450,7 @@ fn table_1(case: usize, corrected: bool) -> Model {
     let scales = Scales {
         block_size: 1e-6,
         thickness: 1e-6,
+        contact_width: 1e-6,
         young_modulus: young * 1e6,
         density: density * 1e3,
         pressure: pressure * 1e3,

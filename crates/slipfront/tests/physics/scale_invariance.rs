@@ -12,6 +12,7 @@ const SLIDERS: [Scales; 4] = [
     Scales {
         block_size: 1e-6,
         thickness: 1e-6,
+        contact_width: 1e-6,
         young_modulus: 100e9,
         density: 10e3,
         pressure: 100e3,
@@ -20,6 +21,7 @@ const SLIDERS: [Scales; 4] = [
     Scales {
         block_size: 1e-6,
         thickness: 1e-6,
+        contact_width: 1e-6,
         young_modulus: 100e6,
         density: 1e3,
         pressure: 1e3,
@@ -28,6 +30,7 @@ const SLIDERS: [Scales; 4] = [
     Scales {
         block_size: 3e-3,
         thickness: 3e-3,
+        contact_width: 3e-3,
         young_modulus: 2.1e11,
         density: 7.8e3,
         pressure: 1e6,
@@ -36,6 +39,7 @@ const SLIDERS: [Scales; 4] = [
     Scales {
         block_size: 0.2,
         thickness: 0.2,
+        contact_width: 0.2,
         young_modulus: 1e7,
         density: 950.0,
         pressure: 100.0,
@@ -53,6 +57,7 @@ fn a_mount_sets_a_frequency_that_no_block_does() {
             let scales = Scales {
                 block_size,
                 thickness,
+                contact_width: block_size,
                 ..scales
             };
             let frequency = scales.stiffness_of_area(per_area).sqrt() / scales.time();

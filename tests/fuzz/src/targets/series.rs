@@ -72,6 +72,7 @@ fn long(row: &[u8], header: &[u8]) -> Vec<Vec<u8>> {
 const SCALES: Scales = Scales {
     block_size: 1e-6,
     thickness: 1e-6,
+    contact_width: 1e-6,
     young_modulus: 1e11,
     density: 1e4,
     pressure: 1e5,
@@ -173,6 +174,7 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
             viscous_loss_j: (rows == 3).then_some(1e-9),
             sheet_coupling_energy_j: None,
             contact_spring_energy_j: None,
+            foundation_energy_j: None,
             broken_spring_loss_j: None,
             weakening_loss_j: None,
             mean_state_star: Some(16.0),

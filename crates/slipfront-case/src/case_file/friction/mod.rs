@@ -13,7 +13,7 @@ mod weakening;
 use std::ops::Bound::Included;
 
 use serde::{Deserialize, Serialize};
-use slipfront::{ContactSprings, Coulomb, FrictionLaw, Model, Scales};
+use slipfront::{ContactSprings, Coulomb, FrictionLaw, Interface, Model, Scales};
 
 pub use self::ageing::{Ageing, AgeingLaw};
 pub use self::slip_weakening::SlipWeakeningLength;
@@ -27,6 +27,7 @@ use super::key::{
 use super::length_of_a_block::LengthOfABlock;
 use super::probe::names_of;
 use super::values::word;
+use super::words::FrictionAlong;
 use crate::key_rows;
 use crate::quantity::{Length, Pressure, StiffnessPerArea};
 use slipfront_base::number_format::four_digits;
@@ -84,6 +85,11 @@ key_rows! {
         /// comparison.
         #[serde(deserialize_with = "word")]
         pub law: Law = key("\"projection\"", KeyKind::Words(names_of::<Law>)).paper("Eq. 4"),
+        /// Direction in which friction acts: the plane of a slider that lies on its substrate, or x alone, of
+        /// a sheet that stands upright on it, whose blocks move freely along y.
+        #[serde(deserialize_with = "word", skip_serializing_if = "FrictionAlong::is_plane")]
+        pub along: FrictionAlong = key("\"plane\"", KeyKind::Words(names_of::<FrictionAlong>))
+            .note("See [upright sheets](../model.md#an-upright-sheet)."),
         /// Mean static coefficient, and the scale of all forces even when a field is given.
         pub mu_static: f64 = key("1.0", number(above(0.0, 100.0), "it is the scale of all forces"))
             .paper("mean of mu_s")
@@ -269,7 +275,8 @@ impl Friction {
     }
 
     /// The law of the model that the keys, which fit each other, define at this V*.
-    pub fn in_model(&self, v_star: f64, scales: &Scales) -> slipfront::Friction {
+    /// `foundation`: stiffness of the foundation under a block of an upright sheet.
+    pub fn in_model(&self, v_star: f64, scales: &Scales, foundation: f64) -> slipfront::Friction {
         let per_area = self.contact_stiffness_per_area.as_ref();
         let of_area = per_area.map(|per_area| scales.stiffness_of_area(per_area.si()));
         if let Some(stiffness) = self.contact_stiffness_star.or(of_area) {
@@ -296,6 +303,10 @@ impl Friction {
                 .slip_weakening
                 .as_ref()
                 .map(|law| law.law(scales, self.healing_time_star)),
+            interface: match self.along {
+                FrictionAlong::Plane => None,
+                FrictionAlong::X => Some(Interface { foundation }),
+            },
         })
     }
 
@@ -326,8 +337,16 @@ impl Friction {
                     .into_iter()
                     .flatten()
                     .collect();
+                let along = match &coulomb.interface {
+                    None => String::new(),
+                    Some(interface) if interface.foundation > 0.0 => format!(
+                        ", along x alone, on a foundation of {} E h under a block",
+                        four_digits(interface.foundation)
+                    ),
+                    Some(_) => ", along x alone".to_owned(),
+                };
                 format!(
-                    "{}, R* = {ratio} ({of_kinetic}), seed {}{reading}{options}",
+                    "{}, R* = {ratio} ({of_kinetic}), seed {}{reading}{options}{along}",
                     coefficients(),
                     self.seed
                 )
