@@ -33,6 +33,7 @@ _LONG_NAMES = {
     "viscous_loss_j": "lost to the dampers between blocks since the start",
     "sheet_coupling_energy_j": "energy of the springs between the sheets of a bulk body",
     "contact_spring_energy_j": "energy of the springs in contact",
+    "foundation_energy_j": "energy of the foundation under an upright sheet",
     "broken_spring_loss_j": "lost with springs that broke since the start",
     "weakening_loss_j": "lost to friction as strength falls with slip since the start",
     "mean_state_star": "mean state of the contacts",
