@@ -36,6 +36,7 @@ pub mod surface;
 pub mod testing;
 
 mod clock;
+mod critical_size;
 mod dead_load;
 mod drive;
 mod elementary;

@@ -1,6 +1,6 @@
 //! The model of a run, which never changes: lattice, slider, surface, drive, damping and friction law.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -218,32 +218,6 @@ impl Model {
     /// Number of blocks of the whole lattice that exist.
     pub fn n_blocks(&self) -> usize {
         self.slider.n_blocks(&self.lattice)
-    }
-
-    /// Size along the drive, in blocks, from which a patch at its threshold runs away where strength falls
-    /// with slip: the critical size of a long strip across the drive whose blocks have the mean strength of
-    /// those in contact, on the mean drive spring `k_s`; without drive springs, where only some blocks have
-    /// one. The size is infinite where the mount is stiff enough for slip of any size to be stable; there is
-    /// none under other laws, and of a stack of sheets.
-    ///
-    /// ```text
-    /// L_c = pi sqrt(K_el/(W - k_s)),   W = (S - K)/D_c,   K_el = 9/8, 3/4 of a chain
-    /// ```
-    pub fn critical_size(&self) -> Option<f64> {
-        let weakening = self.weakening().filter(|_| self.sheets.is_empty())?;
-        let mean_spring = self.slider.sum_of_drive_springs(&self.lattice) / self.n_blocks() as f64;
-        // A stiff drive at an edge does not hold a patch far from it.
-        let mount = if self.slider.drives_some {
-            0.0
-        } else {
-            self.drive.k_drive * mean_spring
-        };
-        let unstable = weakening - mount;
-        Some(if unstable > 0.0 {
-            PI * (self.lattice.stiffness_along() / unstable).sqrt()
-        } else {
-            f64::INFINITY
-        })
     }
 
     /// Fall of strength per slip of a block in contact, `W = (S - K)/D_c` with the mean strength of all of

@@ -24,6 +24,9 @@ const OF_SCREENING: f64 = 3.0;
 /// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the
 /// screening length counts.
 const NEARLY_STABLE: f64 = 4.0;
+/// Relative difference of the bounds of the critical size below which one of them is said: where nearly all
+/// blocks touch, both are within the error of the formula.
+const NEARLY_ALL_TOUCH: f64 = 0.1;
 /// Number of blocks in the correlation length that is enough: coefficients are exact means over blocks.
 const OF_CORRELATION: f64 = 0.5;
 /// Number of blocks across the smallest feature that is enough: its area is then meshed within 2 % in root
@@ -80,17 +83,20 @@ impl Case {
     /// All lengths but those of the texture.
     fn material_lengths(&self) -> Vec<CaseLength> {
         let model = &self.model;
-        let critical_size = model.critical_size();
+        let critical_size = self.expected.critical_size;
         let mut lengths = vec![self.length("block", 1.0, None)];
         if self.has_spring_on_every_block() {
             let [along, across] = model.drive.screening_lengths(&model.lattice);
-            let counts = critical_size.is_some_and(|size| size > NEARLY_STABLE * along);
+            let counts = critical_size.is_some_and(|[least, _]| least > NEARLY_STABLE * along);
             lengths.push(self.length("screening length along", along, counts.then_some(OF_SCREENING)));
             lengths.push(self.length("screening length across", across, None));
         }
-        if let Some(blocks) = critical_size {
-            let enough = blocks.is_finite().then_some(OF_CRITICAL_SIZE);
-            lengths.push(self.length("critical size", blocks, enough));
+        if let Some([least, most]) = critical_size {
+            let enough = least.is_finite().then_some(OF_CRITICAL_SIZE);
+            lengths.push(self.length("critical size", least, enough));
+            if most > (1.0 + NEARLY_ALL_TOUCH) * least {
+                lengths.push(self.length("critical size, at most", most, None));
+            }
         }
         if let Some(blocks) = self.critical_size_of_bulk() {
             let is_of_slider = blocks.is_finite() && !self.model.sheets().is_empty();

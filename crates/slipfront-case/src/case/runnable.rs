@@ -65,6 +65,8 @@ pub struct Expected {
     pub first_slip_star: f64,
     /// Earliest and latest t* of the onset, see [`Model::onset_estimate`].
     pub onset_star: [f64; 2],
+    /// Least and most of the critical size of slip in blocks, see [`Model::critical_size`].
+    pub critical_size: Option<[f64; 2]>,
     /// t* up to which the largest mu* is static friction: twice the t* of the onset, and more where only some
     /// blocks touch or adhesion delays it.
     pub onset_end_star: f64,
@@ -79,6 +81,7 @@ impl Expected {
             steady_drag: model.steady_drag(ranks),
             first_slip_star: model.first_slip_estimate(ranks),
             onset_star: model.onset_estimate(load_factor(file, model)),
+            critical_size: model.critical_size(ranks),
             onset_end_star: auto_onset_end(file, scales, model),
             at_once: AtOnce::of(model, ranks),
         }

@@ -82,6 +82,72 @@ fn the_critical_size_decides_of_a_sheet() {
     );
 }
 
+/// Where some blocks do not touch, the critical size lies between two bounds. The sizes in between are exact
+/// on the lattice: the width of the strip of blocks in contact whose stiffness, with all blocks that do not
+/// touch free, has the least eigenvalue W, and one block more for the neighbours that are held.
+#[test]
+fn blocks_without_contact_raise_the_critical_size() {
+    let bounds = |blocks: [usize; 2], friction: &str, texture: &str| {
+        let [nx, ny] = blocks;
+        let text = format!(
+            "slider = {{ blocks = [{nx}, {ny}], block_size = '1 um', edges = 'periodic' }}\nload = {{ redistribute = false }}\n\
+             drive = {{ stiffness_star = 1e-9 }}\n\
+             [friction]\n{friction}sigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = {{ length_star = 5 }}\n[time]\nduration_star = 100\n{texture}"
+        );
+        case(&text).expected.critical_size.unwrap()
+    };
+    let groove = |offset: f64, orientation: &str, width: f64, pitch: f64, count: usize| {
+        (0..count)
+            .map(|k| {
+                let offset = offset + pitch * (k as f64 - 0.5 * (count - 1) as f64);
+                format!("[[texture]]\nshape = 'groove'\norientation = '{orientation}'\nwidth = '{width} um'\noffset = '{offset} um'\n")
+            })
+            .collect::<String>()
+    };
+    // W = 0.1.
+    let plain = std::f64::consts::PI * (1.125_f64 / 0.1).sqrt();
+    for (textures, share, exact) in [
+        (String::new(), 1.0, 10.53),
+        (groove(0.0, "along", 2.0, 4.0, 12), 0.5, 13.45),
+        (groove(0.0, "along", 3.0, 4.0, 12), 0.25, 17.95),
+        (groove(0.0, "across", 2.0, 4.0, 12), 0.5, 12.92),
+    ] {
+        let [least, most] = bounds([48, 48], "", &textures);
+        let spread = plain / f64::sqrt(share);
+        assert!(
+            (least - plain).abs() < 1e-6 && (most - spread).abs() < 1e-6,
+            "{least} {most}, {spread}"
+        );
+        // The strip of a lattice has a whole number of blocks.
+        assert!(
+            least - 0.02 < exact && exact < most,
+            "{exact} from {least} to {most}"
+        );
+    }
+    // One line in a sheet of 201 x 121, 25.5 blocks by the lattice; 26.06 by the continuum.
+    let [least, most] = bounds([48, 48], "", &groove(0.0, "along", 47.0, 0.0, 1));
+    assert!(
+        (least - plain).abs() < 1e-6 && (most - 26.055).abs() < 1e-3,
+        "{least} {most}"
+    );
+    // At the edge of an upright sheet: exact on a lattice of 201 x 121 whose springs along the edge are halved
+    // 12.18 blocks, and 14.45 where they are whole. The formula leaves out 5 %.
+    let upright = |edge: &str| {
+        let text = format!(
+            "slider = {{ blocks = [60, 40], block_size = '1 um', edge_springs = '{edge}' }}\n[friction]\nalong = 'x'\n\
+             sigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = {{ length_star = 5 }}\n"
+        );
+        case(&text).expected.critical_size.unwrap()
+    };
+    let found = [upright("halved"), upright("whole")];
+    for ([least, most], exact) in found.into_iter().zip([12.18, 14.45]) {
+        assert!(
+            least == most && (least / exact - 1.0).abs() < 0.06,
+            "{least} for {exact}"
+        );
+    }
+}
+
 /// A drive at an edge leaves most blocks without a spring: however stiff it is, it does not hold a patch far
 /// from it, and `L_c = pi sqrt(9/(8 W))`.
 #[test]
