@@ -63,7 +63,7 @@ impl DeadLoad {
     }
 
     /// Force on block `b`, which exists, over [`force`](Self::force).
-    pub(crate) fn relative(&self, b: usize) -> f64 {
+    pub fn relative(&self, b: usize) -> f64 {
         self.field.as_ref().map_or(1.0, |field| field.relative[b])
     }
 

@@ -184,13 +184,17 @@ impl Model {
         &self.dead_load
     }
 
-    /// Mean over all blocks of the constant forces along the drive and to its left, over the load: their part
-    /// of mu*.
+    /// Mean over the [facing blocks](Surface::n_facing) of the constant forces along the drive and to its
+    /// left, over the load: their part of mu*.
     pub fn mean_dead_load(&self) -> [f64; 2] {
-        let n_blocks = self.n_blocks() as f64;
-        let sum = self.dead_load.field.as_ref().map_or(n_blocks, |field| field.sum);
+        let n_facing = self.surface.n_facing() as f64;
+        let sum = self
+            .dead_load
+            .field
+            .as_ref()
+            .map_or(self.n_blocks() as f64, |field| field.sum);
         self.along_and_across(self.dead_load.force)
-            .map(|force| force * (sum / n_blocks))
+            .map(|force| force * (sum / n_facing))
     }
 
     /// Components of a vector along the direction of a drive that does not rotate, and to the left of it.

@@ -6,7 +6,7 @@ use slipfront::{Communicator, DeadLoad, Model, Scales};
 use super::files::Watch;
 use super::inputs::Inputs;
 use super::runnable::Case;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, FrictionAlong};
 use slipfront_base::number_format::{count, four_digits};
 
 /// The local shear load over that of the case, of the blocks of these rows, if a file gives it.
@@ -18,7 +18,8 @@ pub(super) fn field(
     inputs.read_signed_field(file, "load.shear_field", &file.load.shear_field, watch)
 }
 
-/// The dead load of a case on the blocks of a model, along its drive. All ranks call this at once.
+/// The dead load of a case on the blocks of a model, along its drive, of an upright sheet on its lowest row.
+/// All ranks call this at once.
 pub(super) fn dead_load(
     file: &CaseFile,
     scales: &Scales,
@@ -29,6 +30,19 @@ pub(super) fn dead_load(
     let of_stress = file.load.shear.as_ref().map(|shear| shear.si() / scales.stress());
     let shear = of_stress.or(file.load.shear_star).unwrap_or(0.0);
     let force = model.drive.direction.map(|d| shear * d);
+    let is_upright = file.friction.along == FrictionAlong::X && shear != 0.0;
+    let field = if is_upright {
+        let blocks = model.lattice.blocks_of(&model.rows);
+        // Along the interface, which is the lowest row.
+        let relative = |(k, b): (usize, usize)| match &field {
+            _ if b >= model.lattice.nx => 0.0,
+            Some(field) => field[k],
+            None => 1.0,
+        };
+        Some(blocks.enumerate().map(relative).collect())
+    } else {
+        field
+    };
     match field {
         Some(field) => DeadLoad::of_blocks(force, field, model.slider(), ranks),
         None => DeadLoad::uniform(force),

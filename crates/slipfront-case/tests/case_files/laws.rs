@@ -239,6 +239,11 @@ fn an_upright_sheet_stands_on_its_lowest_row() {
         (0.0, 20.0)
     );
 
+    // A shear load acts along the interface alone.
+    let sheared = case(&text.replace("load = {", "load = { shear = '50 kPa',"));
+    assert!((sheared.model.mean_dead_load()[0] - 0.5).abs() < 1e-15);
+    assert!((0..160).all(|b| sheared.model.dead_load().relative(b) == f64::from(u8::from(b < 20))));
+
     // A groove across the row leaves its load to the other blocks of it.
     let grooved = case(&format!(
         "{text}[[texture]]\nshape = 'groove'\norientation = 'across'\nwidth = '12.5 mm'\n"

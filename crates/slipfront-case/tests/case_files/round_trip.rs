@@ -7,10 +7,10 @@ use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
     Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
     Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed,
-    DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap, Initial, KineticFriction, Law, Level,
-    Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon, Profile,
-    Redistribute, RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source, SpeedSegment,
-    Texture, Time, TimeStep, Velocity, VelocityLaw,
+    DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap, Initial, KineticFriction,
+    Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon,
+    Profile, Redistribute, RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source,
+    SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -560,14 +560,16 @@ fn output() -> impl Strategy<Value = Output> {
         any::<[bool; 3]>(),
     )
         .prop_map(
-            |(snapshots, fields, stride, series, [movie, events, final_state]): (_, Vec<Field>, _, _, _)| Output {
-                snapshots,
-                fields,
-                stride,
-                series,
-                movie,
-                events,
-                final_state,
+            |(snapshots, fields, stride, series, [movie, events, final_state]): (_, Vec<Field>, _, _, _)| {
+                Output {
+                    snapshots,
+                    fields,
+                    stride,
+                    series,
+                    movie,
+                    events,
+                    final_state,
+                }
             },
         )
 }

@@ -160,13 +160,21 @@ impl Events {
         let may_be_faster = bound > event.speed_max;
         let (paths, n_stuck) = (&mut self.paths_before, &mut self.n_stuck);
         let (mut square, mut first) = (0.0, None);
+        // The motion of an upright sheet along y is no slip.
+        let across = f64::from(u8::from(now.model.friction.interface().is_none()));
         if may_be_faster || *n_stuck > 0 {
             now.engine.read_sliding(now.model, &mut |start, slides, [x, y]| {
                 let n = slides.len();
                 let textured = &now.model.surface.textured[start..][..n];
                 let (x, y) = (&x[..n], &y[..n]);
                 let slips = |k: usize| slides[k] & !textured[k];
-                let of_block = |k: usize| if slips(k) { x[k] * x[k] + y[k] * y[k] } else { 0.0 };
+                let of_block = |k: usize| {
+                    if slips(k) {
+                        x[k] * x[k] + across * (y[k] * y[k])
+                    } else {
+                        0.0
+                    }
+                };
                 square = reductions::largest(n, of_block).max(square);
                 if *n_stuck == 0 {
                     return;

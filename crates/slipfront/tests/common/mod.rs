@@ -12,8 +12,8 @@ use slipfront::surface::{
     cavity_lambda, mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
-    Communicator, Coulomb, DeadLoad, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Interface, Lattice,
-    Loading, Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField,
+    Communicator, Coulomb, DeadLoad, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Interface,
+    Lattice, Loading, Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField,
     Weakening, scales,
 };
 

@@ -173,7 +173,7 @@ impl Observer for ByBlock {
         let model = now.model;
         let n = model.lattice.n_blocks();
         let blocks: Vec<_> = (0..n).map(|b| now.block(b)).collect();
-        let slips = |b: &usize| blocks[*b].slides() && !model.surface.textured[*b];
+        let slips = |b: &usize| blocks[*b].slides && !model.surface.textured[*b];
         let slipping: Vec<usize> = (0..n).filter(slips).collect();
         if let (Some(first), None) = (slipping.first(), &self.event) {
             let (i, j) = model.lattice.column_row(*first);

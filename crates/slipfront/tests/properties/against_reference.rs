@@ -11,9 +11,9 @@ use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction, FrictionLaw, Interface, Kernel,
-    Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, SlipWeakening, Snapshot,
-    State, Stop, Surface, VectorField, Weakening, scales,
+    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction, FrictionLaw,
+    Interface, Kernel, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation,
+    SlipWeakening, Snapshot, State, Stop, Surface, VectorField, Weakening, scales,
 };
 
 use crate::common::Slider;

@@ -181,8 +181,11 @@ pub(super) fn read_sliding(
         for t in (0..band.tiles.len()).filter(|t| band.tiles[*t].moving) {
             let elements = band.elements(t);
             let [x, y] = [&band.velocity.x, &band.velocity.y].map(|v| &v[elements.clone()]);
-            for ((slides, x), y) in slides.iter_mut().zip(x).zip(y) {
-                *slides = (*x != 0.0) | (*y != 0.0);
+            for (slides, v) in slides.chunks_mut(LANES).zip(band.vectors(t)) {
+                let sliding = band.sliding(v);
+                for (lane, slides) in slides.iter_mut().enumerate() {
+                    *slides = sliding >> lane & 1 == 1;
+                }
             }
             for (j, i, blocks) in layout.rows_among(band.first + elements.start..band.first + elements.end) {
                 let velocities = [&x[blocks.clone()], &y[blocks.clone()]];
