@@ -156,6 +156,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
             length: 1.0,
             healing_time: has(Choice::Healing).then_some(10.0),
         }),
+        interface: None,
     };
     let d_c = 0.5;
     let friction = if has(Choice::RateAndState) {

@@ -638,6 +638,8 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
                     initial = Initial::default();
                     output.final_state = false;
                 }
+                // A spring in contact breaks at an instant.
+                output.events &= friction.contact == ContactModel::Rigid;
                 CaseFile {
                     slider,
                     load,
