@@ -1,8 +1,9 @@
 //! The models around the paper's: for every option of the engine the exact answers, and what it computes.
 //!
 //! Each chapter builds its sliders from the physics alone and compares their motion with a closed form or
-//! with the integration of an equation that is derived in its text. The command is `slipfront family`; its
-//! page is `docs/validation/family.md`.
+//! with the integration of an equation that is derived in its text; or, of benchmarks that others set, with
+//! their reference. The command is `slipfront family`; its pages are `docs/validation/family.md` and
+//! `rupture.md`.
 
 mod adhesion;
 mod ageing;
@@ -20,7 +21,9 @@ mod page;
 mod patterns;
 mod program;
 mod rate_and_state;
+mod recurrence;
 mod runs;
+mod rupture;
 mod slip_weakening;
 mod torsion;
 mod weakening;
@@ -29,13 +32,13 @@ use rayon::prelude::*;
 
 pub use answer::{Answer, Chapter, Tolerance};
 pub use error::FamilyError;
-pub use page::{docs_page, foreign_docs, summary, write_docs};
+pub use page::{Book, foreign_docs, summary, write_docs};
 
 /// Computes one chapter.
 type Compute = fn() -> Result<Chapter, FamilyError>;
 
-/// All chapters, in the order of the page.
-const CHAPTERS: &[Compute] = &[
+/// Chapters of the options of the engine, in the order of their page.
+const OPTIONS: &[Compute] = &[
     edge_drive::chapter,
     load::chapter,
     program::chapter,
@@ -54,10 +57,24 @@ const CHAPTERS: &[Compute] = &[
     fronts::chapter,
 ];
 
-/// Computes all chapters, on as many threads as there are workers.
+/// Chapters of benchmarks that others set, in the order of their page.
+const BENCHMARKS: &[Compute] = &[
+    rupture::nucleation_chapter,
+    rupture::speed_chapter,
+    recurrence::cycle_chapter,
+    recurrence::catalogue_chapter,
+];
+
+/// Computes all chapters of all pages, on as many threads as there are workers.
 ///
 /// # Errors
 /// When a run diverges.
-pub fn chapters() -> Result<Vec<Chapter>, FamilyError> {
-    CHAPTERS.par_iter().map(|compute| compute()).collect()
+pub fn books() -> Result<[Book; 2], FamilyError> {
+    let all: Vec<&Compute> = BENCHMARKS.iter().chain(OPTIONS).collect();
+    let mut chapters: Vec<Chapter> = all
+        .par_iter()
+        .map(|compute| compute())
+        .collect::<Result<_, _>>()?;
+    let options = chapters.split_off(BENCHMARKS.len());
+    Ok([Book::of_options(options), Book::of_benchmarks(chapters)])
 }

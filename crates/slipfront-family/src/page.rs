@@ -1,4 +1,4 @@
-//! The page `docs/validation/family.md`, and the lines that the command prints.
+//! The pages `family.md` and `rupture.md` of `docs/validation`, and the lines that the command prints.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -11,40 +11,83 @@ use slipfront_run::folder_error::FolderError;
 use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
 
-/// The first line of the page, by which a page of an earlier call is recognised.
-const TITLE: &str = "# The family, answer by answer\n";
-const PAGE: &str = "family.md";
 const IMAGES: &str = "images";
-const PICTURE: &str = "family-";
 
-/// The text of the page.
-pub fn docs_page(chapters: &[Chapter]) -> String {
-    let answers: usize = chapters.iter().map(|chapter| chapter.answers.len()).sum();
-    let mut text = format!(
-        "{TITLE}\n\
-         The options of the engine beyond the paper's model, each with what is known exactly about it and what the engine computes:\n\n\
-         ```console\n$ slipfront family --docs docs/validation\n```\n\n\
-         {answers} answers, each measured in a run, in units of P μ̄_s l² (forces), P μ̄_s l/E (displacements) and l √(ρ/E) (times). What is\n\
-         derived here is derived in the text. Works are named for what they studied; none of their figures is repeated here.\n\n\
-         \"At most\" is an estimate of the error of the run, from what \"because\" names, not from what was found. Some of it is certain, and found\n\
-         nearly as large: an error of first order in the step, a drag. Some is a bound below which chance decides: at which part of a step a\n\
-         block slips, which way digits are rounded.\n"
-    );
-    for chapter in chapters {
-        let _ = write!(text, "\n## {}\n\n{}\n", chapter.title, chapter.text);
-        text += "| answer | exact | computed | apart | at most | because |\n|---|---:|---:|---:|---:|---|\n";
-        for answer in &chapter.answers {
-            let _ = writeln!(text, "{}", row(answer));
-        }
-        if let Some((caption, _)) = &chapter.picture {
-            let _ = write!(
-                text,
-                "\n{caption}\n\n![{}](images/{PICTURE}{}.png)\n",
-                chapter.title, chapter.name
-            );
-        }
+/// A page of the documentation, with its chapters.
+pub struct Book {
+    /// The first line of the page, by which a page of an earlier call is recognised.
+    title: &'static str,
+    /// Name of the page and its file without the ending, with which the names of its pictures begin.
+    name: &'static str,
+    /// What the page is about, below its title.
+    about: &'static str,
+    /// Heading of the column of the values that the computed ones are compared with.
+    compared: &'static str,
+    /// The chapters of the page.
+    pub chapters: Vec<Chapter>,
+}
+
+/// The books, each without its chapters.
+const BOOKS: [Book; 2] = [
+    Book {
+        title: "# The family, answer by answer\n",
+        name: "family",
+        about: include_str!("text/family.md"),
+        compared: "exact",
+        chapters: Vec::new(),
+    },
+    Book {
+        title: "# Benchmarks of frictional rupture\n",
+        name: "rupture",
+        about: include_str!("text/rupture.md"),
+        compared: "reference",
+        chapters: Vec::new(),
+    },
+];
+
+impl Book {
+    pub(crate) fn of_options(chapters: Vec<Chapter>) -> Self {
+        let [book, _] = BOOKS;
+        Self { chapters, ..book }
     }
-    text
+
+    pub(crate) fn of_benchmarks(chapters: Vec<Chapter>) -> Self {
+        let [_, book] = BOOKS;
+        Self { chapters, ..book }
+    }
+
+    /// Name of the file of the page.
+    pub fn file(&self) -> String {
+        format!("{}.md", self.name)
+    }
+
+    /// The text of the page.
+    pub fn text(&self) -> String {
+        let Self {
+            title, name, about, ..
+        } = self;
+        let answers: usize = self.chapters.iter().map(|chapter| chapter.answers.len()).sum();
+        let mut text = format!("{title}\n{}", about.replace("{answers}", &answers.to_string()));
+        for chapter in &self.chapters {
+            let _ = write!(text, "\n## {}\n\n{}\n", chapter.title, chapter.text);
+            let _ = writeln!(
+                text,
+                "| answer | {} | computed | apart | at most | because |\n|---|---:|---:|---:|---:|---|",
+                self.compared
+            );
+            for answer in &chapter.answers {
+                let _ = writeln!(text, "{}", row(answer));
+            }
+            if let Some((caption, _)) = &chapter.picture {
+                let _ = write!(
+                    text,
+                    "\n{caption}\n\n![{}](images/{name}-{}.png)\n",
+                    chapter.title, chapter.name
+                );
+            }
+        }
+        text
+    }
 }
 
 fn row(answer: &Answer) -> String {
@@ -76,10 +119,10 @@ fn digits(value: f64) -> String {
     format!("{value:.*}", places.clamp(0, 12) as usize)
 }
 
-/// One line per chapter, and one for every answer that is too far from the exact one.
-pub fn summary(chapters: &[Chapter]) -> String {
+/// One line per chapter, and one for every answer that is too far from the value it is compared with.
+pub fn summary(books: &[Book]) -> String {
     let mut text = String::new();
-    for chapter in chapters {
+    for chapter in books.iter().flat_map(|book| &book.chapters) {
         let within = chapter.answers.iter().filter(|answer| answer.holds()).count();
         let _ = writeln!(
             text,
@@ -96,7 +139,7 @@ pub fn summary(chapters: &[Chapter]) -> String {
             } = answer;
             let _ = writeln!(
                 text,
-                "  {quantity}: {found}, exactly {exact}, farther than {}: {}",
+                "  {quantity}: {found}, compared with {exact}, farther than {}: {}",
                 answer.most(),
                 tolerance.reason
             );
@@ -107,28 +150,41 @@ pub fn summary(chapters: &[Chapter]) -> String {
 
 /// The page of another origin that [`write_docs`] would replace in a folder.
 pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
-    let page = folder.join(PAGE);
-    (page.symlink_metadata().is_ok() && !begins_with(&page, TITLE.as_bytes())).then_some(page)
+    let foreign = |book: &Book| {
+        let page = folder.join(book.file());
+        let is_foreign = page.symlink_metadata().is_ok() && !begins_with(&page, book.title.as_bytes());
+        is_foreign.then_some(page)
+    };
+    BOOKS.iter().find_map(foreign)
 }
 
-/// Writes the page and its pictures, as they stand in `docs/validation`.
+/// Writes the pages and their pictures, as they stand in `docs/validation`.
 ///
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.
-pub fn write_docs(chapters: &[Chapter], folder: &Path) -> Result<(), FamilyError> {
-    let draw = |chapter: &Chapter| {
-        let (_, responses) = chapter.picture.as_ref()?;
-        let name = chapter.name.to_owned();
-        let drawn = response(responses, PictureSize::default());
-        let picture = drawn.map_err(|source| FamilyError::Picture { name, source });
-        Some(picture.map(|picture| (chapter.name, picture)))
-    };
-    let pictures: Vec<(&str, Picture)> = chapters.par_iter().filter_map(draw).collect::<Result<_, _>>()?;
+pub fn write_docs(books: &[Book], folder: &Path) -> Result<(), FamilyError> {
     let write_file =
         |path: PathBuf, bytes: &[u8]| write_with_folders(&path, bytes).map_err(FolderError::write(&path));
-    write_file(folder.join(PAGE), docs_page(chapters).as_bytes())?;
-    for (name, picture) in pictures {
-        write_file(folder.join(format!("{IMAGES}/{PICTURE}{name}.png")), &picture.png)?;
+    for book in books {
+        let draw = |chapter: &Chapter| {
+            let (_, responses) = chapter.picture.as_ref()?;
+            let name = chapter.name.to_owned();
+            let drawn = response(responses, PictureSize::default());
+            let picture = drawn.map_err(|source| FamilyError::Picture { name, source });
+            Some(picture.map(|picture| (chapter.name, picture)))
+        };
+        let pictures: Vec<(&str, Picture)> = book
+            .chapters
+            .par_iter()
+            .filter_map(draw)
+            .collect::<Result<_, _>>()?;
+        write_file(folder.join(book.file()), book.text().as_bytes())?;
+        for (name, picture) in pictures {
+            write_file(
+                folder.join(format!("{IMAGES}/{}-{name}.png", book.name)),
+                &picture.png,
+            )?;
+        }
     }
     Ok(())
 }

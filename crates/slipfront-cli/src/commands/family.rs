@@ -10,13 +10,13 @@ use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 
-/// Test every law and option against its exact answer
+/// Test every law and option against its exact answer, and benchmarks of rupture against their reference
 #[derive(Args)]
 #[command(after_help = "Examples:
-  slipfront family                         one line per option
-  slipfront family --docs docs/validation   the page of the documentation, with pictures")]
+  slipfront family                         one line per option and benchmark
+  slipfront family --docs docs/validation   the pages of the documentation, with pictures")]
 pub(crate) struct FamilyCommand {
-    /// Write family.md and its pictures to this folder
+    /// Write family.md, rupture.md and their pictures to this folder
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
     /// Most runs at once [default: one per core]; results do not depend on it
@@ -34,18 +34,19 @@ impl FamilyCommand {
                 path.display()
             )));
         }
-        let chapters = slipfront_family::chapters().map_err(Failure::running)?;
-        print_message(&slipfront_family::summary(&chapters));
+        let books = slipfront_family::books().map_err(Failure::running)?;
+        print_message(&slipfront_family::summary(&books));
         if let Some(docs) = &self.docs {
             // A signal leaves neither half a page nor a hidden file.
             Signals::catch().map_err(Failure::running)?;
-            slipfront_family::write_docs(&chapters, docs).map_err(Failure::running)?;
+            slipfront_family::write_docs(&books, docs).map_err(Failure::running)?;
         }
-        let answers = chapters.iter().flat_map(|chapter| &chapter.answers);
+        let chapters = books.iter().flat_map(|book| &book.chapters);
+        let answers = chapters.flat_map(|chapter| &chapter.answers);
         match answers.filter(|answer| !answer.holds()).count() {
             0 => Ok(()),
             missed => Err(Failure::running(anyhow::anyhow!(
-                "{} farther from the exact one than the tolerance",
+                "{} farther from the value it is compared with than the tolerance",
                 are(missed, "answer")
             ))),
         }

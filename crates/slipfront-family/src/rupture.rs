@@ -1,0 +1,306 @@
+//! Benchmarks of frictional rupture that others set: nucleation on a line, the speed of fronts along the edge
+//! of an upright sheet.
+
+use std::f64::consts::{PI, SQRT_2};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use slipfront::communicator::Alone;
+use slipfront::surface::{Coefficients, Contact, Load};
+use slipfront::{
+    Coulomb, DeadLoad, Drive, FrictionLaw, Interface, Lattice, Model, Program, Slider, SlipWeakening,
+    Surface, scales,
+};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::runs::Experiment;
+
+/// Speed of shear waves in units of `sqrt(E/rho)`, squared.
+const C_S_SQUARE: f64 = 3.0 / 8.0;
+/// Speed of Rayleigh waves over that of shear waves.
+const C_R: f64 = 0.9194;
+const KINETIC: f64 = 0.5;
+const STEP: f64 = 0.25;
+
+/// A rupture along the lower edge of an upright sheet, from a weak patch in its middle.
+struct EdgeRupture {
+    /// Blocks along x and y.
+    blocks: [usize; 2],
+    /// Fall of strength per slip, `W`.
+    weakening: f64,
+    /// Strength left over the fall of strength, `S = (S - F_0)/(F_0 - K)`, of the seismologists.
+    strength_excess: f64,
+}
+
+impl EdgeRupture {
+    /// Length from which a shear crack under the prestress grows, `L_c = mu* (1 + S)^2/(pi W)` with
+    /// `mu* = 1.1` (Andrews, 1976).
+    fn critical_length(&self) -> f64 {
+        1.1 / self.weakening * (1.0 + self.strength_excess).powi(2) / PI
+    }
+
+    /// Half length of the weak patch.
+    fn half_patch(&self) -> f64 {
+        1.3 * self.critical_length()
+    }
+
+    fn model(&self) -> Result<Model, FamilyError> {
+        let [nx, ny] = self.blocks;
+        let lattice = Lattice::free(nx, ny);
+        let n = lattice.n_blocks();
+        let shear = (1.0 + self.strength_excess * KINETIC) / (1.0 + self.strength_excess);
+        let is_weak = |b: usize| (b as f64 - (nx / 2) as f64).abs() <= self.half_patch();
+        let static_of = |b: usize| if is_weak(b) { shear - 0.004 } else { 1.0 };
+        let coefficients = Coefficients::given((0..n).map(static_of).collect(), vec![KINETIC; n]);
+        let slider = Slider::default();
+        let contact = Contact {
+            faces: Some((0..n).map(|b| b < nx).collect()),
+            ..Contact::new(Load::Redistributed, 1.0)
+        };
+        let surface = Surface::of_ranks(coefficients, vec![false; n], contact, &slider, &Alone)?;
+        let law = Coulomb {
+            slip_weakening: Some(SlipWeakening {
+                length: (1.0 - KINETIC) / self.weakening,
+                healing_time: None,
+            }),
+            interface: Some(Interface { foundation: 0.0 }),
+            ..FrictionLaw::Projection.into()
+        };
+        // The prestress drives; the springs hold the sheet by next to nothing.
+        let drive = Drive {
+            k_drive: 1e-9,
+            ..Drive::along_x(1e-6)
+        };
+        let along_edge = (0..n).map(|b| f64::from(u8::from(b < nx))).collect();
+        let load = DeadLoad::of_blocks([shear, 0.0], along_edge, &slider, &Alone);
+        let model = Model::new(
+            lattice,
+            surface,
+            drive,
+            0.0,
+            0.0,
+            slipfront::Friction::Coulomb(law),
+        );
+        Ok(model.with_dead_load(load))
+    }
+
+    /// Distances from the middle in blocks, and over the 25 blocks from there on the speed of the front over
+    /// that of shear waves.
+    fn speeds(&self, duration: f64) -> Result<Vec<[f64; 2]>, FamilyError> {
+        let experiment = Experiment {
+            model: Arc::new(self.model()?),
+            dt_star: STEP,
+            state: None,
+        };
+        let mut simulation = experiment.begin();
+        for _ in 0..(duration / STEP) as u64 {
+            simulation.step();
+        }
+        let first = simulation.snapshot().first_slip_time_star();
+        let nx = self.blocks[0];
+        let (middle, from) = (nx / 2, self.half_patch() as usize + 5);
+        let speeds = (from..nx / 2 - 20).step_by(25).map(|at| {
+            let [begin, end] = [first[middle + at], first[middle + at + 24]];
+            [at as f64, 24.0 / (end - begin) / C_S_SQUARE.sqrt()]
+        });
+        Ok(speeds.filter(|[_, speed]| speed.is_finite()).collect())
+    }
+}
+
+/// Speeds that NumPy found for this rupture, by loops of its own over whole arrays.
+const NUMPY: [(f64, &[f64]); 3] = [
+    (2.0, &[0.682, 0.825, 0.852, 0.866]),
+    (1.4, &[0.757, 0.852, 0.871, 0.881]),
+    (0.9, &[0.968, 1.340, 1.507, 1.552, 1.584, 1.616]),
+];
+
+/// Values of S of the picture.
+const EXCESSES: [f64; 6] = [0.5, 0.9, 1.2, 1.4, 1.77, 2.0];
+
+pub(crate) fn speed_chapter() -> Result<Chapter, FamilyError> {
+    let rupture = |strength_excess: f64| EdgeRupture {
+        blocks: [600, 160],
+        weakening: 0.2,
+        strength_excess,
+    };
+    // Until waves come back from the upper edge.
+    let found: Vec<Vec<[f64; 2]>> = EXCESSES
+        .par_iter()
+        .map(|&excess| rupture(excess).speeds(300.0))
+        .collect::<Result<_, _>>()?;
+    let of = |excess: f64| {
+        let at = EXCESSES.iter().position(|&other| other == excess);
+        at.map_or(&[][..], |at| &found[at])
+    };
+    let mut answers = Vec::new();
+    for (excess, speeds) in NUMPY {
+        for (&reference, &[distance, speed]) in speeds.iter().zip(of(excess)) {
+            answers.push(Answer::new(
+                format!("S = {excess}: v/c_S at {distance} blocks, against NumPy"),
+                [reference, speed],
+                (
+                    2.0 * STEP / 24.0 * C_S_SQUARE.sqrt() * reference * reference,
+                    "both ends of the 25 blocks are passed at whole steps",
+                ),
+            ));
+        }
+    }
+    for excess in [1.4, 2.0] {
+        let beyond = of(excess)
+            .iter()
+            .filter(|[distance, _]| *distance >= rupture(excess).critical_length());
+        let fastest = beyond.map(|[_, speed]| *speed).fold(0.0, f64::max);
+        let bound = Answer::new(
+            format!("S = {excess}: largest v/c_S, at most c_R/c_S"),
+            [C_R, fastest],
+            (
+                0.01 * C_R,
+                "1 % for the dispersion of a cohesive zone of six blocks; slower is right",
+            ),
+        );
+        answers.push(bound.at_most_below(f64::INFINITY));
+    }
+    let late = of(0.9)
+        .iter()
+        .find(|[distance, _]| *distance >= 8.0 * rupture(0.9).critical_length());
+    answers.push(
+        Answer::new(
+            "S = 0.9: v/c_S at 8 L_c, at least √2",
+            [SQRT_2, late.map_or(f64::NAN, |[_, speed]| *speed)],
+            (f64::INFINITY, "beyond the speed √2 c_S, faster is right"),
+        )
+        .at_most_below(0.0),
+    );
+    let curves = EXCESSES.iter().zip(&found).map(|(excess, speeds)| {
+        let length = rupture(*excess).critical_length();
+        let [x, y] = [0, 1].map(|k| speeds.iter().map(|pair| pair[k]).collect::<Vec<f64>>());
+        let x: Vec<f64> = x.iter().map(|distance| distance / length).collect();
+        Response {
+            line: true,
+            ..Response::of_values(&format!("S = {excess}"), &x, &y)
+        }
+    });
+    Ok(Chapter {
+        title: "Speed of a rupture along an edge",
+        name: "speed",
+        text: include_str!("text/rupture_speed.md"),
+        answers,
+        picture: Some((
+            "Speed of the front over that of shear waves, against the distance over L_c. Between c_R = 0.919 and 1 no front runs steadily: it \
+             stays below, or jumps over.",
+            Responses {
+                x_title: "distance/L_c".to_owned(),
+                y_title: "front speed v/c_S".to_owned(),
+                curves: curves.collect(),
+                ..Responses::default()
+            },
+        )),
+    })
+}
+
+/// A line of contacts across the middle of a sheet under a load that hardly rises.
+mod line {
+    use super::*;
+
+    pub(super) const BLOCKS: [usize; 2] = [201, 101];
+    const ROW: usize = 50;
+    const SPRINGS: f64 = 1e-4;
+    const WEAKENING: f64 = 0.1;
+    /// Load at the start.
+    const START: f64 = 0.999;
+    /// Speeds of the drive and the times at which they end: to loads of 1.0008 and 1.0044.
+    const PROGRAM: [(f64, f64); 3] = [(1.0, 18.0), (0.05, 738.0), (0.005, f64::INFINITY)];
+
+    /// Loads at which the blocks of one half of the line slip first, from the middle on, and these times.
+    pub(super) fn loads() -> Result<Vec<[f64; 2]>, FamilyError> {
+        let [nx, ny] = BLOCKS;
+        let lattice = Lattice::free(nx, ny);
+        let n = lattice.n_blocks();
+        let is_line = |b: usize| b / nx == ROW;
+        let static_of = |b: usize| 1.0 + 0.5 * ((b % nx) as f64 - (nx / 2) as f64).powi(2) / 3600.0;
+        let coefficients = Coefficients::given(
+            (0..n).map(static_of).collect(),
+            (0..n).map(|b| static_of(b) - 0.5).collect(),
+        );
+        let mut slider = Slider::default();
+        slider.attach(n, is_line, &Alone);
+        let textured = (0..n).map(|b| !is_line(b)).collect();
+        let contact = Contact::new(Load::Kept, 1.0);
+        let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone)?;
+        let law = Coulomb {
+            slip_weakening: Some(SlipWeakening {
+                length: 0.5 / WEAKENING,
+                healing_time: None,
+            }),
+            ..FrictionLaw::Projection.into()
+        };
+        let drive = Drive {
+            k_drive: SPRINGS,
+            program: Some(Arc::new(Program::new(PROGRAM))),
+            ..Drive::along_x(1.0)
+        };
+        let on_line = (0..n).map(|b| f64::from(u8::from(is_line(b)))).collect();
+        let load = DeadLoad::of_blocks([START, 0.0], on_line, &slider, &Alone);
+        let friction = slipfront::Friction::Coulomb(law);
+        let model = Model::new(lattice, surface, drive, scales::damping(0.05), 0.0, friction);
+        let experiment = Experiment {
+            model: Arc::new(model.with_slider(slider).with_dead_load(load)),
+            dt_star: 0.4,
+            state: None,
+        };
+        let mut simulation = experiment.begin();
+        let last = ROW * nx + nx / 2 + 25;
+        while simulation.time_star() < 4000.0 {
+            for _ in 0..100 {
+                simulation.step();
+            }
+            if simulation.snapshot().first_slip_time_star()[last].is_finite() {
+                break;
+            }
+        }
+        let first = simulation.snapshot().first_slip_time_star();
+        let drive = &experiment.model.drive;
+        let slips = (0..=25).map(|k| first[ROW * nx + nx / 2 + k]);
+        Ok(slips
+            .map(|time| [START + SPRINGS * drive.path(time), time])
+            .collect())
+    }
+}
+
+/// Loads over 1 at which the patch of n blocks grows, quasi-static on this lattice: from the Schur complement
+/// of its stiffness on the line.
+const QUASI_STATIC: [(usize, f64); 3] = [(9, 1.56e-3), (17, 3.95e-3), (21, 4.93e-3)];
+/// The largest quasi-static load over 1, of 25 blocks.
+const LARGEST: f64 = 5.29e-3;
+
+pub(crate) fn nucleation_chapter() -> Result<Chapter, FamilyError> {
+    let loads = line::loads()?;
+    let mut answers = Vec::new();
+    for (n, load) in QUASI_STATIC {
+        answers.push(Answer::new(
+            format!("load over 1 at which a patch of {n} blocks grows"),
+            [load, loads[n / 2 + 1][0] - 1.0],
+            (
+                0.05 * load,
+                "near the instability slip grows as slowly as the load: the delay goes with the rate to 2/3",
+            ),
+        ));
+    }
+    let runs_away = loads
+        .windows(2)
+        .find(|pair| pair[1][1] - pair[0][1] < 40.0 && pair[0][0] > 1.005);
+    answers.push(Answer::new(
+        "load over 1 from which the next block follows within 40 t*",
+        [LARGEST, runs_away.map_or(f64::NAN, |pair| pair[0][0] - 1.0)],
+        (0.05 * LARGEST, "the same delay"),
+    ));
+    Ok(Chapter {
+        title: "Nucleation on a line",
+        name: "nucleation",
+        text: include_str!("text/rupture_nucleation.md"),
+        answers,
+        picture: None,
+    })
+}
