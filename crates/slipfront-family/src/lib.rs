@@ -32,6 +32,8 @@ use rayon::prelude::*;
 
 pub use answer::{Answer, Chapter, Tolerance};
 pub use error::FamilyError;
+use slip_weakening::falling_strength;
+
 pub use page::{Book, foreign_docs, summary, write_docs};
 
 /// Computes one chapter.

@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{
-    Coulomb, DeadLoad, Drive, FrictionLaw, Interface, Lattice, Model, Program, Slider, SlipWeakening,
-    Surface, scales,
+    Coulomb, DeadLoad, Drive, Interface, Lattice, Model, Program, Slider, SlipWeakening, Surface, scales,
 };
 use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
+use crate::falling_strength;
 use crate::runs::Experiment;
 
 /// Speed of shear waves in units of `sqrt(E/rho)`, squared.
@@ -61,12 +61,8 @@ impl EdgeRupture {
         };
         let surface = Surface::of_ranks(coefficients, vec![false; n], contact, &slider, &Alone)?;
         let law = Coulomb {
-            slip_weakening: Some(SlipWeakening {
-                length: (1.0 - KINETIC) / self.weakening,
-                healing_time: None,
-            }),
             interface: Some(Interface { foundation: 0.0 }),
-            ..FrictionLaw::Projection.into()
+            ..falling_strength((1.0 - KINETIC) / self.weakening)
         };
         // The prestress drives; the springs hold the sheet by next to nothing.
         let drive = Drive {
@@ -229,13 +225,6 @@ mod line {
         let textured = (0..n).map(|b| !is_line(b)).collect();
         let contact = Contact::new(Load::Kept, 1.0);
         let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone)?;
-        let law = Coulomb {
-            slip_weakening: Some(SlipWeakening {
-                length: 0.5 / WEAKENING,
-                healing_time: None,
-            }),
-            ..FrictionLaw::Projection.into()
-        };
         let drive = Drive {
             k_drive: SPRINGS,
             program: Some(Arc::new(Program::new(PROGRAM))),
@@ -243,7 +232,7 @@ mod line {
         };
         let on_line = (0..n).map(|b| f64::from(u8::from(is_line(b)))).collect();
         let load = DeadLoad::of_blocks([START, 0.0], on_line, &slider, &Alone);
-        let friction = slipfront::Friction::Coulomb(law);
+        let friction = slipfront::Friction::Coulomb(falling_strength(0.5 / WEAKENING));
         let model = Model::new(lattice, surface, drive, scales::damping(0.05), 0.0, friction);
         let experiment = Experiment {
             model: Arc::new(model.with_slider(slider).with_dead_load(load)),

@@ -18,16 +18,21 @@ const DROP: f64 = 0.5;
 const FAST: f64 = 1e-3;
 const DT_STAR: f64 = 0.05;
 
-/// One block that weakens by `weakening` per slip.
-fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
-    let lattice = Lattice::free(1, 1);
-    let friction = Friction::Coulomb(Coulomb {
+/// Eq. 4 with strength that falls over a slip of `length` and does not heal.
+pub(crate) fn falling_strength(length: f64) -> Coulomb {
+    Coulomb {
         slip_weakening: Some(SlipWeakening {
-            length: DROP / weakening,
+            length,
             healing_time: None,
         }),
         ..FrictionLaw::Projection.into()
-    });
+    }
+}
+
+/// One block that weakens by `weakening` per slip.
+fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
+    let lattice = Lattice::free(1, 1);
+    let friction = Friction::Coulomb(falling_strength(DROP / weakening));
     let surface = Surface::uniform(&lattice, 1.0, 1.0 - DROP);
     let drive = Drive {
         program: Some(Arc::new(Program::new(segments.iter().copied()))),
