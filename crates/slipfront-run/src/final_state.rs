@@ -12,7 +12,8 @@ pub(crate) fn create(case: &Case, output: &mut impl Write) -> io::Result<()> {
     output.write_all(&head_of_state(lattice.nx, lattice.ny))
 }
 
-/// Writes the numbers of the rows that this process holds: displacements along x and y, velocities along both.
+/// Writes the numbers of the rows that this process holds: displacements along x and y, velocities along
+/// both.
 pub(crate) fn write_rows(case: &Case, state: &State, output: impl Write + Seek) -> io::Result<()> {
     let (lattice, rows) = (&case.model.lattice, &case.model.rows);
     let head = head_of_state(lattice.nx, lattice.ny).len();

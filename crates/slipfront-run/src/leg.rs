@@ -127,8 +127,8 @@ impl Running {
         })
     }
 
-    /// State of the blocks of these rows in which another run can go on, in metres and metres per second: that
-    /// at the end of the step that has begun, with displacements that count from the driven ends.
+    /// State of the blocks of these rows in which another run can go on, in metres and metres per second:
+    /// that at the end of the step that has begun, with displacements that count from the driven ends.
     pub(crate) fn final_state(&self) -> State {
         let scales = &self.case().scales;
         let (mut state, _) = self.end_of_step([scales.displacement(), scales.speed()]);

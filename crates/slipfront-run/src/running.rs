@@ -236,9 +236,9 @@ fn own_rows_of_fields(case: &Case) -> Range<usize> {
 const PART: usize = 1 << 17;
 
 impl Running {
-    /// Begins a run in this state, in which blocks may be displaced and slide, or in that of the case. The run is
-    /// computed as `execution` says, on no more threads than have enough blocks; ranks that share the lattice
-    /// call this and then the same functions.
+    /// Begins a run in this state, in which blocks may be displaced and slide, or in that of the case. The
+    /// run is computed as `execution` says, on no more threads than have enough blocks; ranks that share the
+    /// lattice call this and then the same functions.
     ///
     /// # Panics
     /// If a number of the state is not finite, or the state has another number of blocks.

@@ -37,8 +37,8 @@ impl DeadLoad {
         Self { force, field: None }
     }
 
-    /// A force along x and y, in units of `P mu_s l^2`, times a `relative` one for each block of a slider that
-    /// this rank holds. All `ranks` call this at once.
+    /// A force along x and y, in units of `P mu_s l^2`, times a `relative` one for each block of a slider
+    /// that this rank holds. All `ranks` call this at once.
     pub fn of_blocks(
         force: [f64; 2],
         mut relative: Vec<f64>,

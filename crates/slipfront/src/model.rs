@@ -385,8 +385,8 @@ impl Model {
     ///
     /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
     /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold: see
-    /// [`missing_pull`](Self::missing_pull). A stack of sheets takes the stiffness in series, which holds for slow
-    /// loading: the sheets above swing about it. All `ranks` of a lattice must call this together.
+    /// [`missing_pull`](Self::missing_pull). A stack of sheets takes the stiffness in series, which holds for
+    /// slow loading: the sheets above swing about it. All `ranks` of a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.mount_stiffness(), self.drive.v_star);
         let pull =
@@ -429,7 +429,8 @@ impl Model {
         self.drive.time_of_path(-negative[0])
     }
 
-    /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for it:
+    /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for
+    /// it:
     ///
     /// ```text
     /// sqrt(T^2 - F_0,across^2) - F_0,along,   T = max(mu_s, mu_k) F_n
@@ -457,7 +458,8 @@ impl Model {
         self.along_and_across(self.dead_load_of(b))
     }
 
-    /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction (D12).
+    /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction
+    /// (D12).
     fn slip_threshold(&self, b: usize) -> f64 {
         self.surface.static_limit(b).max(self.surface.kinetic_force(b))
     }

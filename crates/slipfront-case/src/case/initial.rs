@@ -7,8 +7,8 @@ use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile, Loading};
 use slipfront_base::number_format::four_digits;
 
-/// Displacements and velocities of the blocks of these rows, in units of u* and V*; none if the case begins at
-/// rest.
+/// Displacements and velocities of the blocks of these rows, in units of u* and V*; none if the case begins
+/// at rest.
 pub(super) fn state(
     file: &CaseFile,
     scales: &Scales,
@@ -55,7 +55,7 @@ fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String
     Ok([read(ux)?, read(uy)?, read(vx)?, read(vy)?])
 }
 
-/// What a displacement and a velocity of 1 in the files are in units of the model: the last state of a run is
+/// Displacement and velocity of 1 in the files, in units of the model: the last state of a run is
 /// in metres and metres per second.
 fn over_units_of_model(file: &CaseFile, scales: &Scales) -> [f64; 2] {
     let (initial, units) = (&file.initial, [scales.displacement(), scales.speed()]);

@@ -36,7 +36,8 @@ pub struct TextureReport {
 }
 
 /// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps
-/// begin, and the state in which a run begins, unless it is at rest. Files that have changed while they were read are refused.
+/// begin, and the state in which a run begins, unless it is at rest. Files that have changed while they were
+/// read are refused.
 pub(super) fn make(
     file: &CaseFile,
     derived: &Derived,

@@ -146,7 +146,8 @@ impl TimePlan {
 /// blocks touch and bear f times the load, the onset comes before their own drive springs bear it all, at
 /// f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic window begins,
 /// which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly,
-/// adhesion, and a dead load against the drive delay the onset; under a program of speeds it is counted from the last of them.
+/// adhesion, and a dead load against the drive delay the onset; under a program of speeds it is counted from
+/// the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments

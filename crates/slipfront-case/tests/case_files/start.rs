@@ -1,4 +1,4 @@
-//! What a run begins with: a dead shear load, and displacements and velocities from files.
+//! The start of a run: a dead shear load, and displacements and velocities from files.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -126,9 +126,9 @@ fn chain(initial: &str, rows: &[Vec<f64>]) -> Case {
     Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap()
 }
 
-/// A mode of the chain swings at the frequency of the scheme, sin(w dt/2) = w_0 dt/2, with w_0 of the springs.
-/// From rest half a step before t = 0 it is u_0 cos(w (n + 1/2) dt)/cos(w dt/2), from a velocity at the rest
-/// sites dt v sin(w n dt)/sin(w dt). In metres and metres per second as in units of the model.
+/// A mode of the chain swings at the frequency of the scheme, sin(w dt/2) = w_0 dt/2, with w_0 of the
+/// springs. From rest half a step before t = 0 it is u_0 cos(w (n + 1/2) dt)/cos(w dt/2), from a velocity at
+/// the rest sites dt v sin(w n dt)/sin(w dt). In metres and metres per second as in units of the model.
 #[test_matrix([1, 3, 20], [Kernel::Fused, Kernel::General], [false, true], [false, true])]
 fn a_mode_swings_at_the_frequency_of_the_scheme(mode: usize, kernel: Kernel, moves: bool, has_unit: bool) {
     let angle = std::f64::consts::PI * mode as f64 / (FREE + 1) as f64;
@@ -173,9 +173,9 @@ fn a_mode_swings_at_the_frequency_of_the_scheme(mode: usize, kernel: Kernel, mov
     }
 }
 
-/// A front in a chain under the prestress tau = (F - mu_k)/(mu_s - mu_k) runs at c/sqrt(1 - tau^2), once blocks
-/// at one end are set in motion: here by a case alone. It takes a whole number of steps from block to block,
-/// half a step of which is 1 % at the highest speed; the drive springs take less.
+/// A front in a chain under the prestress tau = (F - mu_k)/(mu_s - mu_k) runs at c/sqrt(1 - tau^2), once
+/// blocks at one end are set in motion: here by a case alone. It takes a whole number of steps from block to
+/// block, half a step of which is 1 % at the highest speed; the drive springs take less.
 #[test_case(0.6)]
 #[test_case(0.8)]
 fn a_case_of_a_prestressed_chain_has_the_speed_of_its_front(tau: f64) {

@@ -85,8 +85,8 @@ impl Powers {
 }
 
 /// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, whose speed is
-/// constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle; that of the dead load follows
-/// from the displacements.
+/// constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle; that of the dead load
+/// follows from the displacements.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,

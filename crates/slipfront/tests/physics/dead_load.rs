@@ -10,7 +10,8 @@ use test_case::test_case;
 
 use crate::common::{self, at_rest};
 
-/// A lattice without damping, pulled along `degrees` at `v_star`, with static friction of 1 and kinetic of 0.5.
+/// A lattice without damping, pulled along `degrees` at `v_star`, with static friction of 1 and kinetic of
+/// 0.5.
 fn model([nx, ny]: [usize; 2], v_star: f64, degrees: f64) -> Model {
     let lattice = Lattice::free(nx, ny);
     let surface = Surface::uniform(&lattice, 1.0, 0.5);

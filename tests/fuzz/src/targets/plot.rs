@@ -12,8 +12,8 @@ use crate::checks::readable;
 use crate::scratch;
 use crate::target::{Memory, Target, Time};
 
-/// Summary, series, both tables of events of slip, and fields of a run in one input, separated by [`END`]; the
-/// case is one of two, by the length of the input.
+/// Summary, series, both tables of events of slip, and fields of a run in one input, separated by [`END`];
+/// the case is one of two, by the length of the input.
 pub(crate) const PLOT: Target = Target {
     name: "plot",
     check: plot,

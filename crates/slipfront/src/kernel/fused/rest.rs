@@ -1,8 +1,8 @@
 //! How long blocks at rest will stay at rest.
 //!
 //! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone,
-//! linearly: `F(t) = F + k_s V t`, with the dead load in F. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n`
-//! (D12):
+//! linearly: `F(t) = F + k_s V t`, with the dead load in F. It slips when `|F(t)|` passes its
+//! threshold `T = max(mu_s, mu_k) F_n` (D12):
 //!
 //! ```text
 //! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2

@@ -30,8 +30,8 @@ impl DrivenBlocks {
         }
     }
 
-    /// Forces of the drive springs (Eq. 2) on some blocks at a time of the drive, `F_s = k_s,i (V t - u)`, with
-    /// the dead load.
+    /// Forces of the drive springs (Eq. 2) on some blocks at a time of the drive, `F_s = k_s,i (V t - u)`,
+    /// with the dead load.
     #[inline(always)]
     pub(super) fn forces(
         &self,
