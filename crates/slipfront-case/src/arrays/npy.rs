@@ -62,15 +62,17 @@ pub fn state_npy(
     let mut found = [(); 4].map(|()| vec![0.0; slab.n_blocks()]);
     for (layer, values) in found.iter_mut().enumerate() {
         array.read((layer * ny + rows.start) * nx, values)?;
-        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            let place = [rows.start + at / nx, at % nx];
-            return Err(value_error(
-                path,
-                &values[at].to_string(),
-                place,
-                "a finite number",
-            ));
-        }
+    }
+    // Block by block, and not layer by layer: of all ranks the lowest has the first.
+    let wrong = |b: usize| {
+        found
+            .iter()
+            .map(|values| values[b])
+            .find(|value| !value.is_finite())
+    };
+    if let Some((b, value)) = (0..slab.n_blocks()).find_map(|b| Some((b, wrong(b)?))) {
+        let place = [rows.start + b / nx, b % nx];
+        return Err(value_error(path, &value.to_string(), place, "a finite number"));
     }
     Ok(found)
 }

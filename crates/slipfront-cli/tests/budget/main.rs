@@ -242,6 +242,11 @@ const OTHER_RUNS: [&str; 15] = [
     // What is read.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
      friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
+    // What a run begins with, and what it leaves.
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];output.final_state=true;load.shear_star=0.5;\
+     load.shear_field='mu.npy';initial={displacement_x='mu.npy',velocity_y='mu.npy'}",
+    "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];slider.viscosity_time_star=0.1;load.shear_star=0.5;\
+     load.shear_field='mu.npy';slider.stiffness_grade={along='x',from=1,to=2}",
     // A thousand outlines of 4096 vertices.
     "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
 ];

@@ -16,7 +16,7 @@ use crate::target::{Memory, Target, Time};
 const NX: usize = 3;
 const NY: usize = 2;
 
-/// Arrays of numpy: coefficients and masks.
+/// Arrays of numpy: coefficients, masks, and the last states of runs.
 pub(crate) const NPY: Target = Target {
     name: "npy",
     check: npy,
@@ -138,6 +138,7 @@ fn npy_files() -> Vec<Vec<u8>> {
         file("<f8", "True", &numbers, 2),
         file("<f8", "False", &numbers, 3),
         header("[('a', '<f8')]", "False", "(2, 3)", 1),
+        [header("'<f8'", "False", "(4, 2, 3)", 1), numbers.repeat(4)].concat(),
     ];
     for descr in [
         "|b1", "|u1", "|i1", "<u2", ">i2", "<i4", ">u4", "<i8", ">u8", "<f2", ">f4", ">f8", "<c16",
@@ -476,6 +477,23 @@ fn npy(input: &[u8]) {
     field("field.npy", input);
     match read(|slab| mask_npy(Path::new("field.npy"), &mut Cursor::new(input), slab)) {
         Ok(mask) => assert_eq!(mask.len(), NX * NY),
+        Err(error) => readable(&error),
+    }
+    state(input);
+}
+
+/// The last state of a run is finite.
+fn state(input: &[u8]) {
+    let by_block = |slab: &Slab| {
+        let layers = arrays::state_npy(Path::new("state.npy"), &mut Cursor::new(input), slab)?;
+        let block = |b: usize| layers.each_ref().map(|layer| layer[b]);
+        Ok((0..slab.n_blocks()).map(block).collect())
+    };
+    match read(by_block) {
+        Ok(blocks) => {
+            assert_eq!(blocks.len(), NX * NY);
+            assert!(blocks.iter().flatten().all(|value| value.is_finite()));
+        }
         Err(error) => readable(&error),
     }
 }
