@@ -98,7 +98,7 @@ _HEADERS: dict[tuple[np.dtype[Any], tuple[int, ...]], bytes] = {}
 _MOST_HEADERS = 64
 
 
-_NAMES_OF_FILES = frozenset(("file", "state", "displacement_x", "displacement_y", "velocity_x", "velocity_y"))
+_NAMES_OF_FILES = frozenset(("file", "displacement_x", "displacement_y", "velocity_x", "velocity_y"))
 
 
 def names_file(key: str) -> bool:

@@ -250,7 +250,7 @@ mod tests {
             in_memory: Some(&in_memory),
         };
         let overrides: Vec<String> = overrides.iter().map(|&set| set.to_owned()).collect();
-        let text = ENDED.replace("output.final_state = true", "initial.state = 'state.npy'");
+        let text = ENDED.replace("output.final_state = true", "initial.state_file = 'state.npy'");
         let file = CaseFile::parse(&text, "case", &overrides).unwrap();
         Arc::new(Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap())
     }

@@ -20,9 +20,9 @@ use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, pressure_along,
 };
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Drive, Edge, Execution, Friction, FrictionLaw, Kernel, Lattice, Loading,
-    Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, Slider, SlipWeakening, State,
-    Surface, VectorField, Weakening, scales,
+    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Execution, Friction, FrictionLaw, Kernel,
+    Lattice, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, Slider,
+    SlipWeakening, State, Surface, VectorField, Weakening, scales,
 };
 
 const V_STAR: f64 = 0.03;
@@ -42,6 +42,9 @@ pub(crate) enum Choice {
     Program,
     Rotation,
     LoadProfile,
+    DeadLoad,
+    /// A dead load that differs from block to block.
+    LoadField,
     Adhesion,
     Grading,
     Disc,
@@ -63,10 +66,12 @@ pub(crate) enum Choice {
 use Choice::{Disc, Grading, LoadProfile, Viscosity};
 
 /// The options that are measured, with their names.
-pub(crate) const MEASURED: [(&str, &[Choice]); 24] = [
+pub(crate) const MEASURED: [(&str, &[Choice]); 26] = [
     ("plain", &[]),
     ("edge drive", &[Choice::EdgeDrive]),
     ("load profile", &[LoadProfile]),
+    ("dead load", &[Choice::DeadLoad]),
+    ("dead load, block by block", &[Choice::LoadField]),
     ("program", &[Choice::Program]),
     ("adhesion", &[Choice::Adhesion]),
     ("weakening", &[Choice::Weakening]),
@@ -179,6 +184,14 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     };
     let plain = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 1e-6, friction);
     let mut model = plain.with_slider(slider);
+    if has(Choice::DeadLoad) {
+        model = model.with_dead_load(DeadLoad::uniform([0.3, 0.0]));
+    }
+    if has(Choice::LoadField) {
+        let relative = (0..n).map(|b| (b % 7) as f64 / 3.0).collect();
+        let load = DeadLoad::of_blocks([0.3, 0.0], relative, model.slider(), &Alone);
+        model = model.with_dead_load(load);
+    }
     if has(Choice::Rotation) {
         model.drive.rotation = Some(Rotation::about_centroid(
             &lattice,
@@ -211,7 +224,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,
-        _ => -model.steady_level(&Alone) / model.drive.k_drive,
+        _ => (model.mean_dead_load()[0] - model.steady_level(&Alone)) / model.drive.k_drive,
     };
     let field = |factor: f64, scatter: f64| {
         let at = |b: usize| {

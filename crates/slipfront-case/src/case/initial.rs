@@ -41,8 +41,8 @@ pub(super) fn state(
 /// Displacements along x and y and velocities along both as the files have them, each with its key; without
 /// numbers where all are 0.
 fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String, Vec<f64>); 4], CaseError> {
-    if let Some(name) = &file.initial.state {
-        let key = "initial.state";
+    if let Some(name) = &file.initial.state_file {
+        let key = "initial.state_file";
         let of_run = inputs.read_state(file, (key, name), watch)?;
         return Ok(of_run.map(|values| (key.to_owned(), values)));
     }
@@ -59,7 +59,7 @@ fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String
 /// in metres and metres per second.
 fn over_units_of_model(file: &CaseFile, scales: &Scales) -> [f64; 2] {
     let (initial, units) = (&file.initial, [scales.displacement(), scales.speed()]);
-    if initial.state.is_some() {
+    if initial.state_file.is_some() {
         return units.map(|unit| 1.0 / unit);
     }
     let displacement = initial

@@ -153,7 +153,7 @@ impl Case {
             ("friction.mu_kinetic_field", &file.friction.mu_kinetic_field),
         ];
         let initial = file.initial.files().into_iter().flatten();
-        let initial = initial.chain([("state", &file.initial.state)]);
+        let initial = initial.chain([("state_file", &file.initial.state_file)]);
         let initial = initial.map(|(key, name)| (format!("initial.{key}"), name));
         let mut fields = fields
             .map(|(key, name)| (key.to_owned(), name))

@@ -127,8 +127,8 @@ impl CaseFile {
         };
         let of_fields =
             fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Blocks)));
-        let state = self.initial.state.as_mut();
-        let state = state.map(|name| named("initial.state", name, FileUse::State));
+        let state = self.initial.state_file.as_mut();
+        let state = state.map(|name| named("initial.state_file", name, FileUse::State));
         (
             of_textures.chain(attached).chain(of_fields).chain(state),
             &self.source,

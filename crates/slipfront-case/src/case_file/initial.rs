@@ -19,7 +19,7 @@ key_rows! {
         /// The state in which another run has ended, `state.npy` of its folder, in place of the files below:
         /// that run has `output.final_state`, and as many blocks. The drive goes on from where it stood.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub state: Option<String> = key("", KeyKind::File(&["npy"])),
+        pub state_file: Option<String> = key("", KeyKind::File(&["npy"])),
         /// Displacements along x at t = 0, block by block.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_x: Option<String> = key("", ARRAY).without("0"),
@@ -51,7 +51,7 @@ impl Initial {
 
     /// Whether no file is given, so that blocks begin at rest at their rest sites.
     pub(crate) fn is_at_rest(&self) -> bool {
-        self.state.is_none() && self.files().into_iter().flatten().all(|(_, name)| name.is_none())
+        self.state_file.is_none() && self.files().into_iter().flatten().all(|(_, name)| name.is_none())
     }
 
     /// The files of displacements and of velocities, along x and y, with their keys.
@@ -66,7 +66,7 @@ impl Initial {
     }
 
     pub(super) fn check(&self, check: &Check, body: Body, contact: ContactModel) -> Result<(), CaseError> {
-        check.value("state", &self.state)?;
+        check.value("state_file", &self.state_file)?;
         check.value("displacement_unit", &self.displacement_unit)?;
         check.value("velocity_unit", &self.velocity_unit)?;
         let units = [
@@ -88,10 +88,10 @@ impl Initial {
             let given = files.into_iter().find(|(_, name)| name.is_some());
             given.map(|(key, _)| key)
         });
-        let state = self.state.as_ref().map(|_| "state");
+        let state = self.state_file.as_ref().map(|_| "state_file");
         if let Some(key) = state.and(displacements.or(velocities)) {
             return check.refuse(key, |key| {
-                format!("`{key}` stands beside `initial.state`, which has displacements and velocities: leave one of them out")
+                format!("`{key}` stands beside `initial.state_file`, which has displacements and velocities: leave one of them out")
             });
         }
         if body == Body::Bulk

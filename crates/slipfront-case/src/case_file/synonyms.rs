@@ -189,6 +189,14 @@ const COMMON: &[(&str, &str)] = &[
         "simulation",
         "the length of a run and its step stand in [time], what it writes in [output]",
     ),
+    ("prestress", SHEAR),
+    ("shear_stress", SHEAR),
+    ("dead_load", SHEAR),
+    ("tangential_load", SHEAR),
+    ("initial_displacement", INITIAL),
+    ("initial_velocity", INITIAL),
+    ("initial_state", INITIAL),
+    ("restart", INITIAL),
     ("cohesion", ADHESION),
     ("adhesive", ADHESION),
     ("tau_a", ADHESION),
@@ -221,6 +229,9 @@ const PROGRAM: &str = "speeds that follow one another, 0 for a hold, are `drive.
 const PROFILE: &str =
     "a load that rises along the slider is `load.profile` = { along = \"x\", relative_slope = 0.5 }";
 const ADHESION: &str = "adhesion adds to static friction as `friction.adhesion`, and to kinetic friction as `friction.adhesion_kinetic`";
+const SHEAR: &str =
+    "a shear stress that is there from the start is `load.shear`, with its unit, or `load.shear_star`";
+const INITIAL: &str = "what a run begins with are `initial.displacement_x`, `initial.velocity_x` and the like, or `initial.state_file` of another run";
 const PITCH: &str = "the distance between the copies of a shape is `pitch`";
 const PATTERN: &str = "a shape is repeated by `array` = [4, 4] or `pitch` = \"12 um\", arranged by `lattice`";
 

@@ -9,6 +9,7 @@ fn the_table_has_the_keys_of_the_structs() {
         names_of::<Load>(),
         names_of::<Drive>(),
         names_of::<Friction>(),
+        names_of::<Initial>(),
         names_of::<Time>(),
         names_of::<Output>(),
         names_of::<Cavity>(),

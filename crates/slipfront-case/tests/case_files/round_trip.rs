@@ -591,7 +591,7 @@ fn initial() -> impl Strategy<Value = Initial> {
                 (velocity_x, velocity_y, velocity_unit),
             )| {
                 Initial {
-                    state: None,
+                    state_file: None,
                     displacement_x,
                     displacement_y,
                     displacement_unit,
@@ -631,6 +631,9 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
                     drive.stiffness = DriveStiffness::Each(AutoOrStiffness::Auto);
                     drive.attached = Attached::At(AttachedEdge::All);
                     drive.motion = Motion::Translation;
+                }
+                if friction.contact == ContactModel::Springs {
+                    output.events = false;
                 }
                 // No shear load and no state at the start are derived for these.
                 if slider.body == Body::Bulk || friction.contact == ContactModel::Springs {
