@@ -37,7 +37,8 @@ key_rows! {
         #[serde(skip_serializing_if = "Option::is_none")]
         pub pressure_field: Option<String> = key("", ARRAY).or("profile"),
         /// Dead shear load: a stress along the drive on every block, textured or not, that acts from the
-        /// start on, whatever moves; of an upright sheet on its lowest row. Below 0 it acts against the drive.
+        /// start on, whatever moves; of an upright sheet on its lowest row. Below 0 it acts against the
+        /// drive.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shear: Option<Pressure> = key("", quantity("Pa", within(-1e15, 1e15))).or("shear_star")
             .title("shear load", "\u{3c4}\u{2080}", "Pa").note(DEAD_LOAD),

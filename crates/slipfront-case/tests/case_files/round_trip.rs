@@ -632,9 +632,6 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
                     drive.attached = Attached::At(AttachedEdge::All);
                     drive.motion = Motion::Translation;
                 }
-                if friction.contact == ContactModel::Springs {
-                    output.events = false;
-                }
                 // No shear load and no state at the start are derived for these.
                 if slider.body == Body::Bulk || friction.contact == ContactModel::Springs {
                     (load.shear, load.shear_star, load.shear_field) = (None, None, None);
