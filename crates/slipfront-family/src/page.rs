@@ -19,7 +19,7 @@ pub struct Book {
     title: &'static str,
     /// Name of the page and its file without the ending, with which the names of its pictures begin.
     name: &'static str,
-    /// What the page is about, below its title.
+    /// The first paragraphs of the page, below its title.
     about: &'static str,
     /// Heading of the column of the values that the computed ones are compared with.
     compared: &'static str,

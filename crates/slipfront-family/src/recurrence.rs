@@ -1,5 +1,5 @@
-//! Benchmarks of repeated slip: the cycle of one block under rate and state with inertia, and the catalogue of
-//! a train of blocks.
+//! Benchmarks of repeated slip: the cycle of one block under rate and state with inertia, and the catalogue
+//! of a train of blocks.
 
 use slipfront::Stop;
 use slipfront::observe::{Event, Events, Scheduled};

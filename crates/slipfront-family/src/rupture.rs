@@ -7,9 +7,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Contact, Load};
-use slipfront::{
-    Coulomb, DeadLoad, Drive, Interface, Lattice, Model, Program, Slider, SlipWeakening, Surface, scales,
-};
+use slipfront::{Coulomb, DeadLoad, Drive, Interface, Lattice, Model, Program, Slider, Surface, scales};
 use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};

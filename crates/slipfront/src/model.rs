@@ -105,8 +105,8 @@ impl Model {
     /// of the highest one.
     ///
     /// # Panics
-    /// If blocks differ, there are dampers between them, the drive rotates, or friction acts along x alone: no
-    /// sheet above has these.
+    /// If blocks differ, there are dampers between them, the drive rotates, or friction acts along x alone:
+    /// no sheet above has these.
     pub fn with_sheets(self, sheets: Vec<Sheet>, springs: SpringStiffness) -> Self {
         let is_plain = self.slider == Slider::default()
             && self.drive.rotation.is_none()

@@ -2,13 +2,13 @@
 //!
 //! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count
 //! in blocks, masses in block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements
-//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. An upright sheet touches the substrate with its edge, a block
-//! on `l h` in place of `l^2`, which takes its place in all units. The case parser builds a [`Scales`]; writers of results ask
-//! it for units.
+//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. An upright sheet touches the substrate with its edge, a
+//! block on `l h` in place of `l^2`, which takes its place in all units. The case parser builds a [`Scales`];
+//! writers of results ask it for units.
 
 use crate::lattice::K_STRAIGHT;
 
-/// The six dimensional quantities that set every unit of the model, in SI.
+/// The dimensional quantities that set every unit of the model, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// Edge of a block in the plane, `l`, m.

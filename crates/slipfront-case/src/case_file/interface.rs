@@ -1,4 +1,4 @@
-//! What goes with an upright sheet, along whose edge friction acts, and what does not.
+//! Keys that go with an upright sheet, along whose edge friction acts, and keys that do not.
 
 use super::check::Check;
 use super::error::CaseError;

@@ -49,8 +49,8 @@ key_rows! {
         /// Local shear load over `shear` or `shear_star`, block by block; it may be below 0.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shear_field: Option<String> = key("", ARRAY),
-        /// Stiffness per area of the foundation along y under the blocks in contact of an upright sheet, which
-        /// bears their load: normal forces follow it.
+        /// Stiffness per area of the foundation along y under the blocks in contact of an upright sheet,
+        /// which bears their load: normal forces follow it.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub foundation: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA).or("foundation_star")
             .title("stiffness of the foundation", "K\u{2099}", "N/m\u{b3}")

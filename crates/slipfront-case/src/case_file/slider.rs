@@ -93,8 +93,8 @@ key_rows! {
         #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
         pub edges: [Edges; 2] = key("\"free\"", KeyKind::Words(names_of::<Edges>))
             .further_bounds(", or a pair of them"),
-        /// Springs between neighbours along a free edge: as stiff as those inside, as in the paper, or half as
-        /// stiff, as a continuum of squares between four blocks has them.
+        /// Springs between neighbours along a free edge: as stiff as those inside, as in the paper, or half
+        /// as stiff, as a continuum of squares between four blocks has them.
         #[serde(deserialize_with = "word", skip_serializing_if = "EdgeSprings::are_whole")]
         pub edge_springs: EdgeSprings = key("\"whole\"", KeyKind::Words(names_of::<EdgeSprings>))
             .note("See [springs along edges](../model.md#an-upright-sheet)."),

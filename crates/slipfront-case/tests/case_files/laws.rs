@@ -208,7 +208,7 @@ fn a_field_that_is_longer_than_the_slider_is_warned_of() {
     assert_eq!(said(even), None);
 }
 
-/// The lowest row of an upright sheet touches with the thickness of the sheet, and its load is the whole load.
+/// The lowest row of an upright sheet touches with the thickness of the sheet, and bears the whole load.
 #[test]
 fn an_upright_sheet_stands_on_its_lowest_row() {
     let text = "slider = { blocks = [20, 8], block_size = '2.5 mm', thickness = '6 mm', young_modulus = '3 GPa' }\n\

@@ -130,8 +130,8 @@ fn blocks_without_contact_raise_the_critical_size() {
         (least - plain).abs() < 1e-6 && (most - 26.055).abs() < 1e-3,
         "{least} {most}"
     );
-    // At the edge of an upright sheet: exact on a lattice of 201 x 121 whose springs along the edge are halved
-    // 12.18 blocks, and 14.45 where they are whole. The formula leaves out 5 %.
+    // At the edge of an upright sheet: exact on a lattice of 201 x 121 whose springs along the edge are
+    // halved 12.18 blocks, and 14.45 where they are whole. The formula leaves out 5 %.
     let upright = |edge: &str| {
         let text = format!(
             "slider = {{ blocks = [60, 40], block_size = '1 um', edge_springs = '{edge}' }}\n[friction]\nalong = 'x'\n\

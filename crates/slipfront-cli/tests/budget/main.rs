@@ -213,7 +213,7 @@ const RUNS: [&str; 7] = [
 ];
 
 /// Whole runs of other laws, in the other kernel, with events and snapshots, and of cases that read files.
-const OTHER_RUNS: [&str; 15] = [
+const OTHER_RUNS: [&str; 17] = [
     // Laws of friction that remember more.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
      friction.contact_stiffness_star=0.1",

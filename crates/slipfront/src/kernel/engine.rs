@@ -9,6 +9,10 @@ use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::Totals;
 
+/// Takes blocks that follow one another: the first, whether each slides, and their velocities half a step
+/// later.
+pub(crate) type TakeSliding<'a> = &'a mut dyn FnMut(usize, &[bool], [&[f64]; 2]);
+
 /// A kernel with the state of all blocks. `clock` is at the present step, unless a function advances to it.
 pub(crate) trait Engine: Send + Sync {
     /// Advances to the step of `clock`: the next step, or the first one.
@@ -34,7 +38,7 @@ pub(crate) trait Engine: Send + Sync {
 
     /// Hands over the blocks of these rows, at least those that move, several that follow one another at a
     /// time: the first, whether each slides, and their velocities half a step later.
-    fn read_sliding(&self, model: &Model, take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2]));
+    fn read_sliding(&self, model: &Model, take: TakeSliding);
 
     /// Displacement now and velocity half a step later of block `b`.
     fn motion(&self, b: usize) -> [[f64; 2]; 2];

@@ -179,7 +179,7 @@ impl Surface {
         self.load_factor * pressure
     }
 
-    /// Normal force `F_n,i` on block `b` in units of `P mu_s l^2`, those of all other forces; 0 over a texture.
+    /// Normal force `F_n,i` on block `b` in units of `P mu_s l^2`, as other forces; 0 over a texture.
     pub(crate) fn load(&self, b: usize) -> f64 {
         self.normal_force(b) / self.contact.mu_static_mean
     }

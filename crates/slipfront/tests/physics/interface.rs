@@ -48,7 +48,7 @@ fn a_pull_away_from_the_substrate_lowers_friction(foundation: f64, degrees: f64)
         assert!(simulation.time_star() < 2.0 * expected, "no slip at {expected}");
         simulation.step();
     }
-    // It slips at a step; leapfrog shifts the frequency of the swing by (w dt)^2/24 of itself, next to nothing.
+    // It slips at a step; leapfrog shifts the frequency of the swing by (w dt)^2/24 of itself, hardly.
     let found = simulation.time_star();
     assert!(
         found - expected > -1e-2 && found - expected < dt + 1e-2,

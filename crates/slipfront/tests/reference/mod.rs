@@ -79,8 +79,8 @@ pub(crate) struct Reference<'a> {
     pub(crate) velocity: Vec<Vector>,
     /// Sheets above the lattice.
     sheets: Vec<sheets::Blocks>,
-    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface; of a stack the
-    /// forces of the sheet above.
+    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface; of a stack
+    /// the forces of the sheet above.
     pub(crate) force_drive: Vec<Vector>,
     /// Forces `F_v` of the dampers.
     force_dampers: Vec<Vector>,

@@ -95,7 +95,8 @@ pub(crate) struct CoulombContact {
     weakened: Option<Weakened>,
     aged: Option<Aged>,
     slipped: Option<Slipped>,
-    interface: Option<InterfaceContact>,
+    /// In a box, since few sliders have one.
+    interface: Option<Box<InterfaceContact>>,
 }
 
 impl CoulombContact {
@@ -109,7 +110,7 @@ impl CoulombContact {
             slipped: coulomb.slip_weakening.map(|law| Slipped::new(law, n_blocks)),
             interface: coulomb
                 .interface
-                .map(|interface| InterfaceContact::new(interface, n_blocks)),
+                .map(|interface| Box::new(InterfaceContact::new(interface, n_blocks))),
         }
     }
 

@@ -14,12 +14,13 @@ use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, splat, square};
 use crate::kernel::block::{Block, Field};
+use crate::kernel::engine::TakeSliding;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Force of the drive spring on block `b` (Eq. 2), with the dead load and the change of the normal force of an
-/// interface.
+/// Force of the drive spring on block `b` (Eq. 2), with the dead load and the change of the normal force of
+/// an interface.
 pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displacement: [f64; 2]) -> [f64; 2] {
     let drive_spring = model.slider.drive_spring(b);
     let spring = model.drive.force(displacement, drive_time_star);
@@ -170,12 +171,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
 
 /// Hands over the blocks of tiles that move, some of a row at a time: the first, whether each slides, and
 /// their velocities.
-pub(super) fn read_sliding(
-    model: &Model,
-    layout: &Layout,
-    bands: &[Band],
-    take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2]),
-) {
+pub(super) fn read_sliding(model: &Model, layout: &Layout, bands: &[Band], take: TakeSliding) {
     let mut slides = [false; TILE];
     for band in bands {
         for t in (0..band.tiles.len()).filter(|t| band.tiles[*t].moving) {

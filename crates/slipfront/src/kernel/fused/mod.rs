@@ -65,7 +65,7 @@ use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::Integrator;
 use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
-use crate::kernel::engine::Engine;
+use crate::kernel::engine::{Engine, TakeSliding};
 use crate::kernel::vectors;
 use crate::lattice::SpringStiffness;
 use crate::model::Model;
@@ -620,7 +620,7 @@ impl Engine for Fused {
         }
     }
 
-    fn read_sliding(&self, model: &Model, take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2])) {
+    fn read_sliding(&self, model: &Model, take: TakeSliding) {
         fields::read_sliding(model, &self.layout, &self.bands, take);
     }
 

@@ -24,7 +24,7 @@ use fearless_simd::dispatch;
 use self::band::{Band, BandSums, Summed};
 use super::bands::for_each_band;
 use super::block::{Block, Field};
-use super::engine::Engine;
+use super::engine::{Engine, TakeSliding};
 use super::vectors;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::clock::Clock;
@@ -386,7 +386,7 @@ impl Engine for General {
         }
     }
 
-    fn read_sliding(&self, _: &Model, take: &mut dyn FnMut(usize, &[bool], [&[f64]; 2])) {
+    fn read_sliding(&self, _: &Model, take: TakeSliding) {
         for BandOfRank { blocks, band, .. } in &self.bands {
             let velocity = &band.state.velocity;
             take(blocks.start, &band.forces.slides, [&velocity.x, &velocity.y]);
