@@ -106,9 +106,9 @@ def longest(events):
 EVENT = "t_begin,t_end,blocks,moment,force_before,force_after"
 
 
-def answers(problem, times, force, first_slips, events, peak_speed):
+def answers(problem, times, force, first_slips, events, speeds):
     """Every answer that a problem asks for, from a record: drive force over time, first slips by block (NaN for none), rows
-    of events. Arrays stay arrays; `write` makes files of them."""
+    of events, the largest speed of each. Arrays stay arrays; `write` makes files of them."""
     found = {}
     for name, asked in problem.answers.items():
         if name == "first_slip":
@@ -128,7 +128,7 @@ def answers(problem, times, force, first_slips, events, peak_speed):
         elif name == "period":
             found[name] = period(events, asked["from_event"])
         elif name == "peak_speed":
-            found[name] = peak_speed
+            found[name] = float(np.max(speeds[asked["from_event"] - 1 :]))
         elif name == "histogram":
             found[name] = histogram(events, asked["from_event"], asked["parts"], asked["ln_moment"], asked["bins"])
     return found

@@ -71,7 +71,7 @@ def simulate(p, dt):
     fs, fk = (p.static * p.normal)[touch], (p.kinetic * p.normal)[touch]
     u, v = ([np.zeros((p.ny, p.nx)) for _ in axes] for _ in range(2))
     slip, first = np.zeros(fs.shape), np.full(fs.shape, np.nan)
-    catalogue, times, force, fastest = Catalogue(p), [], [], 0.0
+    catalogue, times, force = Catalogue(p), [], []
     n = drive_steps = 0
     stop, enough = (math.inf if p.until is None else round(p.until / dt)), p.raw.get("until_events", math.inf)
     while n <= stop and len(catalogue.rows) < enough:
@@ -114,7 +114,7 @@ def simulate(p, dt):
         drive_steps += not (p.held and moves)
     whole = np.full((p.ny, p.nx), np.nan)
     whole[touch] = first
-    return np.array(times), np.array(force), whole, np.array(catalogue.rows).reshape(-1, 6), fastest
+    return np.array(times), np.array(force), whole, np.array(catalogue.rows).reshape(-1, 6), None
 
 
 def thresholds(law, fs, fk, slip, speed):
@@ -136,7 +136,7 @@ def simulate_rate_and_state(p, dt):
     a, b, d_c, v_0 = (law[key] for key in ("a", "b", "d_c", "v_0"))
     before, impulse = (1 - 0.5 * p.damping * dt) / (1 + 0.5 * p.damping * dt), dt / (1 + 0.5 * p.damping * dt)
     u, v, theta, mean = 0.0, 0.0, law["theta_0"], 0.0
-    times, force, rows, begun, first, fastest = [], [], [], None, math.nan, 0.0
+    times, force, rows, speeds, begun, first, fastest = [], [], [], [], None, math.nan, 0.0
     for n in range(round(p.until / dt) + 1):
         t = n * dt
         mean = k * (p.reach(t) - u)
@@ -144,18 +144,19 @@ def simulate_rate_and_state(p, dt):
         state = math.exp((law["mu_0"] + b * math.log(v_0 * theta / d_c)) / a) / (2 * v_0)
         v = math.copysign(speed_under(abs(free), impulse * load * a, state, abs(v)), free)
         slides = abs(v) > law["slip_speed"]
-        fastest = max(fastest, abs(v))
+        fastest = max(fastest, abs(v)) if slides else fastest
         if slides and begun is None:
             begun, first = (t, mean, u), t if math.isnan(first) else first
         elif not slides and begun is not None:
             rows.append((begun[0], t, 1, u - begun[2], begun[1], mean))
-            begun = None
+            speeds.append(fastest)
+            begun, fastest = None, 0.0
         times.append(t)
         force.append(mean)
         u += dt * v
         x = abs(v) * dt / d_c
         theta = theta * math.exp(-x) + dt * (-math.expm1(-x) / x if x > 0 else 1.0)
-    return np.array(times), np.array(force), np.array([[first]]), np.array(rows).reshape(-1, 6), fastest
+    return np.array(times), np.array(force), np.array([[first]]), np.array(rows).reshape(-1, 6), np.array(speeds)
 
 
 def speed_under(free, most, state, guess):
