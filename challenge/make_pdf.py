@@ -11,20 +11,31 @@ from pathlib import Path
 from fpdf import FPDF
 
 HERE = Path(__file__).resolve().parent
-SIZE, LINE = 8.1, 3.35
+MARGIN, SIZE, LINE = 14, 9.8, 4.35
+MARKS = re.compile(r"(`[^`]*`|\*\*[^*]*\*\*)")
 
 
-def marked(text):
-    """Bold stays as fpdf2 writes it; code loses its marks, and names in italics would be read from underscores."""
-    return re.sub(r"`([^`]*)`", r"\1", text)
+def flow(pdf, text):
+    """Writes a paragraph whose bold parts and code have fonts of their own."""
+    for part in MARKS.split(text):
+        code, bold = part.startswith("`"), part.startswith("**")
+        pdf.set_font("Courier" if code else "Helvetica", "B" if bold else "", SIZE - (0.6 if code else 0))
+        words = part.strip("`") if code else part.strip("*") if bold else part
+        # A word is not divided where the font changes.
+        if pdf.get_string_width(words.lstrip().split(" ")[0]) > pdf.w - pdf.r_margin - pdf.x - 3:
+            pdf.ln(LINE)
+            words = words.lstrip()
+        pdf.write(LINE, words)
+    pdf.ln(LINE)
 
 
 def table(pdf, rows):
-    cells = [[marked(cell.strip()) for cell in row.strip().strip("|").split("|")] for row in rows if not set(row) <= set("|-: ")]
+    cells = [[cell.strip() for cell in row.strip().strip("|").split("|")] for row in rows if not set(row) <= set("|-: ")]
     pdf.set_font("Helvetica", size=SIZE - 0.9)
-    with pdf.table(col_widths=(13, 48, 40, 40, 53), line_height=LINE - 0.35, padding=(0.25, 0.6), borders_layout="HORIZONTAL_LINES",
+    with pdf.table(col_widths=(14, 44, 38, 42, 44), line_height=LINE - 0.35, padding=(0.5, 0.7), borders_layout="HORIZONTAL_LINES",
                    text_align="LEFT", headings_style=None, first_row_as_headings=False) as lines:
-        for row in cells:
+        for number, row in enumerate(cells):
+            pdf.set_font(style="B" if number == 0 else "")
             line = lines.row()
             for cell in row:
                 line.cell(cell)
@@ -36,23 +47,25 @@ def main():
     # The same bytes on every day.
     pdf.set_creation_date(datetime.datetime(2026, 1, 1, tzinfo=datetime.timezone.utc))
     pdf.set_title("The onset challenge, version 1")
-    pdf.set_margins(13, 10, 13)
-    pdf.set_auto_page_break(True, margin=9)
+    pdf.set_margins(MARGIN, 14, MARGIN)
+    pdf.set_auto_page_break(True, margin=12)
     pdf.add_page()
     lines = (HERE / "README.md").read_text().split("## Files and commands")[0].splitlines()
     while lines:
         line = lines.pop(0)
         if line.startswith("#"):
             level = len(line) - len(line.lstrip("#"))
+            if line.endswith("Problems"):
+                pdf.add_page()
             pdf.ln(0 if level == 1 else 0.8)
-            pdf.set_font("Helvetica", "B", 14 if level == 1 else 10)
-            pdf.multi_cell(0, 6 if level == 1 else 4.6, line.lstrip("# "), new_x="LMARGIN", new_y="NEXT")
+            pdf.set_font("Helvetica", "B", 15 if level == 1 else 11.5)
+            pdf.multi_cell(0, 8 if level == 1 else 6, line.lstrip("# "), new_x="LMARGIN", new_y="NEXT")
         elif line.startswith("```"):
             block = []
             while not (line := lines.pop(0)).startswith("```"):
                 block.append(line)
-            pdf.set_font("Courier", size=SIZE - 0.6)
-            pdf.multi_cell(0, LINE - 0.1, "\n".join(block), new_x="LMARGIN", new_y="NEXT")
+            pdf.set_font("Courier", size=SIZE - 1.7)
+            pdf.multi_cell(0, LINE - 0.3, "\n".join(block), align="L", new_x="LMARGIN", new_y="NEXT")
             pdf.ln(0.8)
         elif line.startswith("|"):
             rows = [line]
@@ -63,10 +76,11 @@ def main():
             words = [line]
             while lines and lines[0] and not lines[0].startswith(("- ", "#", "|", "```")):
                 words.append(lines.pop(0).strip())
-            pdf.set_font("Helvetica", size=SIZE)
-            pdf.set_x(pdf.l_margin + (2 if line.startswith("- ") else 0))
-            pdf.multi_cell(0, LINE, marked(" ".join(words)), markdown=True, new_x="LMARGIN", new_y="NEXT")
-            pdf.ln(0 if line.startswith("- ") else 0.7)
+            item = line.startswith("- ")
+            pdf.set_left_margin(MARGIN + (3 if item else 0))
+            flow(pdf, " ".join(words).removeprefix("- "))
+            pdf.set_left_margin(MARGIN)
+            pdf.ln(0.6 if item else 1.4)
     pdf.output(HERE / "definition.pdf")
 
 

@@ -155,13 +155,14 @@ def line_fault(root):
 
 def mode_two(root):
     nx, ny, kinetic, weakening, modulus = 600, 160, 0.5, 0.2, 1.1
-    for part, strength in (("a", 0.9), ("b", 1.4), ("c", 2.0)):
+    # As many windows as a front that is not too slow passes before the run ends.
+    for part, strength, passed in (("a", 0.9, 7), ("b", 1.4, 5), ("c", 2.0, 4)):
         folder, force = Folder(root, f"P08{part}"), round((1 + strength * kinetic) / (1 + strength), 9)
         # Critical length of the continuum, mu_eff/(pi W) (1 + S)^2, and the weak patch, 1.3 of it on either side.
         critical = modulus / weakening * (1 + strength) ** 2 / math.pi
         static = [round(force - 0.004, 9) if abs(i - nx // 2) <= 1.3 * critical else 1 for i in range(nx)]
         first = int(1.3 * critical) + 5
-        windows = [[nx // 2 + lo, nx // 2 + lo + 24] for lo in range(first, nx // 2 - 20, 25) if nx // 2 + lo + 24 < nx]
+        windows = [[nx // 2 + first + 25 * n, nx // 2 + first + 25 * n + 24] for n in range(passed)]
         edge = lambda value: {"rows": {"0": value}, "else": 0}
         folder.problem(
             f"Rupture along the edge of a half plane in mode II, seismic ratio {strength}", nx, ny, damping=0,

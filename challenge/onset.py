@@ -151,3 +151,14 @@ def write(folder, problem, solver, dt, found, wall, error=None):
             whole[name] = value
     whole |= {"wall_s": round(wall, 2), "machine": platform.machine()}
     (folder / "answers.json").write_text(json.dumps(whole, indent=1) + "\n")
+
+
+def estimate(folder):
+    """Writes into the answers of half the step their distance from those of the whole step, as an estimate of their error."""
+    whole, path = json.loads((Path(folder) / "answers.json").read_text()), Path(folder) / "half/answers.json"
+    half = json.loads(path.read_text())
+    for name, value in half.items():
+        if isinstance(value, (float, list)) and name not in ("dt", "wall_s"):
+            apart = np.abs(np.subtract(np.array(value, float), np.array(whole[name], float)))
+            half["error"][name] = float(f"{np.max(apart):.3g}")
+    path.write_text(json.dumps(half, indent=1) + "\n")

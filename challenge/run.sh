@@ -4,7 +4,7 @@
 #     run.sh NAME 'COMMAND' [PROBLEM...]
 #
 # COMMAND takes the folder of a problem, a folder for answers and `--dt DT`. Answers go into answers/NAME/PROBLEM and, with half
-# the step, into half/ there. Without problems it takes all but the design, P12. Needs Python 3 with NumPy; PYTHON names another.
+# the step, into half/ there; their difference is the estimate of the error. Without problems it takes all but the design, P12. Needs Python 3 with NumPy; PYTHON names another.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 python=${PYTHON:-python3}
@@ -16,4 +16,5 @@ for problem; do
     printf '%s %s\n' "$name" "$problem"
     $python $command "problems/$problem" "answers/$name/$problem" --dt "$step"
     $python $command "problems/$problem" "answers/$name/$problem/half" --dt "$("$python" -c "print($step / 2)")"
+    "$python" -c "import onset; onset.estimate('answers/$name/$problem')"
 done
