@@ -169,7 +169,7 @@ def judge(name, row, runs, values, problem, medians, peak):
     used = max(compare(name, row, found, reference, run.dt, peak) for run, found in judged)
     verdict |= {"tolerance_used": round(used, 4), "verdict": "fail" if used > 1 or broken else "pass"}
     if verdict["verdict"] == "fail":
-        verdict["why"] = broken or factor(values[-1], reference) or f"{used:.3g} times the tolerance off, which has its reason: {row['reason']}"
+        verdict["why"] = broken or next(filter(None, (factor(v, reference) for v in values)), None) or f"{used:.3g} times the tolerance off, which has its reason: {row['reason']}"
     return verdict
 
 
@@ -215,9 +215,10 @@ def score(answers, only=None):
                 except Refused as wrong:
                     cells[solver] = {"verdict": "refused", "why": str(wrong)}
             if medians is not None and row["value"] is None:
-                ranked = sorted((c["tolerance_used"], s) for s, c in cells.items() if "tolerance_used" in c)
-                for place, (_, solver) in enumerate(ranked, 1):
-                    cells[solver]["rank"] = place
+                ranked = sorted(cell["tolerance_used"] for cell in cells.values() if "tolerance_used" in cell)
+                for cell in cells.values():
+                    if "tolerance_used" in cell:
+                        cell["rank"] = 1 + ranked.index(cell["tolerance_used"])
     return verdicts
 
 

@@ -55,7 +55,8 @@ rm -rf "$book" "$source"
 mkdir -p "$pages"
 cp -r docs/site/. "$source"
 cp -r --parents README.md ARCHITECTURE.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE-APACHE LICENSE-MIT SECURITY.md deny.toml \
-    benches/instructions.txt benches/peers cases crates/slipfront-cli/THIRD-PARTY-NOTICES.txt crates/slipfront-paper/cases/claims.toml \
+    benches/instructions.txt benches/peers cases challenge/README.md challenge/RESULTS.md \
+    crates/slipfront-cli/THIRD-PARTY-NOTICES.txt crates/slipfront-paper/cases/claims.toml \
     crates/slipfront/src/friction/needs.rs docs python/examples "$pages"
 rm -r "$pages/docs/site" "$pages/docs/build.sh"
 files_of cases Cases > "$pages/cases/README.md"
