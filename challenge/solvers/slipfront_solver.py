@@ -44,7 +44,9 @@ def case(p, dt, folder):
         "edges": "[" + ", ".join(f'"{"periodic" if periodic else "free"}"' for periodic in p.periodic) + "]"}
     if not p.exists.all():
         tables["slider"] |= {"outline": '"mask"', "outline_file": array("outline", p.exists.astype(np.uint8))}
-    if not p.contact[p.exists].all():
+    if not p.vector and not (p.contact == (np.arange(p.ny) == 0)[:, None]).all():
+        raise SystemExit("slipfront has friction along x alone on the lowest row of an upright sheet, and on all of it")
+    if p.vector and not p.contact[p.exists].all():
         textures = f'\n[[texture]]\nshape = "mask"\nfile = {array("texture", (p.exists & ~p.contact).astype(np.uint8))}\n'
     tables["load"] = {"pressure": f'"{PRESSURE} Pa"', "redistribute": "false",
                       "pressure_field": array("pressure", np.where(p.contact, p.normal, 1.0))}
@@ -112,8 +114,12 @@ def record(p, dt, folder):
     elif (folder / "events.csv").is_file():
         table = columns(folder / "events.csv")
         events = np.stack([table[name] for name in ("time_star", "until_star", "blocks", "moment_star", "mu_star_before", "mu_star_after")], axis=1)
+        # An event that has not ended has empty fields.
         events = events[np.isfinite(events).all(axis=1)]
-    return times, force, first_slips, events[: p.raw.get("until_events")], speeds
+    wanted = p.raw.get("until_events", 0)
+    if len(events) < wanted:
+        raise SystemExit(f"the run has {len(events)} events, and {wanted} are asked for: CATALOGUE is too short a path")
+    return times, force, first_slips, events[: wanted or None], speeds
 
 
 def simulate(p, dt, program, folder):
