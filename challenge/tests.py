@@ -4,13 +4,15 @@ others, the solvers find the exact answers again.
 
     tests.py
 
-Needs NumPy and a C compiler; with SciPy it computes the exact answers anew. Takes less than half a minute.
+Needs NumPy and a C compiler; with SciPy it computes the exact answers anew, and with the command slipfront, whose path is
+SLIPFRONT of the environment, its answers to short problems. Takes less than half a minute.
 """
 
 import doctest
 import filecmp
 import importlib.util
 import json
+import os
 import shutil
 import sys
 import tempfile
@@ -50,9 +52,13 @@ class Problems(Scratch):
     def test_examples_in_comments(self):
         self.assertEqual(doctest.testmod(make_problems).failed, 0)
 
-    def test_every_problem_has_a_reference_and_two_runs_of_each_solver(self):
+    def test_every_problem_has_a_reference_and_answers_of_three_solvers(self):
         reference = json.loads((HERE / "reference.json").read_text())["problems"]
-        self.assertEqual(sorted(reference), sorted(path.name for path in (HERE / "problems").iterdir()))
+        names = sorted(path.name for path in (HERE / "problems").iterdir())
+        self.assertEqual(sorted(reference), names)
+        for solver in ("lattice.py", "lattice.c", "slipfront"):
+            given = sorted(path.parts[-3] for path in (HERE / "answers" / solver).glob("P*/half/answers.json"))
+            self.assertEqual(given, [name for name in names if name != "P12"], solver)
 
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "SciPy is not installed")
     def test_references_follow_from_formulas(self):
@@ -184,6 +190,23 @@ class Solvers(unittest.TestCase):
             one, other = (self.found(name, 0.1, solver) for solver in (lattice, lattice_c))
             self.assertAlmostEqual(one["static"], other["static"], delta=1e-10)
             self.assertEqual(one["static_time"], other["static_time"])
+
+    @unittest.skipUnless("SLIPFRONT" in os.environ and importlib.util.find_spec("scipy"), "neither SLIPFRONT nor SciPy, or one of them")
+    def test_slipfront_gives_its_stored_answers(self):
+        import slipfront_solver
+
+        for name in ("P01", "P02", "P03", "P09"):
+            p = onset.Problem(HERE / "problems" / name)
+            with tempfile.TemporaryDirectory() as folder:
+                record = slipfront_solver.simulate(p, 0.1, Path(os.environ["SLIPFRONT"]).resolve(), Path(folder))
+            found = onset.answers(p, *record)
+            stored = HERE / "answers/slipfront" / name
+            given = json.loads((stored / "answers.json").read_text())
+            for answer, value in found.items():
+                if not isinstance(value, np.ndarray):
+                    self.assertAlmostEqual(value, given[answer], delta=1e-9, msg=f"{name} {answer}")
+                elif answer == "first_slip_map":
+                    np.testing.assert_allclose(value, np.genfromtxt(stored / given[answer], delimiter=","), atol=1e-6)
 
 
 if __name__ == "__main__":
