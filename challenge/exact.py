@@ -212,7 +212,7 @@ def entries():
     entry("P10", "peak_speed", peak, {"rel": 1e-2}, "the peak lies between steps of 0.1 that change the speed by some per cent", "Radau, rtol 1e-9: exact.py")
     entry("P11", "exponent", None, {"abs": 0.1}, "spread over five parts of the catalogue", median, bins=[-3, 2])
     entry("P11", "whole_chain_share", None, {"factor": 1.5}, "there are about 25 such events, which scatter by a fifth; twice that", median)
-    entry("P12", "mask", None, {}, "ranked by the static friction of runs of two solvers on surfaces that are drawn after it was sent", "score.py --surfaces")
+    entry("P12", "mask", None, {}, "ranked by the static friction of runs of two solvers on surfaces that are drawn after it was sent", "rank_designs.py")
     return {"format": "onset-1", "problems": rows}
 
 

@@ -5,14 +5,19 @@ It reads the Markdown of that page alone: headings, paragraphs, lists, tables, b
 """
 
 import datetime
+import hashlib
 import re
 from pathlib import Path
-
-from fpdf import FPDF
 
 HERE = Path(__file__).resolve().parent
 MARGIN, SIZE, LINE = 14, 9.8, 4.35
 MARKS = re.compile(r"(`[^`]*`|\*\*[^*]*\*\*)")
+
+
+def definition():
+    """The text of the two pages, and a hash of it, which stands in the subject of the PDF."""
+    text = (HERE / "README.md").read_text().split("## Files and commands")[0]
+    return text, hashlib.sha256(text.encode()).hexdigest()
 
 
 def flow(pdf, text):
@@ -43,14 +48,19 @@ def table(pdf, rows):
 
 
 def main():
+    # Here, since a test without this package asks for the hash.
+    from fpdf import FPDF
+
     pdf = FPDF(format="A4")
     # The same bytes on every day.
     pdf.set_creation_date(datetime.datetime(2026, 1, 1, tzinfo=datetime.timezone.utc))
     pdf.set_title("The onset challenge, version 1")
+    text, checksum = definition()
+    pdf.set_subject(checksum)
     pdf.set_margins(MARGIN, 14, MARGIN)
     pdf.set_auto_page_break(True, margin=12)
     pdf.add_page()
-    lines = (HERE / "README.md").read_text().split("## Files and commands")[0].splitlines()
+    lines = text.splitlines()
     while lines:
         line = lines.pop(0)
         if line.startswith("#"):

@@ -25,6 +25,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE / "solvers")]
 import lattice
 import lattice_c
+import make_pdf
 import make_problems
 import onset
 import rank_designs
@@ -48,6 +49,9 @@ class Problems(Scratch):
         self.assertEqual(tree(HERE / "problems"), tree(self.folder))
         for name in tree(self.folder):
             self.assertTrue(filecmp.cmp(HERE / "problems" / name, self.folder / name, shallow=False), f"{name}: run make_problems.py")
+
+    def test_the_pdf_is_made_of_the_readme(self):
+        self.assertIn(make_pdf.definition()[1].encode(), (HERE / "definition.pdf").read_bytes(), "run make_pdf.py")
 
     def test_examples_in_comments(self):
         self.assertEqual(doctest.testmod(make_problems).failed, 0)
