@@ -212,6 +212,20 @@ class Solvers(unittest.TestCase):
                 elif answer == "first_slip_map":
                     np.testing.assert_allclose(value, np.genfromtxt(stored / given[answer], delimiter=","), atol=1e-6)
 
+    @unittest.skipUnless("SLIPFRONT" in os.environ and importlib.util.find_spec("scipy"), "neither SLIPFRONT nor SciPy, or one of them")
+    def test_slipfront_slips_as_lattice_c_on_an_upright_sheet(self):
+        import slipfront_solver
+
+        # A quarter of P08a, in which some 50 blocks slip; slips are stamped with steps, of which there is one of room.
+        p = onset.Problem(HERE / "problems/P08a")
+        p.until = 75
+        with tempfile.TemporaryDirectory() as folder:
+            found = slipfront_solver.simulate(p, 0.25, Path(os.environ["SLIPFRONT"]).resolve(), Path(folder))[2][0]
+        stored = np.genfromtxt(HERE / "answers/lattice.c/P08a/first_slip_map.csv", delimiter=",")
+        early = stored < p.until
+        self.assertGreater(early.sum(), 40)
+        np.testing.assert_allclose(found[early], stored[early], rtol=0, atol=0.25)
+
 
 if __name__ == "__main__":
     unittest.main()
