@@ -167,7 +167,7 @@ mod tests {
         let out = tempfile::tempdir().unwrap();
         let out = out.path().join("out");
         // Driven at an edge it has events of slip, and it slides as a whole: every picture is drawn.
-        let text = "slider.blocks = [6, 4]\ndrive.attach = 'left'\ndrive.v_star = 3\ntime.duration_star = 60\noutput = { movie = true, events = true }\n";
+        let text = "slider.blocks = [6, 4]\ndrive = { attach = 'left', v_star = 3, loading = 'held' }\ntime.duration_star = 60\noutput = { movie = true, events = true }\n";
         let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
         let run = || running::run(&case, 1).unwrap();
         let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();
