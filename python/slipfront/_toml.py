@@ -131,8 +131,9 @@ def value(given: Any, arrays: Arrays, of: str = "") -> str:
         return _quantities(given)
     if hasattr(given, "__array__"):
         array = np.asanyarray(given)
-        # What has rows is a field or a mask, of which a case names the file, and heights may be missing.
-        if array.ndim == 2:
+        # What has rows is a field or a mask, of which a case names the file, and heights may be missing; the last
+        # state of a run has layers of rows.
+        if array.ndim == 2 or (array.ndim == 3 and names_file(of)):
             return word(arrays.add(array, of))
         check_numbers(of, array)
         return value(array.tolist(), arrays)

@@ -272,10 +272,10 @@ def test_arrays_are_a_load_and_a_start(tmp_path: Path) -> None:
     with pytest.raises(sf.CaseError, match=r"`initial.velocity_x` has the shape \(6, 7\) where \(6, 8\)"):
         case.replace({"initial.velocity_x": push[:, 1:]})
     with pytest.raises(sf.CaseError, match=r"`initial.state_file` has the shape \(6, 8\) where the last state"):
-        case.replace({"initial": {"state_file": push}})
+        sf.Case(tables | {"initial": {"state_file": push}})
     state = np.zeros((4, 6, 8))
     state[2, 0, 0] = 1e-3
-    begun = sf.run(case.replace({"initial": {"state_file": state}}), progress=False)
+    begun = sf.run(sf.Case(tables | {"initial": {"state_file": state}}), progress=False)
     assert begun.front[0, 0] == 0 and (run.save(tmp_path / "run") / "state.npy").is_file()
     assert np.load(tmp_path / "run" / "state.npy").shape == (4, 6, 8)
 
