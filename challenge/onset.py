@@ -1,8 +1,10 @@
 """Problems and answers of the onset challenge: reading, the definitions of answers, writing. NumPy alone."""
 
+import argparse
 import bisect
 import json
 import platform
+import time
 from pathlib import Path
 
 import numpy as np
@@ -162,3 +164,17 @@ def estimate(folder):
             apart = np.abs(np.subtract(np.array(value, float), np.array(whole[name], float)))
             half["error"][name] = float(f"{np.max(apart):.3g}")
     path.write_text(json.dumps(half, indent=1) + "\n")
+
+
+def solve(description, solver, simulate):
+    """The command line of a solver: `simulate` runs a problem with a step, and returns what `answers` takes."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("problem")
+    parser.add_argument("output")
+    parser.add_argument("--dt", type=float, help="step; the largest that the problem allows if not given")
+    given = parser.parse_args()
+    problem = Problem(given.problem)
+    dt = given.dt or problem.raw["step_max"]
+    began = time.perf_counter()
+    found = answers(problem, *simulate(problem, dt))
+    write(given.output, problem, solver, dt, found, time.perf_counter() - began)

