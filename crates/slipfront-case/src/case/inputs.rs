@@ -402,12 +402,9 @@ impl Inputs {
         name: &Option<String>,
         watch: &mut Watch,
     ) -> Result<Option<Vec<f64>>, CaseError> {
-        let read = |name: &String| {
-            self.read(file, (key, name), FileUse::Blocks, watch, |path, source| {
-                arrays::field(path, source, &self.slab)
-            })
-        };
-        name.as_ref().map(read).transpose()
+        self.read_numbers(file, (key, name), watch, |path, source| {
+            arrays::field(path, source, &self.slab)
+        })
     }
 
     /// Reads the last state of a run from the file of this name, given by `key`.
@@ -430,11 +427,19 @@ impl Inputs {
         name: &Option<String>,
         watch: &mut Watch,
     ) -> Result<Option<Vec<f64>>, CaseError> {
-        let read = |name: &String| {
-            self.read(file, (key, name), FileUse::Blocks, watch, |path, source| {
-                arrays::signed_field(path, source, &self.slab)
-            })
-        };
+        self.read_numbers(file, (key, name), watch, |path, source| {
+            arrays::signed_field(path, source, &self.slab)
+        })
+    }
+
+    fn read_numbers(
+        &self,
+        file: &CaseFile,
+        (key, name): (&str, &Option<String>),
+        watch: &mut Watch,
+        read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<Vec<f64>, ArrayError>,
+    ) -> Result<Option<Vec<f64>>, CaseError> {
+        let read = |name: &String| self.read(file, (key, name), FileUse::Blocks, watch, read);
         name.as_ref().map(read).transpose()
     }
 }

@@ -241,6 +241,14 @@ impl Case {
         })
     }
 
+    /// Share of the static friction of the blocks that the dead load along the drive takes; none without a
+    /// load, or under a law without static friction.
+    pub fn share_of_shear(&self) -> Option<f64> {
+        let model = &self.model;
+        let has_share = model.dead_load().acts() && model.friction.has_thresholds();
+        has_share.then(|| model.mean_dead_load()[0] / model.surface.mean_static_force())
+    }
+
     /// The textures of the file in blocks, in their order, with their masks read again.
     ///
     /// # Errors

@@ -5,7 +5,6 @@ use slipfront::{Communicator, DeadLoad, Model, Scales};
 
 use super::files::Watch;
 use super::inputs::Inputs;
-use super::runnable::Case;
 use crate::case_file::{CaseError, CaseFile, FrictionAlong};
 use slipfront_base::number_format::{count, four_digits};
 
@@ -96,23 +95,13 @@ impl AtOnce {
             first: [i, j],
         }
     }
-}
-
-impl Case {
-    /// Share of the static friction of the blocks that the dead load along the drive takes; none without a
-    /// load, or under a law without static friction.
-    pub fn share_of_shear(&self) -> Option<f64> {
-        let model = &self.model;
-        let has_share = model.dead_load().acts() && model.friction.has_thresholds();
-        has_share.then(|| model.mean_dead_load()[0] / model.surface.mean_static_force())
-    }
 
     /// A warning where blocks slip at t = 0 already.
-    pub(super) fn shear_warning(&self) -> Option<String> {
-        let AtOnce {
+    pub(super) fn warning(self) -> Option<String> {
+        let Self {
             count: n,
             first: [i, j],
-        } = self.expected.at_once;
+        } = self;
         let (slip, their) = if n == 1 {
             ("slips", "its")
         } else {

@@ -348,7 +348,7 @@ impl Case {
             ));
         }
         warnings.extend(friction_warning(&self.model));
-        warnings.extend(self.shear_warning());
+        warnings.extend(self.expected.at_once.warning());
         warnings.extend(self.coarse_for_stick_slip());
         warnings.extend(self.unresolved_lengths());
         let [mean_static, mean_kinetic] = means;

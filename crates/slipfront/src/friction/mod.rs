@@ -26,7 +26,6 @@ use crate::fixed_point::RunningSum;
 use crate::forces::Forces;
 use crate::state::State;
 use crate::surface::Surface;
-use crate::vector_field::VectorField;
 
 /// The law of friction of all blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,20 +239,6 @@ impl BandContact {
                 let breaks = &forces.slides;
                 springs.form_again(surface, blocks, &state.displacement, breaks, static_limit);
             }
-        }
-    }
-
-    /// Adds the forces of the foundation under some blocks of an upright sheet to the forces on them.
-    #[inline(always)]
-    pub(crate) fn add_reactions(
-        &self,
-        surface: &Surface,
-        blocks: &Range<usize>,
-        displacement: &VectorField,
-        force: &mut VectorField,
-    ) {
-        if let Self::Coulomb(thresholds) = self {
-            thresholds.add_reactions(surface, blocks, displacement, force);
         }
     }
 

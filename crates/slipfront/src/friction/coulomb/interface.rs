@@ -51,6 +51,34 @@ impl Interface {
         -if held < load { held } else { load }
     }
 
+    /// Change of the normal force on block `b` of a surface that has risen by `rise`; 0 over a texture.
+    #[inline(always)]
+    pub(crate) fn reaction_on(&self, surface: &Surface, b: usize, rise: f64) -> f64 {
+        if surface.textured[b] {
+            0.0
+        } else {
+            self.reaction(surface.load(b), rise)
+        }
+    }
+
+    /// Adds the change of the normal force of some blocks to the other forces on them.
+    #[inline(always)]
+    pub(crate) fn add_reactions(
+        &self,
+        surface: &Surface,
+        blocks: &Range<usize>,
+        displacement: &VectorField,
+        force: &mut VectorField,
+    ) {
+        if self.foundation == 0.0 {
+            return;
+        }
+        let ([_, fy], [_, uy]) = (part_mut(force, blocks), part(displacement, blocks));
+        for (k, b) in blocks.clone().enumerate() {
+            fy[k] += self.reaction_on(surface, b, uy[k]);
+        }
+    }
+
     /// Normal force over the `load` on a block that has risen by `rise`, `N/F_n`; 1 without load.
     #[inline(always)]
     pub(crate) fn share(&self, load: f64, rise: f64) -> f64 {
@@ -101,26 +129,6 @@ impl InterfaceContact {
         let x = &velocity.x[blocks.clone()];
         self.slip_velocity.x[blocks.clone()].copy_from_slice(x);
         &self.slip_velocity
-    }
-
-    /// Adds the change of the normal force of some blocks to the other forces on them.
-    #[inline(always)]
-    pub(super) fn add_reactions(
-        &self,
-        surface: &Surface,
-        blocks: &Range<usize>,
-        displacement: &VectorField,
-        force: &mut VectorField,
-    ) {
-        if self.interface.foundation == 0.0 {
-            return;
-        }
-        let ([_, fy], [_, uy]) = (part_mut(force, blocks), part(displacement, blocks));
-        for (k, b) in blocks.clone().enumerate() {
-            if !surface.textured[b] {
-                fy[k] += self.interface.reaction(surface.load(b), uy[k]);
-            }
-        }
     }
 
     /// Thresholds of some blocks at their present normal forces, from those under their loads.

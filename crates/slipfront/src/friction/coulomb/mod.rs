@@ -141,20 +141,6 @@ impl CoulombContact {
         }
     }
 
-    /// Adds the forces of the foundation under some blocks to the forces on them.
-    #[inline(always)]
-    pub(super) fn add_reactions(
-        &self,
-        surface: &Surface,
-        blocks: &Range<usize>,
-        displacement: &VectorField,
-        force: &mut VectorField,
-    ) {
-        if let Some(interface) = &self.interface {
-            interface.add_reactions(surface, blocks, displacement, force);
-        }
-    }
-
     /// Finds friction, the next velocities and the blocks that slide, among some blocks. `limits`: static
     /// thresholds of age 0 and kinetic thresholds at rest.
     #[inline(always)]

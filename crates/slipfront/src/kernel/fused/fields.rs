@@ -27,10 +27,8 @@ pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displac
     let load = model.dead_load_of(b);
     let [x, y] = [0, 1].map(|axis| drive_spring * spring[axis] + load[axis]);
     match model.friction.interface() {
-        Some(interface) if !model.surface.textured[b] => {
-            [x, y + interface.reaction(model.surface.load(b), displacement[1])]
-        }
-        _ => [x, y],
+        Some(interface) => [x, y + interface.reaction_on(&model.surface, b, displacement[1])],
+        None => [x, y],
     }
 }
 
@@ -45,20 +43,21 @@ pub(super) fn block(
 ) -> Block {
     let [displacement, velocity] = motion(b);
     let force_lattice = lattice_force(model, b, displacement, |b| motion(b)[0]);
-    let (slip_velocity, kinetic_force, along) = match model.friction.interface() {
-        Some(interface) => {
-            let share = interface.share(model.surface.load(b), displacement[1]);
-            ([velocity[0], 0.0], share * kinetic_force, [1.0, 0.0])
-        }
-        None => (velocity, kinetic_force, [1.0; 2]),
-    };
-    let friction = friction(kinetic_force, slip_velocity, force_drive, force_lattice);
+    let (mut slip_velocity, mut kinetic_force) = (velocity, kinetic_force);
+    if let Some(interface) = model.friction.interface() {
+        slip_velocity[1] = 0.0;
+        kinetic_force *= interface.share(model.surface.load(b), displacement[1]);
+    }
+    let mut force_friction = friction(kinetic_force, slip_velocity, force_drive, force_lattice);
+    if model.friction.interface().is_some() {
+        force_friction[1] = 0.0;
+    }
     Block {
         displacement,
         velocity,
         force_drive,
         force_lattice,
-        force_friction: [along[0] * friction[0], along[1] * friction[1]],
+        force_friction,
         slides: slip_velocity != [0.0, 0.0],
     }
 }

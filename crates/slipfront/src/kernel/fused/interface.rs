@@ -5,14 +5,12 @@ use std::ops::Range;
 use fearless_simd::{Select, Simd, SimdBase, f64x8, i64x8};
 
 use super::aligned::Aligned;
-use super::band::Band;
 use super::blocks::{FrictionLoop, Moved, Shifts, Sums, mark_first_slips, zero_missing};
 use super::layout::{Layout, TILE};
 use super::pull::pull_of_differing;
 use super::quanta::Quanta;
-use super::scratch::Scratch;
 use super::step::Step;
-use super::vector::{Chunks, LANES, add, bits, is_zero, load, load_vec2, or_zero_below, scale, splat};
+use super::vector::{Chunks, add, bits, is_zero, load, load_vec2, or_zero_below, scale, splat};
 use crate::friction::{Interface as Law, SMALLEST_VELOCITY};
 use crate::model::Model;
 
@@ -70,7 +68,7 @@ impl Interface {
     }
 
     /// Zeros in place of the velocities of `n` elements of a tile along y.
-    fn still(&self, n: usize) -> Chunks<'_> {
+    pub(super) fn still(&self, n: usize) -> Chunks<'_> {
         self.still[..n].as_chunks().0
     }
 }
@@ -159,53 +157,4 @@ pub(super) fn friction_along_x<S: Simd>(
         );
     }
     moves
-}
-
-impl Band {
-    /// Eqs. 2 and 4-7 along the interface under a tile whose lattice forces are known. A function of its own,
-    /// compiled once for all formulas of springs.
-    #[inline(never)]
-    pub(super) fn interface_of_tile<S: Simd>(
-        &mut self,
-        simd: S,
-        step: &Step,
-        quanta: &Quanta,
-        t: usize,
-        scratch: &mut Scratch,
-    ) {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let elements = self.elements(t);
-                let mut sums = Sums::zero(simd);
-                // Taken out while the other arrays of the band are changed.
-                let interface = self.interface.take();
-                let mut moves = false;
-                if let Some(interface) = &interface {
-                    let under = interface.of_elements(elements.clone());
-                    let next = [elements.end; 2];
-                    let still = Some(interface.still(elements.len()));
-                    let arrays =
-                        self.friction_loop::<S, true>(simd, *step, (elements, next), scratch, 0, still);
-                    moves = friction_along_x(simd, *step, quanta, (arrays, under), &mut sums);
-                }
-                self.interface = interface;
-                let vectors = self.vectors(t).len();
-                let tile = &mut self.tiles[t];
-                tile.sums = sums.totals::<true>(quanta, vectors);
-                tile.moving = moves;
-                tile.settled = false;
-                tile.active_from_step = 0;
-            },
-        );
-    }
-
-    /// Mask of the elements of vector `v` that slide: those that move, or at an interface move along x.
-    pub(super) fn sliding(&self, v: usize) -> u8 {
-        if self.interface.is_none() {
-            return self.moving[v];
-        }
-        let along_x = &self.velocity.x[v * LANES..(v + 1) * LANES];
-        (0..LANES).fold(0, |mask, k| mask | u8::from(along_x[k] != 0.0) << k)
-    }
 }

@@ -38,6 +38,7 @@ mod springs;
 mod step;
 mod thresholds;
 mod upper_sheet;
+mod upright;
 mod variations;
 mod vector;
 

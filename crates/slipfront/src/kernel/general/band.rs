@@ -336,8 +336,9 @@ impl Band {
         let (upper, driven) = (&mut self.sheets, &self.driven);
         let drive = &mut self.forces.drive;
         sheets::pull(upper, driven, model, blocks, displacement, drive_time_star, drive);
-        self.contact
-            .add_reactions(&model.surface, blocks, displacement, drive);
+        if let Some(interface) = model.friction.interface() {
+            interface.add_reactions(&model.surface, blocks, displacement, drive);
+        }
         let Forces { lattice, springs, .. } = &mut self.forces;
         let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
         let state = rows.state(&self.state);

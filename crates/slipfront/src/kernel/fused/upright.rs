@@ -1,0 +1,60 @@
+//! Tiles of an upright sheet, along whose interface friction acts.
+
+use fearless_simd::Simd;
+
+use super::band::Band;
+use super::blocks::Sums;
+use super::interface::friction_along_x;
+use super::quanta::Quanta;
+use super::scratch::Scratch;
+use super::step::Step;
+use super::vector::LANES;
+
+impl Band {
+    /// Eqs. 2 and 4-7 along the interface under a tile whose lattice forces are known. A function of its own,
+    /// compiled once for all formulas of springs.
+    #[inline(never)]
+    pub(super) fn interface_of_tile<S: Simd>(
+        &mut self,
+        simd: S,
+        step: &Step,
+        quanta: &Quanta,
+        t: usize,
+        scratch: &mut Scratch,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let elements = self.elements(t);
+                let mut sums = Sums::zero(simd);
+                // Taken out while the other arrays of the band are changed.
+                let interface = self.interface.take();
+                let mut moves = false;
+                if let Some(interface) = &interface {
+                    let under = interface.of_elements(elements.clone());
+                    let next = [elements.end; 2];
+                    let still = Some(interface.still(elements.len()));
+                    let arrays =
+                        self.friction_loop::<S, true>(simd, *step, (elements, next), scratch, 0, still);
+                    moves = friction_along_x(simd, *step, quanta, (arrays, under), &mut sums);
+                }
+                self.interface = interface;
+                let vectors = self.vectors(t).len();
+                let tile = &mut self.tiles[t];
+                tile.sums = sums.totals::<true>(quanta, vectors);
+                tile.moving = moves;
+                tile.settled = false;
+                tile.active_from_step = 0;
+            },
+        );
+    }
+
+    /// Mask of the elements of vector `v` that slide: those that move, or at an interface move along x.
+    pub(super) fn sliding(&self, v: usize) -> u8 {
+        if self.interface.is_none() {
+            return self.moving[v];
+        }
+        let along_x = &self.velocity.x[v * LANES..(v + 1) * LANES];
+        (0..LANES).fold(0, |mask, k| mask | u8::from(along_x[k] != 0.0) << k)
+    }
+}
