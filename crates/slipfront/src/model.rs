@@ -384,9 +384,9 @@ impl Model {
     /// ```
     ///
     /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
-    /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold. A stack of sheets takes the
-    /// stiffness in series, which holds for slow loading: the sheets above swing about it. All `ranks` of a
-    /// lattice must call this together.
+    /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold. A stack of sheets takes
+    /// the stiffness in series, which holds for slow loading: the sheets above swing about it. All `ranks` of
+    /// a lattice must call this together.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.mount_stiffness(), self.drive.v_star);
         let pull =
