@@ -80,7 +80,7 @@ pub(crate) fn cycle_chapter() -> Result<Chapter, FamilyError> {
 
 /// The events of the train of `cases/burridge_knopoff.toml` up to t* of its drive.
 fn catalogue(duration_star: f64) -> Result<Vec<Event>, FamilyError> {
-    let text = include_str!("../../../cases/burridge_knopoff.toml");
+    let text = include_str!("../cases/burridge_knopoff.toml");
     let text = text.replace(
         "duration_star = 10000",
         &format!("duration_star = {duration_star}"),
