@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use slipfront::exact_solutions::front_speed;
 use slipfront::lattice::K_STRAIGHT;
-use slipfront::{DeadLoad, Drive, FrictionLaw, Lattice, Model, State, Surface};
+use slipfront::{DeadLoad, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface};
 use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
@@ -18,7 +18,12 @@ const PRESTRESSES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 /// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness,
 /// under a dead load.
-fn speed(kappa: f64, prestress: f64) -> Result<f64, FamilyError> {
+pub(crate) fn front_speed_in_a_chain(
+    kappa: f64,
+    prestress: f64,
+    friction: Friction,
+    dt_star: f64,
+) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(BLOCKS, 1);
     let drive = Drive {
         k_drive: kappa * K_STRAIGHT,
@@ -26,15 +31,15 @@ fn speed(kappa: f64, prestress: f64) -> Result<f64, FamilyError> {
     };
     let surface = Surface::uniform(&lattice, 1.0, KINETIC);
     let force = [KINETIC + prestress * (1.0 - KINETIC), 0.0];
-    let model = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
-        .with_dead_load(DeadLoad::uniform(force));
+    let model =
+        Model::new(lattice, surface, drive, 0.0, 0.0, friction).with_dead_load(DeadLoad::uniform(force));
     let sound = K_STRAIGHT.sqrt();
     let mut state = State::at_rest(BLOCKS);
     state.velocity.x[..5].fill(0.5 * sound * (1.0 - KINETIC) / K_STRAIGHT);
-    let steps = (1.5 * BLOCKS as f64 / (0.75 * sound) / DT_STAR) as u64;
+    let steps = (1.5 * BLOCKS as f64 / (0.75 * sound) / dt_star) as u64;
     let experiment = Experiment {
         model: Arc::new(model),
-        dt_star: DT_STAR,
+        dt_star,
         state: Some(state),
     };
     let run = experiment.run("fronts", steps)?;
@@ -57,7 +62,12 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     ] {
         let mut found = Vec::new();
         for prestress in PRESTRESSES {
-            found.push(speed(kappa, prestress)?);
+            found.push(front_speed_in_a_chain(
+                kappa,
+                prestress,
+                FrictionLaw::Projection.into(),
+                DT_STAR,
+            )?);
         }
         if kappa == 0.0 {
             for (prestress, found) in PRESTRESSES.into_iter().zip(&found) {

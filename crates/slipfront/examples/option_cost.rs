@@ -20,8 +20,8 @@ use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, pressure_along,
 };
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Execution, Friction, FrictionLaw, Kernel,
-    Lattice, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, Slider,
+    AfterBreak, Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Execution, Friction, FrictionLaw,
+    Kernel, Lattice, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, Slider,
     SlipWeakening, State, Surface, VectorField, Weakening, scales,
 };
 
@@ -177,7 +177,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     } else if has(Choice::ContactSprings) {
         Friction::ContactSprings(ContactSprings {
             stiffness: 1.0,
-            redraw: None,
+            after_break: AfterBreak::FormsAgain { redraw: None },
         })
     } else {
         Friction::Coulomb(coulomb)

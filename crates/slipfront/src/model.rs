@@ -355,8 +355,8 @@ impl Model {
     ///
     /// The factor in brackets is the mass of a stack of sheets of relative thickness h_k, and `N_facing` the
     /// number of [facing blocks](Surface::n_facing). V* counts as 0 under a held drive; a coefficient that
-    /// depends on the speed is taken at V*; for springs in contact half the mean threshold stands for kinetic
-    /// friction. All `ranks` of a lattice must call this together.
+    /// depends on the speed is taken at V*; for springs in contact that form again half the
+    /// mean threshold stands for kinetic friction. All `ranks` of a lattice must call this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self

@@ -147,7 +147,7 @@ impl CaseFile {
         self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
         let (motion, body, contact) = (self.drive.motion, self.slider.body, self.friction.contact);
-        self.load.check_shear(&check("load"), motion, body, contact)?;
+        self.load.check_shear(&check("load"), motion, body)?;
         self.check_interface()?;
         if self.drive.loading == Loading::Held {
             self.friction.check_held(&check("friction"))?;
@@ -173,7 +173,17 @@ impl CaseFile {
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
         // By way of a table, so that the keys of every struct need only one writer.
-        Ok(toml::to_string(&toml::Value::try_from(self)?)?)
+        Ok(toml::to_string(&self.to_table()?)?)
+    }
+
+    /// The tables of the case, without keys that its friction does not have.
+    fn to_table(&self) -> Result<toml::Value, toml::ser::Error> {
+        let mut tables = toml::Value::try_from(self)?;
+        let friction = tables.get_mut("friction").and_then(toml::Value::as_table_mut);
+        if let Some(friction) = friction.filter(|_| !self.friction.has_kinetic_coefficient()) {
+            friction.retain(|key, _| !Friction::KINETIC.iter().any(|of_kinetic| *of_kinetic == key));
+        }
+        Ok(tables)
     }
 
     /// Every key, in backticks, with its value, defaults filled in.
@@ -186,7 +196,7 @@ impl CaseFile {
     pub fn values(&self) -> Vec<(String, String)> {
         let mut values = Vec::new();
         // A case that was loaded can be written.
-        let tables = toml::Value::try_from(self);
+        let tables = self.to_table();
         flatten("", &tables.unwrap_or(toml::Value::Boolean(false)), &mut values);
         values
     }

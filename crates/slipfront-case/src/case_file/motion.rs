@@ -5,7 +5,6 @@ use slipfront::Scales;
 
 use super::check::{Check, Checked};
 use super::error::CaseError;
-use super::friction::ContactModel;
 use super::key::{
     ARRAY, KeyKind, STIFFNESS_PER_AREA, StarUnit, above, between, key, number, quantity, within,
 };
@@ -119,13 +118,7 @@ impl Load {
     }
 
     /// Refuses a shear load beside a drive, slider or contacts that none is derived for.
-    pub(super) fn check_shear(
-        &self,
-        check: &Check,
-        motion: Motion,
-        body: Body,
-        contact: ContactModel,
-    ) -> Result<(), CaseError> {
+    pub(super) fn check_shear(&self, check: &Check, motion: Motion, body: Body) -> Result<(), CaseError> {
         let Some(key) = self.shear_key() else {
             return Ok(());
         };
@@ -137,10 +130,6 @@ impl Load {
             (
                 body == Body::Bulk,
                 "`slider.body` = \"bulk\": the sheets above the contact begin at rest, and would swing under it",
-            ),
-            (
-                contact == ContactModel::Springs,
-                "`friction.contact` = \"springs\": contacts begin without a force, and the slider would swing on them",
             ),
         ];
         let reason = reasons.iter().find(|(is_given, _)| *is_given);

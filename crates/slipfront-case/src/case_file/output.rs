@@ -39,7 +39,7 @@ key_rows! {
         /// blocks and its moment.
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         pub events: bool = key("false", KeyKind::Switch)
-            .note("See [events](../guide/results.md#eventscsv). It takes `friction.contact` = `\"rigid\"`."),
+            .note("See [events](../guide/results.md#eventscsv). Springs in contact that form again have none."),
         /// Whether the last state is written, `state.npy`, in which another case can begin.
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         pub final_state: bool = key("false", KeyKind::Switch).note("See [`[initial]`](#initial)."),

@@ -1,6 +1,8 @@
 //! Laws of friction that a case file asks for.
 
-use slipfront::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, Kernel, RateAndState, Weakening};
+use slipfront::{
+    AfterBreak, Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, Kernel, RateAndState, Weakening,
+};
 use slipfront_case::case::Case;
 
 fn case(text: &str) -> Case {
@@ -49,12 +51,25 @@ fn keys_become_the_law_in_units_of_the_model() {
         case("friction = { contact = 'springs', contact_stiffness_star = 0.2, redraw = true, seed = 7 }");
     let expected = ContactSprings {
         stiffness: 0.2,
-        redraw: Some(7),
+        after_break: AfterBreak::FormsAgain { redraw: Some(7) },
     };
     assert_eq!(springs.model.friction, Friction::ContactSprings(expected));
     assert_eq!(
         (springs.groups.r_star, springs.groups.sigma_kinetic_star),
         (0.0, 0.0)
+    );
+
+    let slides = case(
+        "friction = { contact = 'springs', contact_stiffness_star = 0.2, after_break = 'slide', r_star = 0.6 }",
+    );
+    let expected = ContactSprings {
+        stiffness: 0.2,
+        after_break: AfterBreak::Slides,
+    };
+    assert_eq!(slides.model.friction, Friction::ContactSprings(expected));
+    assert_eq!(
+        (slides.groups.r_star, slides.groups.sigma_kinetic_star),
+        (0.6, 0.05)
     );
 
     let stateful = case(RATE_AND_STATE);
@@ -70,7 +85,7 @@ fn keys_become_the_law_in_units_of_the_model() {
     assert_eq!(stateful.model.friction, Friction::RateAndState(expected));
     assert_eq!(stateful.groups.sigma_static_star, 0.0);
 
-    for other in [varying, springs, stateful] {
+    for other in [varying, springs, slides, stateful] {
         assert_eq!(Kernel::Fused.for_model(&other.model), Kernel::General);
     }
 }

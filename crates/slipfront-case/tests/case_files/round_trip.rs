@@ -5,12 +5,12 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
-    Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, AutoOrStiffness, Bearing,
-    Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping, Drive, DriveSpeed,
-    DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap, Initial, KineticFriction,
-    Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch, Polygon,
-    Profile, Redistribute, RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots, Source,
-    SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    AfterBreak, Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr,
+    AutoOrStiffness, Bearing, Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping,
+    Drive, DriveSpeed, DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap, Initial,
+    KineticFriction, Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch,
+    Polygon, Profile, Redistribute, RunTime, Shape, SheetOfStack, Slider, SlipWeakeningLength, Snapshots,
+    Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -292,17 +292,23 @@ fn friction() -> impl Strategy<Value = Friction> {
             correlation_length: drawn(&plain, plain.mu_kinetic_field.is_none()),
             ..plain
         }),
-        (plain, springs()).prop_map(|(plain, law)| Friction {
-            kinetic: law.kinetic.clone(),
-            sigma_kinetic_star: law.sigma_kinetic_star,
-            mu_kinetic_field: None,
-            adhesion_kinetic: law.adhesion_kinetic,
-            contact: law.contact,
-            contact_stiffness_star: law.contact_stiffness_star,
-            contact_stiffness_per_area: law.contact_stiffness_per_area.clone(),
-            redraw: law.redraw,
-            correlation_length: drawn(&plain, false).filter(|_| !law.redraw),
-            ..plain
+        (plain, springs()).prop_map(|(plain, law)| {
+            let slides = law.after_break == AfterBreak::Slide;
+            let draws_kinetic = slides && plain.mu_kinetic_field.is_none();
+            let of_kinetic = if slides { plain.clone() } else { law.clone() };
+            Friction {
+                kinetic: of_kinetic.kinetic,
+                sigma_kinetic_star: of_kinetic.sigma_kinetic_star,
+                mu_kinetic_field: of_kinetic.mu_kinetic_field,
+                adhesion_kinetic: of_kinetic.adhesion_kinetic,
+                contact: law.contact,
+                contact_stiffness_star: law.contact_stiffness_star,
+                contact_stiffness_per_area: law.contact_stiffness_per_area,
+                after_break: law.after_break,
+                redraw: law.redraw,
+                correlation_length: drawn(&plain, draws_kinetic).filter(|_| !law.redraw),
+                ..plain
+            }
         }),
         rate_and_state(),
     ]
@@ -355,10 +361,15 @@ fn springs() -> impl Strategy<Value = Friction> {
         (1e-6..1e3).prop_map(|star| (Some(star), None)),
         quantity(-20, 20, &["N/m^3"]).prop_map(|per_area| (None, Some(per_area)))
     ];
-    (stiffness, any::<bool>()).prop_map(move |((star, per_area), redraw)| Friction {
+    let after_break = prop_oneof![
+        any::<bool>().prop_map(|redraw| (AfterBreak::FormAgain, redraw)),
+        Just((AfterBreak::Slide, false))
+    ];
+    (stiffness, after_break).prop_map(move |((star, per_area), (after_break, redraw))| Friction {
         contact: ContactModel::Springs,
         contact_stiffness_star: star,
         contact_stiffness_per_area: per_area,
+        after_break,
         redraw,
         ..base.clone()
     })
@@ -633,13 +644,16 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
                     drive.motion = Motion::Translation;
                 }
                 // No shear load and no state at the start are derived for these.
-                if slider.body == Body::Bulk || friction.contact == ContactModel::Springs {
+                if slider.body == Body::Bulk {
                     (load.shear, load.shear_star, load.shear_field) = (None, None, None);
+                }
+                if slider.body == Body::Bulk || friction.contact == ContactModel::Springs {
                     initial = Initial::default();
                     output.final_state = false;
                 }
-                // A spring in contact breaks at an instant.
-                output.events &= friction.contact == ContactModel::Rigid;
+                // A spring that forms again breaks at an instant.
+                output.events &=
+                    friction.contact == ContactModel::Rigid || friction.after_break == AfterBreak::Slide;
                 CaseFile {
                     slider,
                     load,

@@ -7,25 +7,40 @@ use chacha20::rand_core::{Rng, SeedableRng};
 
 use super::integrator::Integrator;
 use super::needs::Needs;
+use crate::dead_load::DeadLoad;
 use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, dot};
 
-/// Springs between every block in contact and the substrate. A spring breaks at its static threshold and
-/// forms again without stress: `F_f = -k_t (u - a)`, where the anchor `a` becomes `u` when `k_t |u - a|`
-/// exceeds the threshold.
+/// Springs between every block in contact and the substrate: `F_f = -k_t (u - a)`, where the anchor `a` moves
+/// when `k_t |u - a|` exceeds the static threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSprings {
     /// Stiffness `k_t` per block, in units of `E h`.
     pub stiffness: f64,
-    /// Seed by which a spring that forms again takes another coefficient; none if every spring keeps its own.
-    pub redraw: Option<u64>,
+    /// Friction of a block whose spring has broken.
+    pub after_break: AfterBreak,
+}
+
+/// Friction of a block whose spring to the substrate has broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AfterBreak {
+    /// The spring forms again at once, without stress: the anchor becomes `u`.
+    FormsAgain {
+        /// Seed by which it takes another coefficient; none if every spring keeps its own.
+        redraw: Option<u64>,
+    },
+    /// The block slides at its kinetic friction: the anchor follows it, so that `k_t |u - a| = mu_k F_n`, until
+    /// the spring relaxes. Then it holds the block again, up to the static threshold (elastic and perfectly
+    /// plastic, with a static peak).
+    Slides,
 }
 
 impl ContactSprings {
-    /// Needs of springs in contact: the anchor of the spring of a block, and how often it has broken.
+    /// Needs of springs in contact: the anchor of the spring of a block, and how often it has broken, or
+    /// whether its block slides.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         columns: 3,
@@ -39,13 +54,28 @@ impl ContactSprings {
         (k + self.stiffness) / self.stiffness
     }
 
-    /// Static threshold of the spring of a block that has broken `breaks` times; `number` is the number of
-    /// the block in the whole lattice. A spring that is drawn anew has the coefficient of a block in contact
-    /// that seed, block and number of breaks choose at random, so that thresholds keep their distribution,
-    /// drawn or given.
+    /// Whether a block slides at its kinetic friction after its spring has broken.
+    pub fn slides(&self) -> bool {
+        self.after_break == AfterBreak::Slides
+    }
+
+    /// Mean of some static and kinetic friction over steady sliding. Springs that form again are torn off at
+    /// all extensions alike, so that it is half of the static one.
+    pub(super) fn steady_force(&self, of_static: f64, of_kinetic: f64) -> f64 {
+        match self.after_break {
+            AfterBreak::FormsAgain { .. } => 0.5 * of_static,
+            AfterBreak::Slides => of_kinetic,
+        }
+    }
+
+    /// Force at which the spring of a block yields after `breaks`; `number` is the number of the block in the
+    /// whole lattice. A spring that is drawn anew has the coefficient of a block in contact that seed, block
+    /// and number of breaks choose at random, so that thresholds keep their distribution, drawn or given. A
+    /// block that slides has its kinetic friction.
     fn threshold(&self, surface: &Surface, block: usize, number: usize, breaks: u64) -> f64 {
-        match self.redraw {
-            Some(seed) if breaks > 0 && !surface.textured[block] => {
+        match self.after_break {
+            AfterBreak::Slides if breaks > 0 => surface.kinetic_force(block),
+            AfterBreak::FormsAgain { redraw: Some(seed) } if breaks > 0 && !surface.textured[block] => {
                 let mut key = [0; 32];
                 for (word, bytes) in [seed, number as u64, breaks].iter().zip(key.chunks_exact_mut(8)) {
                     bytes.copy_from_slice(&word.to_le_bytes());
@@ -71,19 +101,45 @@ pub(crate) struct SpringContact {
     law: ContactSprings,
     /// Displacement at which a spring has no force.
     pub(super) anchor: VectorField,
-    /// Number of times that the spring of each block has broken; whole numbers.
+    /// Number of times that the spring of each block has broken, if it forms again; otherwise 1 while the block
+    /// slides, and 0 while its spring holds it.
     pub(super) breaks: Vec<f64>,
+    /// Force to which a spring that breaks falls: the kinetic friction of a block that slides, or 0.
+    after_break: Vec<f64>,
     /// Number of the first block of the band in the whole lattice.
     first_block: usize,
 }
 
 impl SpringContact {
-    /// Springs without stress. `first_block`: number of the first block in the whole lattice.
-    pub(super) fn new(law: ContactSprings, n_blocks: usize, first_block: usize) -> Self {
+    /// Springs that hold the dead load of blocks at their rest sites, `k_t a = -F_0`. `first_block`: number of
+    /// the first block in the whole lattice.
+    pub(super) fn new(
+        law: ContactSprings,
+        surface: &Surface,
+        dead_load: &DeadLoad,
+        first_block: usize,
+    ) -> Self {
+        let n_blocks = surface.n_blocks();
+        let after_break = |b: usize| {
+            if law.slides() {
+                surface.kinetic_force(b)
+            } else {
+                0.0
+            }
+        };
+        let mut anchor = VectorField::zeros(n_blocks);
+        // Without a load a component is 0, and not -0.
+        if dead_load.acts() {
+            for b in 0..n_blocks {
+                let per_force = -dead_load.relative(b) / law.stiffness;
+                [anchor.x[b], anchor.y[b]] = dead_load.force.map(|force| per_force * force);
+            }
+        }
         Self {
             law,
-            anchor: VectorField::zeros(n_blocks),
+            anchor,
             breaks: vec![0.0; n_blocks],
+            after_break: (0..n_blocks).map(after_break).collect(),
             first_block,
         }
     }
@@ -94,27 +150,45 @@ impl SpringContact {
         if textured { 0.0 } else { self.law.stiffness }
     }
 
-    /// Lets those springs of some blocks that break at the present instant form again where their blocks are
-    /// now.
+    /// Whether a block slid in the step before.
     #[inline(always)]
-    pub(super) fn form_again(
+    fn slid(&self, b: usize) -> bool {
+        self.law.slides() && self.breaks[b] != 0.0
+    }
+
+    /// Moves the anchors of those blocks among some whose springs break, or which slide, at the present
+    /// instant, so that a force of [`after_break`](Self::after_break) is left, and finds the thresholds of the
+    /// next step.
+    #[inline(always)]
+    pub(super) fn move_anchors(
         &mut self,
         surface: &Surface,
         blocks: &Range<usize>,
         displacement: &VectorField,
-        breaks: &[bool],
+        slides: &[bool],
         threshold: &mut [f64],
     ) {
+        let any = |flags: &mut dyn Iterator<Item = bool>| flags.fold(false, |any, flag| any | flag);
         // Most parts have none.
-        if !breaks[blocks.clone()]
-            .iter()
-            .fold(false, |any, breaks| any | breaks)
-        {
+        if !any(&mut blocks.clone().map(|b| slides[b] | self.slid(b))) {
             return;
         }
-        for b in blocks.clone().filter(|&b| breaks[b]) {
-            [self.anchor.x[b], self.anchor.y[b]] = displacement.at(b);
-            self.breaks[b] += 1.0;
+        for b in blocks.clone() {
+            if slides[b] {
+                let [x, y] = displacement.at(b);
+                let [ex, ey] = [x - self.anchor.x[b], y - self.anchor.y[b]];
+                let left = self.after_break[b] / (self.law.stiffness * dot([ex, ey], [ex, ey]).sqrt());
+                [self.anchor.x[b], self.anchor.y[b]] = [x - left * ex, y - left * ey];
+                self.breaks[b] = if self.law.slides() {
+                    1.0
+                } else {
+                    self.breaks[b] + 1.0
+                };
+            } else if self.slid(b) {
+                self.breaks[b] = 0.0;
+            } else {
+                continue;
+            }
             threshold[b] = self.threshold(surface, b);
         }
     }
@@ -133,8 +207,8 @@ impl SpringContact {
     }
 
     /// Forces of the springs of some blocks and velocities half a step later; a block counts as sliding in
-    /// the step in which its spring breaks. Such a spring pulls for the half of the step that lies before the
-    /// break, which keeps the balance of energy to second order.
+    /// the step in which its spring breaks, and while it slides. A spring that breaks pulls with the mean of
+    /// its forces before and after, which keeps the balance of energy to second order.
     #[inline(always)]
     pub(super) fn apply(
         &self,
@@ -155,6 +229,8 @@ impl SpringContact {
             &threshold[blocks.clone()][..n],
             &surface.textured[blocks.clone()][..n],
         );
+        let (after_break, slid) = (&self.after_break[blocks.clone()][..n], self.law.slides());
+        let slid_before = &self.breaks[blocks.clone()][..n];
         let ([fx, fy], [wx, wy]) = (
             part_mut(&mut forces.friction, blocks),
             part_mut(&mut forces.velocity, blocks),
@@ -164,42 +240,68 @@ impl SpringContact {
         for k in 0..n {
             let stiffness = self.stiffness(textured[k]);
             let pull = [stiffness * (ux[k] - ax[k]), stiffness * (uy[k] - ay[k])];
-            let breaks = dot(pull, pull) > threshold[k] * threshold[k];
-            let share = if breaks { -0.5 } else { -1.0 };
+            let square = dot(pull, pull);
+            let yields = square > threshold[k] * threshold[k];
+            let after = after_break[k] / square.sqrt();
+            let before = if slid & (slid_before[k] != 0.0) {
+                after
+            } else {
+                1.0
+            };
+            let share = if yields { -0.5 * (before + after) } else { -1.0 };
             [fx[k], fy[k]] = [share * pull[0], share * pull[1]];
             let force = [dx[k] + lx[k] + fx[k], dy[k] + ly[k] + fy[k]];
             [wx[k], wy[k]] = integrator(k).accelerate([vx[k], vy[k]], force);
-            slides[k] = breaks;
+            slides[k] = yields;
         }
     }
 
-    /// Adds the energies of the springs of some blocks: of the springs that hold, and of those that break at
-    /// the present instant. The sums have room for both.
+    /// Adds energies of the springs of some blocks: of the springs that hold or slide, of those that break at
+    /// the present instant, and the work against friction of the blocks that slide, since the instant before.
+    /// The sums have room for two numbers of each block.
     #[inline(always)]
     pub(super) fn add_energies(
         &self,
         surface: &Surface,
         blocks: &Range<usize>,
         displacement: &VectorField,
-        breaks: &[bool],
-        [held, broken]: [&mut RunningSum; 2],
+        slides: &[bool],
+        [held, broken, slid]: [&mut RunningSum; 3],
         [of_held, of_broken]: [&mut [f64]; 2],
     ) {
         let n = blocks.len();
         let ([ux, uy], [ax, ay]) = (part(displacement, blocks), part(&self.anchor, blocks));
         let (ux, uy, ax, ay) = (&ux[..n], &uy[..n], &ax[..n], &ay[..n]);
-        let (textured, breaks) = (
+        let (textured, slides) = (
             &surface.textured[blocks.clone()][..n],
-            &breaks[blocks.clone()][..n],
+            &slides[blocks.clone()][..n],
         );
         let (of_held, of_broken) = (&mut of_held[..n], &mut of_broken[..n]);
+        let (after_break, slid_before) = (
+            &self.after_break[blocks.clone()][..n],
+            &self.breaks[blocks.clone()][..n],
+        );
+        let half_compliance = 0.5 / self.law.stiffness;
         for k in 0..n {
             let extension = [ux[k] - ax[k], uy[k] - ay[k]];
             let energy = 0.5 * self.stiffness(textured[k]) * dot(extension, extension);
-            of_held[k] = if breaks[k] { 0.0 } else { energy };
-            of_broken[k] = if breaks[k] { energy } else { 0.0 };
+            let left = half_compliance * after_break[k] * after_break[k];
+            of_held[k] = if slides[k] { left } else { energy };
+            of_broken[k] = if slides[k] { energy - left } else { 0.0 };
         }
         held.add(of_held);
+        if !self.law.slides() {
+            broken.add(of_broken);
+            return;
+        }
+        for k in 0..n {
+            let extension = [ux[k] - ax[k], uy[k] - ay[k]];
+            let slip = dot(extension, extension).sqrt() - after_break[k] / self.law.stiffness;
+            let goes_on = slides[k] & (slid_before[k] != 0.0);
+            of_held[k] = if goes_on { after_break[k] * slip } else { 0.0 };
+            of_broken[k] = if goes_on { 0.0 } else { of_broken[k] };
+        }
         broken.add(of_broken);
+        slid.add(of_held);
     }
 }

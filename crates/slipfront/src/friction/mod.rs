@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-pub use self::contact_springs::ContactSprings;
+pub use self::contact_springs::{AfterBreak, ContactSprings};
 pub use self::coulomb::*;
 pub(crate) use self::integrator::{Integrator, SMALLEST_VELOCITY};
 pub use self::needs::Needs;
@@ -22,6 +22,7 @@ pub use self::rate_and_state::RateAndState;
 
 use self::contact_springs::SpringContact;
 use self::rate_and_state::StateContact;
+use crate::dead_load::DeadLoad;
 use crate::fixed_point::RunningSum;
 use crate::forces::Forces;
 use crate::state::State;
@@ -34,13 +35,19 @@ pub enum Friction {
     Coulomb(Coulomb),
     /// Coefficients that follow speed and state, without a stuck state.
     RateAndState(RateAndState),
-    /// Springs to the substrate that break and form again.
+    /// Springs to the substrate that break.
     ContactSprings(ContactSprings),
 }
 
 impl From<FrictionLaw> for Friction {
     fn from(law: FrictionLaw) -> Self {
         Self::Coulomb(law.into())
+    }
+}
+
+impl From<ContactSprings> for Friction {
+    fn from(law: ContactSprings) -> Self {
+        Self::ContactSprings(law)
     }
 }
 
@@ -68,7 +75,13 @@ impl Friction {
     /// Whether a block may take the threshold of any other block, so that every process must know all
     /// thresholds.
     pub fn lends_thresholds(&self) -> bool {
-        matches!(self, Self::ContactSprings(law) if law.redraw.is_some())
+        matches!(
+            self,
+            Self::ContactSprings(ContactSprings {
+                after_break: AfterBreak::FormsAgain { redraw: Some(_) },
+                ..
+            })
+        )
     }
 
     /// Stiffness of the contact that holds a block to the substrate until it slips, in units of `E h`; 0 for
@@ -98,8 +111,7 @@ impl Friction {
         self.coulomb()?.slip_weakening
     }
 
-    /// Mean friction of all blocks in steady sliding at `speed`, in units of `P mu_s l^2`. For springs in
-    /// contact it is half the mean of their thresholds, because they are torn off at all extensions alike.
+    /// Mean friction of all blocks in steady sliding at `speed`, in units of `P mu_s l^2`.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => {
@@ -107,7 +119,9 @@ impl Friction {
                 law.steady_force(at_rest, adhesion, speed)
             }
             Self::RateAndState(law) => surface.mean_normal_force() * law.steady_coefficient(speed),
-            Self::ContactSprings(_) => 0.5 * surface.mean_static_force(),
+            Self::ContactSprings(law) => {
+                law.steady_force(surface.mean_static_force(), surface.mean_kinetic_force())
+            }
         }
     }
 
@@ -123,7 +137,7 @@ impl Friction {
                 law.steady_force(surface.kinetic_force(b), adhesion, speed)
             }
             Self::RateAndState(law) => surface.normal_force(b) * law.steady_coefficient(speed),
-            Self::ContactSprings(_) => 0.5 * surface.static_limit(b),
+            Self::ContactSprings(law) => law.steady_force(surface.static_limit(b), surface.kinetic_force(b)),
         }
     }
 
@@ -154,18 +168,29 @@ impl Friction {
 pub struct ContactTotals {
     /// Energy at t_n of the springs between blocks and substrate that have not broken.
     pub spring_energy: f64,
-    /// Energy of the springs that break at t_n.
+    /// Energy lost with the springs that break at t_n.
     pub broken_energy: f64,
+    /// Work of the blocks that slide on springs against friction, in the step that ends at t_n.
+    pub slip_work: f64,
     /// Mean state variable of the blocks in contact, t*.
     pub mean_state: f64,
 }
 
 impl ContactTotals {
     /// Totals from the sums that [`BandContact::add_up`] makes.
-    pub(crate) fn of([spring_energy, broken_energy, state]: [f64; 3], surface: &Surface) -> Self {
+    pub(crate) fn of(
+        [spring_energy, broken_energy, third]: [f64; 3],
+        friction: &Friction,
+        surface: &Surface,
+    ) -> Self {
+        let (slip_work, state) = match friction {
+            Friction::ContactSprings(_) => (third, 0.0),
+            Friction::Coulomb(_) | Friction::RateAndState(_) => (0.0, third),
+        };
         Self {
             spring_energy,
             broken_energy,
+            slip_work,
             mean_state: state / surface.n_contact() as f64,
         }
     }
@@ -180,14 +205,21 @@ pub(crate) enum BandContact {
 }
 
 impl BandContact {
-    /// The memory of a law at the start. `first_block`: number of the first block of the band in the whole
-    /// lattice.
-    pub(crate) fn new(friction: &Friction, surface: &Surface, first_block: usize) -> Self {
+    /// The memory of a law at the start. `dead_load`: constant forces on the blocks of the band; `first_block`:
+    /// number of its first block in the whole lattice.
+    pub(crate) fn new(
+        friction: &Friction,
+        surface: &Surface,
+        dead_load: &DeadLoad,
+        first_block: usize,
+    ) -> Self {
         let n = surface.n_blocks();
         match friction {
             Friction::Coulomb(law) => Self::Coulomb(CoulombContact::new(law, surface.adhesion(), n)),
             Friction::RateAndState(law) => Self::RateAndState(StateContact::new(*law, surface)),
-            Friction::ContactSprings(law) => Self::Springs(SpringContact::new(*law, n, first_block)),
+            Friction::ContactSprings(law) => {
+                Self::Springs(SpringContact::new(*law, surface, dead_load, first_block))
+            }
         }
     }
 
@@ -236,8 +268,7 @@ impl BandContact {
             Self::Coulomb(thresholds) => thresholds.add_slip(blocks, &state.velocity, dt_star),
             Self::RateAndState(contact) => contact.evolve(blocks, &state.velocity, dt_star),
             Self::Springs(springs) => {
-                let breaks = &forces.slides;
-                springs.form_again(surface, blocks, &state.displacement, breaks, static_limit);
+                springs.move_anchors(surface, blocks, &state.displacement, &forces.slides, static_limit);
             }
         }
     }
@@ -273,15 +304,15 @@ impl BandContact {
         blocks: &Range<usize>,
         state: &State,
         slides: &[bool],
-        [held, broken, states]: [&mut RunningSum; 3],
+        [held, broken, third]: [&mut RunningSum; 3],
         room: [&mut [f64]; 2],
     ) {
         match self {
             Self::Coulomb(_) => {}
-            Self::RateAndState(contact) => contact.add_states(surface, blocks, states, room[0]),
+            Self::RateAndState(contact) => contact.add_states(surface, blocks, third, room[0]),
             Self::Springs(springs) => {
                 let u = &state.displacement;
-                springs.add_energies(surface, blocks, u, slides, [held, broken], room);
+                springs.add_energies(surface, blocks, u, slides, [held, broken, third], room);
             }
         }
     }

@@ -101,6 +101,7 @@ impl Ledger {
         let powers = Powers::at(now);
         self.totals.contact_springs = now.contact.spring_energy;
         self.totals.broken_springs_loss += now.contact.broken_energy;
+        self.totals.friction_loss += now.contact.slip_work;
         match self.before {
             Some(before) => {
                 let half = 0.5 * now.dt_star;
@@ -113,7 +114,9 @@ impl Ledger {
                 self.totals.viscous_loss += half * (before.viscous + powers.viscous);
             }
             None => {
-                self.totals.stored_at_start = now.stored_energy().total() + now.foundation_energy();
+                let of_contact = now.contact.spring_energy + now.contact.broken_energy;
+                self.totals.stored_at_start =
+                    now.stored_energy().total() + now.foundation_energy() + of_contact;
                 self.dead_load_at_start = now.dead_load_work();
             }
         }

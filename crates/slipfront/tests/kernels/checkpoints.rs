@@ -9,8 +9,8 @@ use slipfront::observe::{
     Curve, Cycles, Field, Instants, KineticHistory, KineticStart, Precursors, Scheduled,
 };
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Loading, Program, RateAndState,
-    Rotation, Simulation, SlipWeakening, Stop, Weakening,
+    AfterBreak, Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Loading, Program,
+    RateAndState, Rotation, Simulation, SlipWeakening, Stop, Weakening,
 };
 use test_case::{test_case, test_matrix};
 
@@ -145,7 +145,8 @@ fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
     slip_weakening: Some(SlipWeakening { length: 0.4, healing_time: Some(2.0) }),
     ..FrictionLaw::Projection.into()
 }))]
-#[test_case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, redraw: Some(3) }))]
+#[test_case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, after_break: AfterBreak::Slides }))]
+#[test_case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, after_break: AfterBreak::FormsAgain { redraw: Some(3) }, }))]
 #[test_case(Friction::RateAndState(RateAndState {
     a: 0.02, b: 0.05, d_c: 0.2, v_0: 0.1, mu_0: 0.6, theta_0: 2.0, slip_speed: 0.05,
 }))]

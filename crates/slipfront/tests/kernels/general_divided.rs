@@ -3,8 +3,8 @@
 
 use slipfront::communicator::Alone;
 use slipfront::{
-    Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model, RateAndState,
-    Rotation,
+    AfterBreak, Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model,
+    RateAndState, Rotation,
 };
 use test_case::test_matrix;
 
@@ -82,7 +82,7 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
             Springs => {
                 model.friction = Friction::ContactSprings(ContactSprings {
                     stiffness: 1.5,
-                    redraw: None,
+                    after_break: AfterBreak::FormsAgain { redraw: None },
                 });
             }
             Turns => {
@@ -152,7 +152,7 @@ fn springs_drawn_anew_on_threads() {
     let mut model = slider(MANY, Edges::Free, &[Springs]).model();
     model.friction = Friction::ContactSprings(ContactSprings {
         stiffness: 1.5,
-        redraw: Some(3),
+        after_break: AfterBreak::FormsAgain { redraw: Some(3) },
     });
     let from = thrown(MANY[0] * MANY[1], 1.0, 2);
     assert_same_bits(&model, 0.1, Some(&from), 30);

@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use slipfront::checkpoint::BlockColumn;
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{
-    ContactSprings, Drive, Edges, Execution, Friction, FrictionLaw, Kernel, Lattice, Model, Simulation,
-    Surface, scales,
+    AfterBreak, ContactSprings, Drive, Edges, Execution, Friction, FrictionLaw, Kernel, Lattice, Model,
+    Simulation, Surface, scales,
 };
 use test_case::test_matrix;
 
@@ -52,7 +52,7 @@ fn columns_of_many_blocks_are_handed_over(
     if has_springs {
         model.friction = Friction::ContactSprings(ContactSprings {
             stiffness: 0.3,
-            redraw: None,
+            after_break: AfterBreak::FormsAgain { redraw: None },
         });
     }
     let mut plain = Simulation::new(model.clone(), 0.1, None, execution.clone());

@@ -4,7 +4,9 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::lattice::{K_DRIVE, springs_on_a_lone_block};
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{ContactSprings, Drive, Friction, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+use slipfront::{
+    AfterBreak, ContactSprings, Drive, Friction, FrictionLaw, Lattice, Model, Simulation, Stop, Surface,
+};
 use test_case::test_case;
 
 use crate::common::{Slider, at_rest};
@@ -178,7 +180,7 @@ fn a_transition_takes_no_longer_than_loading_crossing_or_a_swing() {
     let mut yielding = slow;
     yielding.friction = Friction::ContactSprings(ContactSprings {
         stiffness: 0.125,
-        redraw: None,
+        after_break: AfterBreak::FormsAgain { redraw: None },
     });
     assert!((yielding.longest_fall() - 4.0 * 2.5 / 0.03).abs() < 1e-9);
 }

@@ -3,8 +3,8 @@
 
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, RateAndState, Surface,
-    Weakening,
+    AfterBreak, Ageing, ContactSprings, Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, RateAndState,
+    Surface, Weakening,
 };
 use test_case::test_matrix;
 
@@ -104,11 +104,17 @@ impl World {
                 }
                 Friction::ContactSprings(law) => {
                     let pull = [0, 1].map(|axis| law.stiffness * (body.u[axis] - body.anchor[axis]));
-                    body.slides = norm(pull) > body.mu_s;
-                    let share = if body.slides { 0.5 } else { 1.0 };
+                    let slid = law.slides() && body.slides;
+                    body.slides = norm(pull) > if slid { body.mu_k } else { body.mu_s };
+                    let left = if law.slides() { body.mu_k / norm(pull) } else { 0.0 };
+                    let share = match (body.slides, slid) {
+                        (false, _) => 1.0,
+                        (true, false) => 0.5 * (1.0 + left),
+                        (true, true) => left,
+                    };
                     body.v = free([0, 1].map(|axis| force[axis] - share * pull[axis]));
                     if body.slides {
-                        body.anchor = body.u;
+                        body.anchor = [0, 1].map(|axis| body.u[axis] - left * pull[axis] / law.stiffness);
                     }
                 }
                 Friction::RateAndState(law) => {
@@ -173,7 +179,12 @@ const AGEING: Ageing = Ageing { beta: 0.1, time: 2.0 };
 
 const SPRINGS: Friction = Friction::ContactSprings(ContactSprings {
     stiffness: 0.4,
-    redraw: None,
+    after_break: AfterBreak::FormsAgain { redraw: None },
+});
+
+const SLIDING_SPRINGS: Friction = Friction::ContactSprings(ContactSprings {
+    stiffness: 0.4,
+    after_break: AfterBreak::Slides,
 });
 
 const RATE_AND_STATE: Friction = Friction::RateAndState(RateAndState {
@@ -192,7 +203,7 @@ const RATE_AND_STATE: Friction = Friction::RateAndState(RateAndState {
 #[test_matrix(
     [
         coulomb(Some(WEAKENING), None), coulomb(None, Some(AGEING)), coulomb(Some(WEAKENING), Some(AGEING)),
-        SPRINGS, RATE_AND_STATE
+        SPRINGS, SLIDING_SPRINGS, RATE_AND_STATE
     ],
     [1, 2, 3, 4, 5, 6]
 )]

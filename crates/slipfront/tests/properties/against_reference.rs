@@ -11,9 +11,9 @@ use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::surface::{Contact, Load, mesh};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction, FrictionLaw,
-    Interface, Kernel, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation,
-    SlipWeakening, Snapshot, State, Stop, Surface, VectorField, Weakening, scales,
+    AfterBreak, Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Friction,
+    FrictionLaw, Interface, Kernel, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet,
+    Simulation, SlipWeakening, Snapshot, State, Stop, Surface, VectorField, Weakening, scales,
 };
 
 use crate::common::Slider;
@@ -90,9 +90,15 @@ fn friction() -> impl Strategy<Value = Friction> {
         1 => (weakening(), ageing()).prop_map(move |(falls, grows)| coulomb(projection, Some(falls), Some(grows))),
         2 => (0.05..3.0, prop::option::of(0.05..2.0)).prop_map(of_slip),
         2 => rate_and_state().prop_map(Friction::RateAndState),
-        2 => (0.05..2.0, prop::option::of(any::<u64>()))
-            .prop_map(|(stiffness, redraw)| Friction::ContactSprings(ContactSprings { stiffness, redraw })),
+        2 => (0.05..2.0, after_break()).prop_map(|(stiffness, after_break)| {
+            Friction::ContactSprings(ContactSprings { stiffness, after_break })
+        }),
     ]
+}
+
+fn after_break() -> impl Strategy<Value = AfterBreak> {
+    let forms_again = prop::option::of(any::<u64>()).prop_map(|redraw| AfterBreak::FormsAgain { redraw });
+    prop_oneof![forms_again, Just(AfterBreak::Slides)]
 }
 
 prop_compose! {
@@ -251,7 +257,7 @@ impl Setting {
     }
 
     /// All options, and whether this setting uses them.
-    fn options(&self) -> [(&'static str, bool); 40] {
+    fn options(&self) -> [(&'static str, bool); 41] {
         let (model, body, load) = (&self.model, self.model.slider(), self.model.dead_load());
         let coulomb = match model.friction {
             Friction::Coulomb(coulomb) => Some(coulomb),
@@ -260,7 +266,11 @@ impl Setting {
         let of_slip = coulomb.and_then(|coulomb| coulomb.slip_weakening);
         let slips = |heals: bool| of_slip.is_some_and(|law| law.healing_time.is_some() == heals);
         let reads = |law| coulomb.is_some_and(|coulomb| coulomb.law == law);
-        let springs = |redraws: bool| matches!(model.friction, Friction::ContactSprings(ContactSprings { redraw, .. }) if redraw.is_some() == redraws);
+        let springs = match model.friction {
+            Friction::ContactSprings(springs) => Some(springs.after_break),
+            Friction::Coulomb(_) | Friction::RateAndState(_) => None,
+        };
+        let redraws = matches!(springs, Some(AfterBreak::FormsAgain { redraw: Some(_) }));
         let [of_static, of_kinetic] = [self.contact.adhesion.of_static, self.contact.adhesion.of_kinetic];
         [
             ("projection", reads(FrictionLaw::Projection)),
@@ -277,8 +287,9 @@ impl Setting {
                 "rate and state",
                 matches!(model.friction, Friction::RateAndState(_)),
             ),
-            ("contact springs", springs(false)),
-            ("contact springs drawn anew", springs(true)),
+            ("contact springs", springs.is_some()),
+            ("contact springs drawn anew", redraws),
+            ("contact springs that slide", springs == Some(AfterBreak::Slides)),
             (
                 "interface",
                 coulomb.is_some_and(|coulomb| coulomb.interface.is_some()),

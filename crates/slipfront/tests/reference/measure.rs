@@ -118,7 +118,7 @@ impl Reference<'_> {
         })
     }
 
-    /// Energy of the springs in contacts, `k_t (u - a)^2/2`; springs that break now have lost theirs.
+    /// Energy of the springs in contacts, `k_t (u - a)^2/2`, after those that yield now have lost theirs.
     pub(crate) fn contact_energy(&self) -> f64 {
         let Friction::ContactSprings(law) = self.model.friction else {
             return 0.0;
@@ -150,15 +150,6 @@ impl Reference<'_> {
         })
     }
 
-    /// Energy of the springs in contacts that break now, which is lost.
-    fn broken_energy(&self) -> f64 {
-        let Friction::ContactSprings(law) = self.model.friction else {
-            return 0.0;
-        };
-        let broken = |b: usize| self.broken[b].map_or(0.0, |stretch| dot(stretch, stretch));
-        self.sum_over(|b| 0.5 * law.stiffness * broken(b))
-    }
-
     /// Powers at t_n. Energy that springs in contacts take is stored, and lost when they break.
     fn powers(&self) -> Powers {
         let is_stored = matches!(self.model.friction, Friction::ContactSprings(_));
@@ -184,9 +175,10 @@ impl Reference<'_> {
     /// `(F_n-1 + F_n)/2 (X_n - X_n-1)`.
     pub(super) fn add_losses(&mut self) {
         let now = self.powers();
-        let broken = self.broken_energy();
+        let lost = [0, 1].map(|k| self.sum_over(|b| self.lost[b][k]));
         let losses = &mut self.losses;
-        losses.broken_springs += broken;
+        losses.broken_springs += lost[0];
+        losses.friction += lost[1];
         if let Some(before) = losses.before.replace(now) {
             let mean = |of: fn(&Powers) -> f64| 0.5 * (of(&before) + of(&now));
             let paths = [self.drive_steps_before, self.drive_steps]

@@ -24,7 +24,7 @@ use self::lattice::Spring;
 use self::load::Threshold;
 use self::measure::Losses;
 use self::step::{Motion, Update};
-use self::vector::{Vector, difference, length, sum, times};
+use self::vector::{Vector, length, sum, times};
 
 /// Properties of a block that never change.
 #[derive(Clone, Debug)]
@@ -56,7 +56,7 @@ struct Memory {
     theta: f64,
     /// Displacement at which the spring of the contact has no force.
     anchor: Vector,
-    /// Number of times that this spring has broken.
+    /// Number of times that this spring has broken; of one after which the block slides, 1 while it does.
     breaks: u64,
 }
 
@@ -88,8 +88,8 @@ pub(crate) struct Reference<'a> {
     pub(crate) force_lattice: Vec<Vector>,
     /// Friction `F_f`.
     pub(crate) force_friction: Vec<Vector>,
-    /// Stretch `u - a` of the springs that break now.
-    broken: Vec<Option<Vector>>,
+    /// Energy lost now with the spring of each block, and against the friction of those that slide on.
+    lost: Vec<[f64; 2]>,
     pub(crate) slides: Vec<bool>,
     /// Times t_n of the first slip of each block in contact; NaN before.
     pub(crate) first_slips: Vec<f64>,
@@ -122,12 +122,19 @@ impl<'a> Reference<'a> {
             Friction::RateAndState(law) => law.theta_0,
             Friction::Coulomb(_) | Friction::ContactSprings(_) => 0.0,
         };
-        let memory = Memory {
+        // Springs hold the dead load of blocks at their sites; that of a stack acts on its highest sheet.
+        let anchor = |b: usize| match model.friction {
+            Friction::ContactSprings(law) if model.sheets().is_empty() => {
+                times(-1.0 / law.stiffness, drive::dead_load(model, b))
+            }
+            _ => [0.0, 0.0],
+        };
+        let memory = |b: usize| Memory {
             stopped_at: 0.0,
             slip: 0.0,
             moved_at: 0.0,
             theta,
-            anchor: [0.0, 0.0],
+            anchor: anchor(b),
             breaks: 0,
         };
         let zeros = vec![[0.0; 2]; n];
@@ -139,7 +146,7 @@ impl<'a> Reference<'a> {
             drive_steps: 0,
             drive_steps_before: 0,
             blocks: (0..n).map(block).collect(),
-            memory: vec![memory; n],
+            memory: (0..n).map(memory).collect(),
             displacement: zeros.clone(),
             velocity_before: zeros.clone(),
             velocity: zeros.clone(),
@@ -152,7 +159,7 @@ impl<'a> Reference<'a> {
             force_dampers: zeros.clone(),
             force_lattice: zeros.clone(),
             force_friction: zeros,
-            broken: vec![None; n],
+            lost: vec![[0.0; 2]; n],
             slides: vec![false; n],
             first_slips: vec![f64::NAN; n],
             losses: Losses::default(),
@@ -296,13 +303,20 @@ impl<'a> Reference<'a> {
             Friction::ContactSprings(law) if block.in_contact => {
                 let coefficient = contact_springs::coefficient(law, &self.model.surface, b, memory.breaks);
                 let holds = self.static_threshold(b, coefficient).scaled(1.0);
-                let stretch = difference(self.displacement[b], memory.anchor);
-                let (update, breaks) = contact_springs::update(law, &motion, force, stretch, holds);
-                self.slides[b] = breaks;
-                self.broken[b] = breaks.then_some(stretch);
-                if breaks {
-                    self.memory[b].anchor = self.displacement[b];
-                    self.memory[b].breaks += 1;
+                let slid = law.slides() && memory.breaks > 0;
+                let places = [self.displacement[b], memory.anchor];
+                let limits = [holds, block.kinetic.scaled(1.0)];
+                let (update, yields) = contact_springs::update(law, &motion, force, places, limits, slid);
+                self.slides[b] = yields.is_some();
+                self.lost[b] = [0.0; 2];
+                match yields {
+                    Some(yielding) => {
+                        self.memory[b].anchor = yielding.anchor;
+                        self.memory[b].breaks += u64::from(!slid);
+                        self.lost[b] = [yielding.lost, yielding.slip_work];
+                    }
+                    None if slid => self.memory[b].breaks = 0,
+                    None => {}
                 }
                 update
             }

@@ -1,6 +1,6 @@
 //! `contact` = "springs": springs to the substrate that break and form again.
 
-use slipfront::ContactSprings;
+use slipfront::{AfterBreak, ContactSprings};
 
 use slipfront_base::number_format::four_digits;
 
@@ -15,9 +15,17 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const ADVICE: &str = "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`, or \
      `friction.contact_stiffness_per_area` with its unit";
 
-/// Reason for which other keys have no meaning beside springs.
-pub(super) const ALONE: &str = "with `contact` = \"springs\" a block is held by its spring at any speed, and there is no kinetic \
-                                friction; leave it out, or take `contact` = \"rigid\"";
+/// Reason for which laws of thresholds that vary have no meaning beside springs.
+pub(super) const ALONE: &str = "with `contact` = \"springs\" a spring holds the block, and breaks at a threshold that does not vary; leave it \
+                                out, or take `contact` = \"rigid\"";
+
+/// Reason for which keys of kinetic friction have no meaning beside springs that form again.
+pub(super) const NO_KINETIC: &str = "with `contact` = \"springs\" a spring that breaks forms again at once, and there is no kinetic friction; \
+                                     leave it out, or take `after_break` = \"slide\"";
+
+/// Reason for which coefficients are not drawn anew where blocks slide.
+pub(super) const SLIDES: &str = "with `after_break` = \"slide\" a contact keeps its coefficients; leave it out, or take `after_break` = \
+                                 \"form_again\"";
 
 /// Reason for which the keys of springs have no meaning beside another contact.
 pub(super) const ELSEWHERE: &str = "it belongs to `contact` = \"springs\"; set that, or leave it out";
@@ -35,10 +43,10 @@ pub(super) const ONE_RANK: &str = "a spring that forms again takes the coefficie
 
 /// The law in words, for the end of a sentence about static friction.
 pub(super) fn in_words(law: &ContactSprings) -> String {
-    let again = if law.redraw.is_some() {
-        ", thresholds drawn anew"
-    } else {
-        ""
+    let again = match law.after_break {
+        AfterBreak::FormsAgain { redraw: Some(_) } => " and form again, thresholds drawn anew",
+        AfterBreak::FormsAgain { redraw: None } => " and form again",
+        AfterBreak::Slides => ", after which blocks slide",
     };
     let stiffness = four_digits(law.stiffness);
     format!(", springs of {stiffness} E h that break{again}")

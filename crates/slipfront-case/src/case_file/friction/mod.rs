@@ -76,6 +76,24 @@ pub enum ContactModel {
     Springs,
 }
 
+/// Friction of a block whose spring in contact has broken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AfterBreak {
+    /// A spring that forms again without stress.
+    #[default]
+    FormAgain,
+    /// Kinetic friction, until the spring relaxes.
+    Slide,
+}
+
+impl AfterBreak {
+    /// Whether a printed case need not have the key.
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 key_rows! {
     /// `[friction]`: the law and the local coefficients (Eqs. 1 and 4).
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -145,7 +163,7 @@ key_rows! {
         pub healing_time_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time)
             .title("healing time", "t\u{2095}*", ""),
         /// Connection that holds a block until its threshold: nothing that yields, or a spring, which breaks
-        /// there and forms again without stress.
+        /// there.
         #[serde(deserialize_with = "word")]
         pub contact: ContactModel = key("\"rigid\"", KeyKind::Words(names_of::<ContactModel>)),
         /// Stiffness of the spring in the contact of a block; this or the next is needed with
@@ -158,6 +176,11 @@ key_rows! {
         pub contact_stiffness_per_area: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA)
             .or("contact_stiffness_star")
             .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
+        /// Friction of a block whose spring has broken: the spring forms again at once, without stress, or the
+        /// block slides at its kinetic friction until the spring relaxes and holds it again.
+        #[serde(default, deserialize_with = "word", skip_serializing_if = "AfterBreak::is_default")]
+        pub after_break: AfterBreak = key("\"form_again\"", KeyKind::Words(names_of::<AfterBreak>))
+            .note("See [springs in contact](../model.md#other-laws-of-friction)."),
         /// Whether a spring that forms again has another threshold: that of the coefficient of a block in
         /// contact, chosen at random from the seed.
         pub redraw: bool = key("false", KeyKind::Switch),
@@ -186,6 +209,9 @@ key_rows! {
 }
 
 impl Friction {
+    /// Keys with defaults that a printed case does not have where there is no kinetic coefficient.
+    pub(super) const KINETIC: [&str; 2] = ["r_star", "sigma_kinetic_star"];
+
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         check.value("mu_static", &self.mu_static)?;
         self.kinetic.check(check)?;
@@ -227,7 +253,8 @@ impl Friction {
 
     /// Whether friction has a kinetic coefficient beside the static one.
     pub fn has_kinetic_coefficient(&self) -> bool {
-        self.has_static_coefficient() && self.contact == ContactModel::Rigid
+        self.has_static_coefficient()
+            && (self.contact == ContactModel::Rigid || self.after_break == AfterBreak::Slide)
     }
 
     /// R*, the mean kinetic over the mean static coefficient; 0 where there is no kinetic one.
@@ -282,7 +309,12 @@ impl Friction {
         if let Some(stiffness) = self.contact_stiffness_star.or(of_area) {
             return slipfront::Friction::ContactSprings(ContactSprings {
                 stiffness,
-                redraw: self.redraw.then_some(self.seed),
+                after_break: match self.after_break {
+                    AfterBreak::FormAgain => slipfront::AfterBreak::FormsAgain {
+                        redraw: self.redraw.then_some(self.seed),
+                    },
+                    AfterBreak::Slide => slipfront::AfterBreak::Slides,
+                },
             });
         }
         let reading = match self.law {
@@ -319,7 +351,13 @@ impl Friction {
         let coefficients = || {
             let mu_static = four_digits(self.mu_static);
             let of_static = spread(&self.mu_static_field, self.sigma_static_star);
-            format!("mu_s = {mu_static} ({of_static})")
+            let mut all = format!("mu_s = {mu_static} ({of_static})");
+            if self.has_kinetic_coefficient() {
+                let ratio = four_digits(self.mean_ratio());
+                let of_kinetic = spread(&self.mu_kinetic_field, self.sigma_kinetic_star);
+                all += &format!(", R* = {ratio} ({of_kinetic})");
+            }
+            all
         };
         match law {
             slipfront::Friction::Coulomb(coulomb) => {
@@ -330,8 +368,6 @@ impl Friction {
                 };
                 let weakening = coulomb.weakening.as_ref().map(weakening::in_words);
                 let ageing = coulomb.ageing.as_ref().map(ageing::in_words);
-                let ratio = four_digits(self.mean_ratio());
-                let of_kinetic = spread(&self.mu_kinetic_field, self.sigma_kinetic_star);
                 let slip_weakening = coulomb.slip_weakening.as_ref().map(slip_weakening::in_words);
                 let options: String = [weakening, ageing, slip_weakening]
                     .into_iter()
@@ -345,11 +381,7 @@ impl Friction {
                     ),
                     Some(_) => ", along x alone".to_owned(),
                 };
-                format!(
-                    "{}, R* = {ratio} ({of_kinetic}), seed {}{reading}{options}{along}",
-                    coefficients(),
-                    self.seed
-                )
+                format!("{}, seed {}{reading}{options}{along}", coefficients(), self.seed)
             }
             slipfront::Friction::RateAndState(law) => rate_and_state::in_words(law, self.mu_static),
             slipfront::Friction::ContactSprings(law) => {
@@ -395,6 +427,7 @@ impl Friction {
                 self.contact_stiffness_per_area.is_some(),
             ),
             ("redraw", self.redraw),
+            ("after_break", !self.after_break.is_default()),
         ];
         let has_stiffness = springs[..2].iter().any(|(_, is_set)| *is_set);
         match (self.contact, has_stiffness) {
@@ -402,7 +435,14 @@ impl Friction {
             (ContactModel::Springs, false) => check.refuse("contact", contact_springs::without_stiffness),
             (ContactModel::Springs, true) => {
                 refuse_set(check, &self.options(), contact_springs::ALONE)?;
-                refuse_set(check, &self.of_kinetic(), contact_springs::ALONE)
+                match self.after_break {
+                    AfterBreak::FormAgain => {
+                        refuse_set(check, &self.of_kinetic(check), contact_springs::NO_KINETIC)
+                    }
+                    AfterBreak::Slide => {
+                        refuse_set(check, &[("redraw", self.redraw)], contact_springs::SLIDES)
+                    }
+                }
             }
         }
     }
@@ -436,8 +476,8 @@ impl Friction {
 
     /// Refuses a catalogue of events where slip takes no time.
     pub(super) fn check_events(&self, check: &Check) -> Result<(), CaseError> {
-        let springs = ("contact", self.contact == ContactModel::Springs);
-        refuse_set(check, &[springs], EVENTS)
+        let springs = self.contact == ContactModel::Springs && self.after_break == AfterBreak::FormAgain;
+        refuse_set(check, &[("contact", springs)], EVENTS)
     }
 
     /// Refuses a correlation length where no coefficient is drawn from a field.
@@ -478,7 +518,7 @@ impl Friction {
                     ("adhesion", self.adhesion.si() != 0.0),
                     springs,
                 ];
-                let without = [&self.options()[..], &self.of_kinetic(), &others].concat();
+                let without = [&self.options()[..], &self.of_kinetic(check), &others].concat();
                 refuse_set(check, &without, rate_and_state::ALONE)?;
                 let mut needed = of_state.take(rate_and_state::NEEDED);
                 return match needed.find(|(_, is_set)| !is_set) {
@@ -501,19 +541,23 @@ impl Friction {
         ]
     }
 
-    /// The keys of kinetic friction, and whether they are set. Defaults are no contradiction where there is
-    /// no kinetic coefficient.
-    fn of_kinetic(&self) -> [(&'static str, bool); 5] {
+    /// The keys of kinetic friction, and whether they are set, by the user or in code.
+    fn of_kinetic(&self, check: &Check) -> [(&'static str, bool); 5] {
         [
             (
                 "r_star",
-                matches!(self.kinetic, KineticFriction::RStar(r_star) if r_star != DEFAULT_R_STAR),
+                check.has("r_star")
+                    || matches!(self.kinetic, KineticFriction::RStar(r_star) if r_star != DEFAULT_R_STAR),
             ),
             (
                 "mu_kinetic",
                 matches!(self.kinetic, KineticFriction::MuKinetic(_)),
             ),
-            ("sigma_kinetic_star", is_spread(self.sigma_kinetic_star)),
+            (
+                "sigma_kinetic_star",
+                is_spread(self.sigma_kinetic_star)
+                    || (check.has("sigma_kinetic_star") && self.sigma_kinetic_star != 0.0),
+            ),
             ("mu_kinetic_field", self.mu_kinetic_field.is_some()),
             ("adhesion_kinetic", self.adhesion_kinetic.si() != 0.0),
         ]
@@ -546,7 +590,7 @@ const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all bl
 
 /// Reason for which there are no events of slip of springs in contact.
 const EVENTS: &str = "with `output.events` blocks slide from the begin of an event to its end, and a spring in contact breaks and forms again \
-                      at an instant; take `contact` = \"rigid\", or leave `output.events` out";
+                      at an instant; take `after_break` = \"slide\" or `contact` = \"rigid\", or leave `output.events` out";
 
 /// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it
 /// spreads.

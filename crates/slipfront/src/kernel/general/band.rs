@@ -8,6 +8,7 @@ use super::sheets::{self, UpperSheet};
 use super::springs::{damper_forces, lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::clock::Clock;
+use crate::dead_load::DeadLoad;
 use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
 use crate::friction::{BandContact, Integrator};
@@ -130,6 +131,12 @@ impl Band {
         let zeros = || VectorField::zeros(n);
         let bonds = || [(); 4].map(|()| VectorField::zeros(rows.lattice.n_blocks()));
         let (slider, first_block) = (&model.slider, model.lattice.blocks_of(&model.rows).start);
+        // The load of a stack acts on its highest sheet, and reaches the contact later.
+        let on_contact = if model.sheets.is_empty() {
+            model.dead_load.clone()
+        } else {
+            DeadLoad::default()
+        };
         let relative = || Bond::ALL.map(|bond| rows.springs_along(moduli, &bond));
         Self {
             dt_star,
@@ -150,7 +157,7 @@ impl Band {
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
-            contact: BandContact::new(&model.friction, &model.surface, first_block),
+            contact: BandContact::new(&model.friction, &model.surface, &on_contact, first_block),
             relative_springs: (!slider.has_equal_springs()).then(relative),
             dampers: slider.is_viscous().then(|| Dampers {
                 force: zeros(),

@@ -326,7 +326,7 @@ impl Engine for General {
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
         // Not negated: without dampers that would write a zero with a sign.
         self.viscous_power = 0.0 - found.viscous_power;
-        self.contact_totals = ContactTotals::of(found.contact, &model.surface);
+        self.contact_totals = ContactTotals::of(found.contact, &model.friction, &model.surface);
         let stored_energy = energies.then(|| self.stored_energy(model, clock.drive_time_star()));
         self.bands.iter_mut().for_each(|one| one.band.end_step());
         Totals {
