@@ -120,9 +120,9 @@ fn pull(n: usize, stiffness: f64) -> f64 {
 /// Time step of the chain in which a front runs, t*.
 const FRONT_DT_STAR: f64 = 5e-3;
 
-/// Speed over that of sound of a front in a chain whose contacts yield and slide, by their stiffness over that
-/// of the chain and the prestress, found by integrating the equations of motion in another program with a
-/// quarter of this time step.
+/// Speed over that of sound of a front in a chain whose contacts yield and slide, by their stiffness over
+/// that of the chain and the prestress, found by integrating the equations of motion in another program with
+/// a quarter of this time step.
 const FRONTS: [[f64; 3]; 7] = [
     [16.0, 0.7, 1.28479],
     [4.0, 0.4, 1.04359],

@@ -32,9 +32,9 @@ pub enum AfterBreak {
         /// Seed by which it takes another coefficient; none if every spring keeps its own.
         redraw: Option<u64>,
     },
-    /// The block slides at its kinetic friction: the anchor follows it, so that `k_t |u - a| = mu_k F_n`, until
-    /// the spring relaxes. Then it holds the block again, up to the static threshold (elastic and perfectly
-    /// plastic, with a static peak).
+    /// The block slides at its kinetic friction: the anchor follows it, so that `k_t |u - a| = mu_k F_n`,
+    /// until the spring relaxes. Then it holds the block again, up to the static threshold (elastic and
+    /// perfectly plastic, with a static peak).
     Slides,
 }
 
@@ -101,8 +101,8 @@ pub(crate) struct SpringContact {
     law: ContactSprings,
     /// Displacement at which a spring has no force.
     pub(super) anchor: VectorField,
-    /// Number of times that the spring of each block has broken, if it forms again; otherwise 1 while the block
-    /// slides, and 0 while its spring holds it.
+    /// Number of times that the spring of each block has broken, if it forms again; otherwise 1 while the
+    /// block slides, and 0 while its spring holds it.
     pub(super) breaks: Vec<f64>,
     /// Force to which a spring that breaks falls: the kinetic friction of a block that slides, or 0.
     after_break: Vec<f64>,
@@ -111,8 +111,8 @@ pub(crate) struct SpringContact {
 }
 
 impl SpringContact {
-    /// Springs that hold the dead load of blocks at their rest sites, `k_t a = -F_0`. `first_block`: number of
-    /// the first block in the whole lattice.
+    /// Springs that hold the dead load of blocks at their rest sites, `k_t a = -F_0`. `first_block`: number
+    /// of the first block in the whole lattice.
     pub(super) fn new(
         law: ContactSprings,
         surface: &Surface,
@@ -157,8 +157,8 @@ impl SpringContact {
     }
 
     /// Moves the anchors of those blocks among some whose springs break, or which slide, at the present
-    /// instant, so that a force of [`after_break`](Self::after_break) is left, and finds the thresholds of the
-    /// next step.
+    /// instant, so that a force of [`after_break`](Self::after_break) is left, and finds the thresholds of
+    /// the next step.
     #[inline(always)]
     pub(super) fn move_anchors(
         &mut self,

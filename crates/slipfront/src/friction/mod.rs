@@ -205,8 +205,8 @@ pub(crate) enum BandContact {
 }
 
 impl BandContact {
-    /// The memory of a law at the start. `dead_load`: constant forces on the blocks of the band; `first_block`:
-    /// number of its first block in the whole lattice.
+    /// The memory of a law at the start. `dead_load`: constant forces on the blocks of the band;
+    /// `first_block`: number of its first block in the whole lattice.
     pub(crate) fn new(
         friction: &Friction,
         surface: &Surface,

@@ -83,7 +83,8 @@ const SLIDING: ContactSprings = ContactSprings {
 };
 
 /// Position of one block that is pulled from rest, piece by piece: held by `k_t` and the drive spring `k`,
-/// sliding at `mu_k` on the drive spring alone from the extension 1/k_t on, and held again from where it stops.
+/// sliding at `mu_k` on the drive spring alone from the extension 1/k_t on, and held again from where it
+/// stops.
 struct Piecewise {
     mu_k: f64,
     v_star: f64,
@@ -221,7 +222,8 @@ fn springs_hold_a_dead_load(after_break: AfterBreak) {
 }
 
 /// The whole energy is found again: stored, lost to damping, to friction of blocks that slide, or with the
-/// springs that broke, which is threshold^2/(2 k_t) of each up to the overshoot of a step, less what is left. The error falls with the square of the step.
+/// springs that broke, which is threshold^2/(2 k_t) of each up to the overshoot of a step, less what is left.
+/// The error falls with the square of the step.
 #[test_matrix([AfterBreak::Slides, AfterBreak::FormsAgain { redraw: Some(1) }])]
 fn the_balance_of_energy_closes(after_break: AfterBreak) {
     let error = |dt: f64| {

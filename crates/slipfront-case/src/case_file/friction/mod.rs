@@ -176,8 +176,8 @@ key_rows! {
         pub contact_stiffness_per_area: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA)
             .or("contact_stiffness_star")
             .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
-        /// Friction of a block whose spring has broken: the spring forms again at once, without stress, or the
-        /// block slides at its kinetic friction until the spring relaxes and holds it again.
+        /// Friction of a block whose spring has broken: the spring forms again at once, without stress, or
+        /// the block slides at its kinetic friction until the spring relaxes and holds it again.
         #[serde(default, deserialize_with = "word", skip_serializing_if = "AfterBreak::is_default")]
         pub after_break: AfterBreak = key("\"form_again\"", KeyKind::Words(names_of::<AfterBreak>))
             .note("See [springs in contact](../model.md#other-laws-of-friction)."),
