@@ -26,6 +26,7 @@ mod runs;
 mod rupture;
 mod slip_weakening;
 mod torsion;
+pub mod transition;
 mod weakening;
 
 use rayon::prelude::*;

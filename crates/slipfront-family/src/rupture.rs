@@ -16,31 +16,31 @@ use crate::falling_strength;
 use crate::runs::Experiment;
 
 /// Speed of shear waves in units of `sqrt(E/rho)`, squared.
-const C_S_SQUARE: f64 = 3.0 / 8.0;
+pub(crate) const C_S_SQUARE: f64 = 3.0 / 8.0;
 /// Speed of Rayleigh waves over that of shear waves.
 const C_R: f64 = 0.9194;
 const KINETIC: f64 = 0.5;
-const STEP: f64 = 0.25;
+pub(crate) const STEP: f64 = 0.25;
 
 /// A rupture along the lower edge of an upright sheet, from a weak patch in its middle.
-struct EdgeRupture {
+pub(crate) struct EdgeRupture {
     /// Blocks along x and y.
-    blocks: [usize; 2],
+    pub(crate) blocks: [usize; 2],
     /// Fall of strength per slip, `W`.
-    weakening: f64,
+    pub(crate) weakening: f64,
     /// Strength left over the fall of strength, `S = (S - F_0)/(F_0 - K)`, of the seismologists.
-    strength_excess: f64,
+    pub(crate) strength_excess: f64,
 }
 
 impl EdgeRupture {
     /// Length from which a shear crack under the prestress grows, `L_c = mu* (1 + S)^2/(pi W)` with
     /// `mu* = 1.1` (Andrews, 1976).
-    fn critical_length(&self) -> f64 {
+    pub(crate) fn critical_length(&self) -> f64 {
         1.1 / self.weakening * (1.0 + self.strength_excess).powi(2) / PI
     }
 
     /// Half length of the weak patch.
-    fn half_patch(&self) -> f64 {
+    pub(crate) fn half_patch(&self) -> f64 {
         1.3 * self.critical_length()
     }
 
@@ -80,15 +80,18 @@ impl EdgeRupture {
         Ok(model.with_dead_load(load))
     }
 
-    /// Distances from the middle in blocks, and over the 25 blocks from there on the speed of the front over
-    /// that of shear waves.
-    fn speeds(&self, duration: f64) -> Result<Vec<[f64; 2]>, FamilyError> {
-        let experiment = Experiment {
+    pub(crate) fn experiment(&self) -> Result<Experiment, FamilyError> {
+        Ok(Experiment {
             model: Arc::new(self.model()?),
             dt_star: STEP,
             state: None,
-        };
-        let mut simulation = experiment.begin();
+        })
+    }
+
+    /// Distances from the middle in blocks, and over the 25 blocks from there on the speed of the front over
+    /// that of shear waves.
+    fn speeds(&self, duration: f64) -> Result<Vec<[f64; 2]>, FamilyError> {
+        let mut simulation = self.experiment()?.begin();
         for _ in 0..(duration / STEP) as u64 {
             simulation.step();
         }

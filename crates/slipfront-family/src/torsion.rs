@@ -99,7 +99,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     for r_star in [0.3, 0.9] {
         let experiment = decoupled(r_star);
         let radii = radii(&experiment.model);
-        let first = experiment.model.first_slip_estimate(&Alone);
+        let first = experiment.model.first_slip_estimate(&Alone).unwrap_or(f64::NAN);
         let times = STUCK.map(|stuck| first / stuck);
         let found = experiment.values(times, |now| now.point.mu_star);
         for (stuck, found) in STUCK.into_iter().zip(found) {
@@ -148,7 +148,7 @@ mod tests {
             let experiment = decoupled(r_star);
             let radii = radii(&experiment.model);
             let end = 0.35;
-            let time = experiment.model.first_slip_estimate(&Alone) / end;
+            let time = experiment.model.first_slip_estimate(&Alone).unwrap_or(f64::NAN) / end;
             let [largest] = experiment.values([time], |now| now.peak.largest.mu_star);
             let at_the_end = torsion_of_decoupled_blocks(&radii, end, r_star);
             let above = largest - at_the_end.max(torsion_first_slip(&radii));

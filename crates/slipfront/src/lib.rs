@@ -47,6 +47,7 @@ mod friction;
 mod measure;
 mod model;
 mod moduli;
+mod onset;
 mod opening;
 mod position_bins;
 mod reductions;

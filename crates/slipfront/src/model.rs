@@ -9,7 +9,7 @@ use crate::dead_load::DeadLoad;
 use crate::drive::{Drive, Loading, Program};
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
-use crate::lattice::{K_DRIVE, Lattice, SpringStiffness, springs_on_a_lone_block};
+use crate::lattice::{K_DRIVE, Lattice, SpringStiffness};
 use crate::sheets::{self, Sheet};
 use crate::slider::Slider;
 use crate::surface::Surface;
@@ -255,9 +255,11 @@ impl Model {
 
     /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this
     /// one does, in which waiting times are counted: V* times `sum k_s/(k_2 N)`, with the stiffness in series
-    /// of a stack of sheets.
+    /// of a stack of sheets, or of the rows of an upright sheet.
     pub fn loading_speed(&self) -> f64 {
-        self.drive.v_star * (self.mount_stiffness() * self.driven_share() / K_DRIVE)
+        let per_contact = self.pull_through_rows();
+        let stiffness = per_contact.unwrap_or_else(|| self.mount_stiffness() * self.driven_share());
+        self.drive.v_star * (stiffness / K_DRIVE)
     }
 
     /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in
@@ -272,35 +274,6 @@ impl Model {
     pub fn share_of_load(&self) -> f64 {
         let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
         (in_contact * self.surface.load_factor()).min(1.0)
-    }
-
-    /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
-    /// bear their load alone, which is larger by the [load factor](Surface::load_factor) f where only some
-    /// touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that is
-    /// later, for blocks that stand alone and are pushed by their free neighbours too:
-    ///
-    /// ```text
-    /// max(2.5 c f, f/A k_2)/V* ... 2.5 f/V*
-    /// ```
-    ///
-    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*; c
-    /// f is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks passes to
-    /// those that touch is known only for a drive on every block: any other drive has no `load_factor`, and
-    /// pulls all blocks together. What a dead load bears, tau, the drive need not: it takes tau/k_2 off each
-    /// path.
-    pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
-        let speed = self.loading_speed();
-        let together = ONSET_PATH * self.share_of_load();
-        let [early, late] = match load_factor {
-            None => [together; 2],
-            Some(factor) => {
-                let late = ONSET_PATH * factor.max(1.0);
-                let lone = factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
-                [lone.clamp(together, late), late]
-            }
-        };
-        let [borne, _] = self.mean_dead_load();
-        [early, late].map(|path| (path - borne / K_DRIVE).max(0.0) / speed)
     }
 
     /// The longest time in which mu* falls from its peak half-way to the [level of
@@ -376,73 +349,6 @@ impl Model {
         torque / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at
-    /// constant speed along a direction
-    ///
-    /// ```text
-    /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
-    /// ```
-    ///
-    /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
-    /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold. A stack of sheets takes
-    /// the stiffness in series, which holds for slow loading: the sheets above swing about it. All `ranks` of
-    /// a lattice must call this together.
-    pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
-        let (k_drive, v_star) = (self.mount_stiffness(), self.drive.v_star);
-        let pull =
-            |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
-        if self.drive.rotation.is_none() {
-            let threshold = if self.dead_load.acts() {
-                let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
-                // A block that slips at once may have no drive spring.
-                let missing = in_contact.map(|b| match self.missing_pull(b) {
-                    0.0 => 0.0,
-                    pull => pull / self.slider.drive_spring(b),
-                });
-                let mut negative = [-missing.fold(f64::INFINITY, f64::min)];
-                ranks.largest(&mut negative);
-                -negative[0]
-            } else {
-                self.surface.min_slip_threshold()
-            };
-            let mut pull = pull(threshold, k_drive);
-            if !self.friction.has_thresholds() {
-                pull -= self.mean_dead_load()[0];
-            }
-            return match self.drive.program {
-                None => pull / (k_drive * v_star),
-                Some(_) => self.drive.time_of_path(pull / k_drive),
-            };
-        }
-        let path = |b: usize| {
-            let limit = self.slip_threshold(b);
-            let k = k_drive * self.slider.drive_spring(b) * self.relative_radius(b);
-            if k > 0.0 {
-                pull(limit, k) / k
-            } else {
-                f64::INFINITY
-            }
-        };
-        let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
-        let mut negative = [-in_contact.map(path).fold(f64::INFINITY, f64::min)];
-        ranks.largest(&mut negative);
-        self.drive.time_of_path(-negative[0])
-    }
-
-    /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for
-    /// it:
-    ///
-    /// ```text
-    /// sqrt(T^2 - F_0,across^2) - F_0,along,   T = max(mu_s, mu_k) F_n
-    /// ```
-    fn missing_pull(&self, b: usize) -> f64 {
-        if self.slips_at_once(b) {
-            return 0.0;
-        }
-        let ([along, across], threshold) = (self.dead_load_on(b), self.slip_threshold(b));
-        (threshold * threshold - across * across).sqrt() - along
-    }
-
     /// Dead load on block `b` along x and y; none where no block exists.
     pub(crate) fn dead_load_of(&self, b: usize) -> [f64; 2] {
         let relative = if self.slider.exists(b) {
@@ -454,23 +360,12 @@ impl Model {
     }
 
     /// Dead load on block `b` along the drive and to the left of it.
-    fn dead_load_on(&self, b: usize) -> [f64; 2] {
+    pub(crate) fn dead_load_on(&self, b: usize) -> [f64; 2] {
         self.along_and_across(self.dead_load_of(b))
     }
 
-    /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction
-    /// (D12).
-    fn slip_threshold(&self, b: usize) -> f64 {
-        self.surface.static_limit(b).max(self.surface.kinetic_force(b))
-    }
-
-    /// Whether the dead load alone makes block `b` slip.
-    pub fn slips_at_once(&self, b: usize) -> bool {
-        length(self.dead_load_on(b)) > self.slip_threshold(b)
-    }
-
     /// Relative radius `r_i/r_max` of block `b` of these rows in a rotation.
-    fn relative_radius(&self, b: usize) -> f64 {
+    pub(crate) fn relative_radius(&self, b: usize) -> f64 {
         let first = self.lattice.blocks_of(&self.rows).start;
         length(self.drive.direction_at(&self.lattice, first + b))
     }

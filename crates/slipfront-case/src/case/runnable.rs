@@ -61,8 +61,8 @@ pub struct Expected {
     pub steady_level: f64,
     /// Drag of the damping, see [`Model::steady_drag`].
     pub steady_drag: f64,
-    /// Time t* of the first slip, see [`Model::first_slip_estimate`].
-    pub first_slip_star: f64,
+    /// Time t* of the first slip, if it is known, see [`Model::first_slip_estimate`].
+    pub first_slip_star: Option<f64>,
     /// Earliest and latest t* of the onset, see [`Model::onset_estimate`].
     pub onset_star: [f64; 2],
     /// Least and most of the critical size of slip in blocks, see [`Model::critical_size`].

@@ -69,8 +69,8 @@ fn onset(case: &Case) -> String {
     let at = |star: f64| instant(star, &case.scales);
     let expected = &case.expected;
     let mut text = String::new();
-    if case.file.texture.is_empty() {
-        let first = expected.first_slip_star;
+    let first = expected.first_slip_star.filter(|_| case.file.texture.is_empty());
+    if let Some(first) = first {
         text += &format!("first slip        {}{}\n", at(first), late(first));
     }
     let [from, to] = expected.onset_star;
@@ -86,6 +86,12 @@ fn onset(case: &Case) -> String {
             at(from),
             at(to),
             four_digits(100.0 - case.texture.meshed_percent),
+            late(to)
+        )
+    } else if expected.first_slip_star.is_none() {
+        format!(
+            "onset expected    about {} if the sheet did not yield to the drive, else later{}\n",
+            at(to),
             late(to)
         )
     } else {

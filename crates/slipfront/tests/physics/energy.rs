@@ -104,7 +104,7 @@ fn errors_of_sliding_cancel_between_the_first_step_and_the_present_one() {
 fn before_the_first_slip_all_work_is_in_the_drive_springs() {
     let slider = Slider::default();
     let model = slider.model();
-    let steps = (model.first_slip_estimate(&Alone) / slider.dt_star) as u64;
+    let steps = (model.first_slip_estimate(&Alone).unwrap() / slider.dt_star) as u64;
     let found = energies(&model, slider.dt_star, steps, State::at_rest(625));
     for (n, e) in found.iter().enumerate() {
         let reach = slider.v_star * n as f64 * slider.dt_star;

@@ -2,10 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, Scheduled};
-use slipfront::surface::{Coefficients, Load};
+use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{
-    Coulomb, Drive, Edges, Friction, FrictionLaw, Interface, Lattice, Model, Slider, State, Stop, Surface,
+    Coulomb, DeadLoad, Drive, Edges, Friction, FrictionLaw, Interface, Lattice, Model, Slider, State, Stop,
+    Surface,
 };
 use test_case::{test_case, test_matrix};
 
@@ -110,6 +112,45 @@ fn the_foundation_is_part_of_the_balance_of_energy() {
 /// Speed of Rayleigh waves over that of shear waves in a sheet of Poisson's ratio 1/3, the root of
 /// `(2 - x)^2 = 4 sqrt(1 - x) sqrt(1 - x/3)` with `x = (c_R/c_S)^2`: that of a Poisson solid.
 const RAYLEIGH: f64 = 0.919_402;
+
+/// Rows that the drive pulls with all their blocks, over a row that friction holds: as it rises slowly, the
+/// springs of the rows above and the shear between rows follow each other in series, and the lowest row slips
+/// when they pull with the threshold. Each row lags by the drag and swings by V/w_0 at most, w_0^2 = k_s, of
+/// which the lowest row feels its own spring and that of the row above; it slips at a step.
+#[test_matrix([1, 2, 6, 30], [0.0, 60.0, 180.0], [0.0, 0.3])]
+fn the_rows_above_pull_the_lowest(rows: usize, degrees: f64, dead_load: f64) {
+    let (v_star, dt, damping) = (1e-3, 0.2, 0.1);
+    let lattice = Lattice::with_edges(4, rows, [Edges::Periodic, Edges::Free]);
+    let n = lattice.n_blocks();
+    let slider = Slider::default();
+    let contact = Contact {
+        faces: Some((0..n).map(|b| b < 4).collect()),
+        ..Contact::new(Load::Redistributed, 1.0)
+    };
+    let coefficients = Coefficients::given(vec![1.0; n], vec![0.5; n]);
+    let surface = Surface::of_ranks(coefficients, vec![false; n], contact, &slider, &Alone).unwrap();
+    let drive = Drive::at_angle(v_star, degrees);
+    let k = drive.k_drive;
+    let on_contact = (0..n).map(|b| f64::from(u8::from(b < 4))).collect();
+    let model = Model::new(lattice, surface, drive, damping, 0.0, law(0.0))
+        .with_dead_load(DeadLoad::of_blocks([dead_load, 0.0], on_contact, &slider, &Alone));
+    let estimate = model.first_slip_estimate(&Alone).unwrap();
+    let mut simulation = at_rest(&model, dt);
+    while simulation.snapshot().totals.n_slipping == 0 {
+        assert!(
+            simulation.time_star() < 2.0 * estimate + 10.0,
+            "no slip at {estimate}"
+        );
+        simulation.step();
+    }
+    let lag = 2.0 * (damping + k.sqrt()) / k;
+    assert!(
+        (simulation.time_star() - estimate).abs() < lag + dt,
+        "{} for {estimate}",
+        simulation.time_star()
+    );
+    assert!(!model.slips_at_once(0));
+}
 
 /// Speed of a standing surface wave of `length` blocks at the lower edge, which touches without friction,
 /// over `c_S`.

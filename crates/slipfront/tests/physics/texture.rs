@@ -84,7 +84,7 @@ fn textured_blocks_move_at_once(law: FrictionLaw) {
     let earliest = first.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(simulation.snapshot().earliest_first_slip(), Some(earliest));
     // The pull of the cavity's blocks makes its rim slip before an untextured surface would.
-    assert!(earliest < model.first_slip_estimate(&Alone));
+    assert!(earliest < model.first_slip_estimate(&Alone).unwrap());
 }
 
 /// Eq. 10 for a stuck block is the pull of its own drive spring; the traction shows the concentration at the

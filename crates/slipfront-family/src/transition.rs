@@ -1,0 +1,110 @@
+//! The distance at which a rupture along an edge outruns shear waves.
+
+use slipfront::Simulation;
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::rupture::{C_S_SQUARE, EdgeRupture, STEP};
+use slipfront_plot::{Response, Responses};
+
+/// Fall of strength per slip, for a cohesive zone of some 20 blocks: `mu*/W` with `mu* = 1.1`.
+const WEAKENING: f64 = 0.055;
+/// Blocks over which a speed is taken.
+const WINDOW: usize = 20;
+/// Largest distance of a front from the middle, over L_c.
+const FARTHEST: f64 = 40.0;
+/// Distance over which a front must stay faster than shear waves, over L_c.
+const SUSTAINED: f64 = 3.0;
+/// Speed of P waves in units of `sqrt(E/rho)`, squared.
+const C_P_SQUARE: f64 = 9.0 / 8.0;
+
+/// The front of a rupture to the right of its weak patch.
+struct Front {
+    /// Time at which any block at least as far from the middle has slipped first, block by block.
+    reached: Vec<f64>,
+    /// Distance of the first of these blocks from the middle.
+    from: usize,
+}
+
+impl Front {
+    fn of(simulation: &Simulation, rupture: &EdgeRupture) -> Self {
+        let first = simulation.snapshot().first_slip_time_star();
+        let (nx, from) = (rupture.blocks[0], rupture.half_patch() as usize + 5);
+        let mut reached = first[nx / 2 + from..nx - 20].to_vec();
+        let mut earliest = f64::INFINITY;
+        for time in reached.iter_mut().rev() {
+            earliest = earliest.min(*time);
+            *time = earliest;
+        }
+        reached.truncate(reached.partition_point(|time| time.is_finite()));
+        Self { reached, from }
+    }
+
+    /// Distance of the farthest block that has slipped.
+    fn distance(&self) -> usize {
+        self.from + self.reached.len()
+    }
+
+    /// Speeds over that of shear waves, from the distances on at which they stand.
+    fn speeds(&self) -> impl DoubleEndedIterator<Item = (usize, f64)> {
+        let windows = self.reached.windows(WINDOW + 1).enumerate();
+        let speed = |times: &[f64]| WINDOW as f64 / (times[WINDOW] - times[0]).max(STEP) / C_S_SQUARE.sqrt();
+        windows.map(move |(at, times)| (self.from + at, speed(times)))
+    }
+
+    /// Distance from which on the front is faster than shear waves, if it stays so over this many blocks.
+    fn transition(&self, sustained: usize) -> Option<usize> {
+        let faster: Vec<usize> = self
+            .speeds()
+            .rev()
+            .take_while(|(_, speed)| *speed > 1.0)
+            .map(|(at, _)| at)
+            .collect();
+        faster.last().copied().filter(|_| faster.len() >= sustained)
+    }
+}
+
+/// Runs a rupture until it has outrun shear waves, or is 40 L_c from the middle.
+fn run(strength_excess: f64) -> Result<(EdgeRupture, Front), FamilyError> {
+    let mut rupture = EdgeRupture {
+        blocks: [0, 0],
+        weakening: WEAKENING,
+        strength_excess,
+    };
+    let way = FARTHEST * rupture.critical_length();
+    // A front at 0.8 c_S takes so long, and waves that the edges send back must not meet it before.
+    let time = way / (0.8 * C_S_SQUARE.sqrt());
+    let waves = C_P_SQUARE.sqrt() * time;
+    rupture.blocks = [(way + waves) as usize + 100, (0.5 * waves) as usize];
+    let mut simulation = rupture.experiment()?.begin();
+    loop {
+        for _ in 0..400 {
+            simulation.step();
+        }
+        let front = Front::of(&simulation, &rupture);
+        let sustained = (SUSTAINED * rupture.critical_length()) as usize;
+        let is_far = front.distance() as f64 >= way || simulation.time_star() > time;
+        if is_far || front.transition(sustained).is_some() {
+            return Ok((rupture, front));
+        }
+    }
+}
+
+pub fn probe(excess: f64) {
+    let start = std::time::Instant::now();
+    let Ok((rupture, front)) = run(excess) else { return };
+    let lc = rupture.critical_length();
+    let at = front
+        .transition((SUSTAINED * lc) as usize)
+        .map(|at| at as f64 / lc);
+    println!(
+        "S={excess} blocks {:?} Lc {lc:.1} distance {:.1} Lc transition {at:?} in {:?}",
+        rupture.blocks,
+        front.distance() as f64 / lc,
+        start.elapsed()
+    );
+    for (d, v) in front.speeds().step_by((0.5 * lc) as usize) {
+        print!("{:.1}:{v:.3} ", d as f64 / lc);
+    }
+    println!();
+}

@@ -1,0 +1,158 @@
+//! Estimates of when the slider begins to slip.
+
+use crate::communicator::Communicator;
+use crate::lattice::{K_DIAGONAL, K_DRIVE, springs_on_a_lone_block};
+use crate::model::{Model, ONSET_PATH};
+use crate::vector_field::length;
+
+impl Model {
+    /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
+    /// bear their load alone, which is larger by the [load factor](Surface::load_factor) f where only some
+    /// touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that is
+    /// later, for blocks that stand alone and are pushed by their free neighbours too:
+    ///
+    /// ```text
+    /// max(2.5 c f, f/A k_2)/V* ... 2.5 f/V*
+    /// ```
+    ///
+    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*; c
+    /// f is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks passes to
+    /// those that touch is known only for a drive on every block: any other drive has no `load_factor`, and
+    /// pulls all blocks together. What a dead load bears, tau, the drive need not: it takes tau/k_2 off each
+    /// path.
+    pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
+        let speed = self.loading_speed();
+        let together = ONSET_PATH * self.share_of_load();
+        let [early, late] = match load_factor {
+            None => [together; 2],
+            Some(factor) => {
+                let late = ONSET_PATH * factor.max(1.0);
+                let lone = factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
+                [lone.clamp(together, late), late]
+            }
+        };
+        let [borne, _] = self.mean_dead_load();
+        [early, late].map(|path| (path - borne / K_DRIVE).max(0.0) / speed)
+    }
+
+    /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at
+    /// constant speed along a direction
+    ///
+    /// ```text
+    /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
+    /// ```
+    ///
+    /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
+    /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold. A stack of sheets takes
+    /// the stiffness in series, which holds for slow loading: the sheets above swing about it. All `ranks` of
+    /// a lattice must call this together.
+    ///
+    /// It is not known of an upright sheet only some of whose blocks have a drive spring, which stretch it
+    /// before any slips.
+    pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> Option<f64> {
+        let through_rows = self.pull_through_rows();
+        if self.friction.interface().is_some() && through_rows.is_none() {
+            return None;
+        }
+        let k_drive = through_rows.unwrap_or_else(|| self.mount_stiffness());
+        let v_star = self.drive.v_star;
+        let pull =
+            |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
+        if self.drive.rotation.is_none() {
+            let threshold = if self.dead_load.acts() || through_rows.is_some() {
+                let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
+                // A block that slips at once may have no drive spring.
+                let missing = in_contact.map(|b| match self.missing_pull(b) {
+                    0.0 => 0.0,
+                    pull => pull / self.slider.drive_spring(b),
+                });
+                let mut negative = [-missing.fold(f64::INFINITY, f64::min)];
+                ranks.largest(&mut negative);
+                -negative[0]
+            } else {
+                self.surface.min_slip_threshold()
+            };
+            let mut pull = pull(threshold, k_drive);
+            if !self.friction.has_thresholds() {
+                pull -= self.mean_dead_load()[0];
+            }
+            return Some(match self.drive.program {
+                None => pull / (k_drive * v_star),
+                Some(_) => self.drive.time_of_path(pull / k_drive),
+            });
+        }
+        let path = |b: usize| {
+            let limit = self.slip_threshold(b);
+            let k = k_drive * self.slider.drive_spring(b) * self.relative_radius(b);
+            if k > 0.0 {
+                pull(limit, k) / k
+            } else {
+                f64::INFINITY
+            }
+        };
+        let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
+        let mut negative = [-in_contact.map(path).fold(f64::INFINITY, f64::min)];
+        ranks.largest(&mut negative);
+        Some(self.drive.time_of_path(-negative[0]))
+    }
+
+    /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for
+    /// it:
+    ///
+    /// ```text
+    /// sqrt(T^2 - F_0,across^2) - F_0,along,   T = max(mu_s, mu_k) F_n
+    /// (T - F_0,x sgn(d_x))/|d_x|              of an upright sheet, with the direction d of the drive
+    /// ```
+    fn missing_pull(&self, b: usize) -> f64 {
+        if self.slips_at_once(b) {
+            return 0.0;
+        }
+        if self.friction.interface().is_some() {
+            let [pull, _] = self.drive.direction;
+            let [load, _] = self.dead_load_of(b);
+            return (self.slip_threshold(b) - load * pull.signum()) / pull.abs();
+        }
+        let ([along, across], threshold) = (self.dead_load_on(b), self.slip_threshold(b));
+        (threshold * threshold - across * across).sqrt() - along
+    }
+
+    /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction
+    /// (D12).
+    fn slip_threshold(&self, b: usize) -> f64 {
+        self.surface.static_limit(b).max(self.surface.kinetic_force(b))
+    }
+
+    /// Whether the dead load alone makes block `b` slip.
+    pub fn slips_at_once(&self, b: usize) -> bool {
+        let load = match self.friction.interface() {
+            Some(_) => self.dead_load_of(b)[0].abs(),
+            None => length(self.dead_load_on(b)),
+        };
+        load > self.slip_threshold(b)
+    }
+
+    /// Stiffness with which the drive pulls a block of the lowest row of an upright sheet all of whose blocks
+    /// have equal drive springs, while that row does not move: its own spring, and all rows above in series,
+    /// each with the springs of its blocks, behind the shear stiffness of two diagonal springs.
+    ///
+    /// ```text
+    /// p_j = k_2 (k_s + p_j+1)/(k_2 + k_s + p_j+1),   p = 0 above the last row
+    /// ```
+    ///
+    /// None of another slider, if blocks differ, or if the drive pulls them off a foundation.
+    pub(crate) fn pull_through_rows(&self) -> Option<f64> {
+        let slider = &self.slider;
+        let is_uniform =
+            slider.stiffness.is_none() && slider.outline.is_none() && slider.drive_springs.is_none();
+        let interface = self.friction.interface().filter(|_| is_uniform)?;
+        // A pull off a foundation changes the normal force.
+        if interface.foundation > 0.0 && self.drive.direction[1] != 0.0 {
+            return None;
+        }
+        let k_drive = self.drive.k_drive;
+        let above = (1..self.lattice.ny).fold(0.0, |pull, _| {
+            K_DIAGONAL * (k_drive + pull) / (K_DIAGONAL + k_drive + pull)
+        });
+        Some(k_drive + above)
+    }
+}
