@@ -2,8 +2,8 @@
 //!
 //! Each chapter builds its sliders from the physics alone and compares their motion with a closed form or
 //! with the integration of an equation that is derived in its text; or, of benchmarks that others set, with
-//! their reference. The command is `slipfront family`; its pages are `docs/validation/family.md` and
-//! `rupture.md`.
+//! their reference. The command is `slipfront family`; its pages are `docs/validation/family.md`,
+//! `rupture.md` and `transition.md`.
 
 mod adhesion;
 mod ageing;
@@ -17,6 +17,7 @@ mod error;
 mod fronts;
 mod held;
 mod load;
+mod nucleation;
 mod page;
 mod patterns;
 mod program;
@@ -24,9 +25,10 @@ mod rate_and_state;
 mod recurrence;
 mod runs;
 mod rupture;
+mod side_push;
 mod slip_weakening;
 mod torsion;
-pub mod transition;
+mod transition;
 mod weakening;
 
 use rayon::prelude::*;
@@ -62,22 +64,33 @@ const OPTIONS: &[Compute] = &[
 
 /// Chapters of benchmarks that others set, in the order of their page.
 const BENCHMARKS: &[Compute] = &[
-    rupture::nucleation_chapter,
-    rupture::speed_chapter,
+    nucleation::chapter,
+    rupture::chapter,
+    side_push::chapter,
     recurrence::cycle_chapter,
     recurrence::catalogue_chapter,
 ];
 
-/// Computes all chapters of all pages, on as many threads as there are workers.
+/// Chapters that take half an hour, in the order of their page.
+const LONG: &[Compute] = &[transition::chapter];
+
+/// Computes all chapters of all pages, on as many threads as there are workers; those of the page that takes
+/// half an hour if it is asked for.
 ///
 /// # Errors
 /// When a run diverges.
-pub fn books() -> Result<[Book; 2], FamilyError> {
-    let all: Vec<&Compute> = BENCHMARKS.iter().chain(OPTIONS).collect();
+pub fn books(long: bool) -> Result<Vec<Book>, FamilyError> {
+    let long = if long { LONG } else { &[] };
+    let all: Vec<&Compute> = long.iter().chain(BENCHMARKS).chain(OPTIONS).collect();
     let mut chapters: Vec<Chapter> = all
         .par_iter()
         .map(|compute| compute())
         .collect::<Result<_, _>>()?;
-    let options = chapters.split_off(BENCHMARKS.len());
-    Ok([Book::of_options(options), Book::of_benchmarks(chapters)])
+    let options = chapters.split_off(long.len() + BENCHMARKS.len());
+    let benchmarks = chapters.split_off(long.len());
+    let mut books = vec![Book::of_options(options), Book::of_benchmarks(benchmarks)];
+    if !chapters.is_empty() {
+        books.push(Book::of_transition(chapters));
+    }
+    Ok(books)
 }

@@ -1,4 +1,4 @@
-//! The pages `family.md` and `rupture.md` of `docs/validation`, and the lines that the command prints.
+//! The pages `family.md`, `rupture.md` and `transition.md` of `docs/validation`, and the lines that the command prints.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub struct Book {
 }
 
 /// The books, each without its chapters.
-const BOOKS: [Book; 2] = [
+const BOOKS: [Book; 3] = [
     Book {
         title: "# The family, answer by answer\n",
         name: "family",
@@ -43,16 +43,28 @@ const BOOKS: [Book; 2] = [
         compared: "reference",
         chapters: Vec::new(),
     },
+    Book {
+        title: "# Fronts faster than shear waves\n",
+        name: "transition",
+        about: include_str!("text/transition.md"),
+        compared: "reference",
+        chapters: Vec::new(),
+    },
 ];
 
 impl Book {
     pub(crate) fn of_options(chapters: Vec<Chapter>) -> Self {
-        let [book, _] = BOOKS;
+        let [book, ..] = BOOKS;
         Self { chapters, ..book }
     }
 
     pub(crate) fn of_benchmarks(chapters: Vec<Chapter>) -> Self {
-        let [_, book] = BOOKS;
+        let [_, book, _] = BOOKS;
+        Self { chapters, ..book }
+    }
+
+    pub(crate) fn of_transition(chapters: Vec<Chapter>) -> Self {
+        let [.., book] = BOOKS;
         Self { chapters, ..book }
     }
 

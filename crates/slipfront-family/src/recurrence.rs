@@ -1,8 +1,7 @@
 //! Benchmarks of repeated slip: the cycle of one block under rate and state with inertia, and the catalogue
 //! of a train of blocks.
 
-use slipfront::Stop;
-use slipfront::observe::{Event, Events, Scheduled};
+use slipfront::observe::Event;
 use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
@@ -86,14 +85,7 @@ fn catalogue(duration_star: f64) -> Result<Vec<Event>, FamilyError> {
         &format!("duration_star = {duration_star}"),
     );
     let (experiment, last_step) = Experiment::of_case("catalogue", &text)?;
-    let mut events = Events::new(&experiment.model);
-    let mut simulation = experiment.begin();
-    let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut events)]);
-    done.map_err(|source| FamilyError::Run {
-        name: "catalogue".to_owned(),
-        source,
-    })?;
-    Ok(events.events().to_vec())
+    experiment.events("catalogue", last_step)
 }
 
 /// Edges of the bins of the logarithm of the moment over F/k_p, from which the exponent is taken.

@@ -1,13 +1,15 @@
 //! Runs of the chapters.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::oscillation_growth;
 use slipfront::lattice::K_DRIVE;
-use slipfront::observe::{Curve, CurveRow, Scheduled};
+use slipfront::observe::{Curve, CurveRow, Event, Events, Scheduled};
 use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField, scales};
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
+use slipfront_case::case_file::CaseFile;
 
 use crate::error::FamilyError;
 
@@ -68,13 +70,39 @@ impl AnswerRun {
 impl Experiment {
     /// The experiment that a case describes, and its last step.
     pub(crate) fn of_case(name: &str, text: &str) -> Result<(Self, u64), FamilyError> {
-        let case = Case::parse(text, name, "", &[])?;
+        Self::of_case_with(name, text, &FilesInMemory::new())
+    }
+
+    /// The experiment that a case with these files describes, and its last step.
+    pub(crate) fn of_case_with(
+        name: &str,
+        text: &str,
+        files: &FilesInMemory,
+    ) -> Result<(Self, u64), FamilyError> {
+        let files = Files {
+            folder: Path::new(""),
+            in_memory: Some(files),
+        };
+        let file = CaseFile::parse(text, name, &[])?;
+        let case = Case::to_run_with(file, name, files, &mut |_| true, Ranks::ALONE)?;
         let experiment = Self {
             model: Arc::clone(&case.model),
             dt_star: case.time_plan.dt_star,
             state: None,
         };
         Ok((experiment, case.time_plan.last_step))
+    }
+
+    /// Runs the experiment to this step and lists its events of slip.
+    pub(crate) fn events(&self, name: &str, last_step: u64) -> Result<Vec<Event>, FamilyError> {
+        let mut events = Events::new(&self.model);
+        let mut simulation = self.begin();
+        let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut events)]);
+        done.map_err(|source| FamilyError::Run {
+            name: name.to_owned(),
+            source,
+        })?;
+        Ok(events.events().to_vec())
     }
 
     /// Runs the experiment to this step.

@@ -1,5 +1,4 @@
-//! Benchmarks of frictional rupture that others set: nucleation on a line, the speed of fronts along the edge
-//! of an upright sheet.
+//! Speed of a rupture along the edge of an upright sheet.
 
 use std::f64::consts::{PI, SQRT_2};
 use std::sync::Arc;
@@ -7,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Contact, Load};
-use slipfront::{Coulomb, DeadLoad, Drive, Interface, Lattice, Model, Program, Slider, Surface, scales};
+use slipfront::{Coulomb, DeadLoad, Drive, Interface, Lattice, Model, Slider, Surface};
 use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
@@ -116,7 +115,7 @@ const NUMPY: [(f64, &[f64]); 3] = [
 /// Values of S of the picture.
 const EXCESSES: [f64; 6] = [0.5, 0.9, 1.2, 1.4, 1.77, 2.0];
 
-pub(crate) fn speed_chapter() -> Result<Chapter, FamilyError> {
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let rupture = |strength_excess: f64| EdgeRupture {
         blocks: [600, 160],
         weakening: 0.2,
@@ -194,103 +193,5 @@ pub(crate) fn speed_chapter() -> Result<Chapter, FamilyError> {
                 ..Responses::default()
             },
         )),
-    })
-}
-
-/// A line of contacts across the middle of a sheet under a load that hardly rises.
-mod line {
-    use super::*;
-
-    pub(super) const BLOCKS: [usize; 2] = [201, 101];
-    const ROW: usize = 50;
-    const SPRINGS: f64 = 1e-4;
-    const WEAKENING: f64 = 0.1;
-    /// Load at the start.
-    const START: f64 = 0.999;
-    /// Speeds of the drive and the times at which they end: to loads of 1.0008 and 1.0044.
-    const PROGRAM: [(f64, f64); 3] = [(1.0, 18.0), (0.05, 738.0), (0.005, f64::INFINITY)];
-
-    /// Loads at which the blocks of one half of the line slip first, from the middle on, and these times.
-    pub(super) fn loads() -> Result<Vec<[f64; 2]>, FamilyError> {
-        let [nx, ny] = BLOCKS;
-        let lattice = Lattice::free(nx, ny);
-        let n = lattice.n_blocks();
-        let is_line = |b: usize| b / nx == ROW;
-        let static_of = |b: usize| 1.0 + 0.5 * ((b % nx) as f64 - (nx / 2) as f64).powi(2) / 3600.0;
-        let coefficients = Coefficients::given(
-            (0..n).map(static_of).collect(),
-            (0..n).map(|b| static_of(b) - 0.5).collect(),
-        );
-        let mut slider = Slider::default();
-        slider.attach(n, is_line, &Alone);
-        let textured = (0..n).map(|b| !is_line(b)).collect();
-        let contact = Contact::new(Load::Kept, 1.0);
-        let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone)?;
-        let drive = Drive {
-            k_drive: SPRINGS,
-            program: Some(Arc::new(Program::new(PROGRAM))),
-            ..Drive::along_x(1.0)
-        };
-        let on_line = (0..n).map(|b| f64::from(u8::from(is_line(b)))).collect();
-        let load = DeadLoad::of_blocks([START, 0.0], on_line, &slider, &Alone);
-        let friction = slipfront::Friction::Coulomb(falling_strength(0.5 / WEAKENING));
-        let model = Model::new(lattice, surface, drive, scales::damping(0.05), 0.0, friction);
-        let experiment = Experiment {
-            model: Arc::new(model.with_slider(slider).with_dead_load(load)),
-            dt_star: 0.4,
-            state: None,
-        };
-        let mut simulation = experiment.begin();
-        let last = ROW * nx + nx / 2 + 25;
-        while simulation.time_star() < 4000.0 {
-            for _ in 0..100 {
-                simulation.step();
-            }
-            if simulation.snapshot().first_slip_time_star()[last].is_finite() {
-                break;
-            }
-        }
-        let first = simulation.snapshot().first_slip_time_star();
-        let drive = &experiment.model.drive;
-        let slips = (0..=25).map(|k| first[ROW * nx + nx / 2 + k]);
-        Ok(slips
-            .map(|time| [START + SPRINGS * drive.path(time), time])
-            .collect())
-    }
-}
-
-/// Loads over 1 at which the patch of n blocks grows, quasi-static on this lattice: from the Schur complement
-/// of its stiffness on the line.
-const QUASI_STATIC: [(usize, f64); 3] = [(9, 1.56e-3), (17, 3.95e-3), (21, 4.93e-3)];
-/// The largest quasi-static load over 1, of 25 blocks.
-const LARGEST: f64 = 5.29e-3;
-
-pub(crate) fn nucleation_chapter() -> Result<Chapter, FamilyError> {
-    let loads = line::loads()?;
-    let mut answers = Vec::new();
-    for (n, load) in QUASI_STATIC {
-        answers.push(Answer::new(
-            format!("load over 1 at which a patch of {n} blocks grows"),
-            [load, loads[n / 2 + 1][0] - 1.0],
-            (
-                0.05 * load,
-                "near the instability slip grows as slowly as the load: the delay goes with the rate to 2/3",
-            ),
-        ));
-    }
-    let runs_away = loads
-        .windows(2)
-        .find(|pair| pair[1][1] - pair[0][1] < 40.0 && pair[0][0] > 1.005);
-    answers.push(Answer::new(
-        "load over 1 from which the next block follows within 40 t*",
-        [LARGEST, runs_away.map_or(f64::NAN, |pair| pair[0][0] - 1.0)],
-        (0.05 * LARGEST, "the same delay"),
-    ));
-    Ok(Chapter {
-        title: "Nucleation on a line",
-        name: "nucleation",
-        text: include_str!("text/rupture_nucleation.md"),
-        answers,
-        picture: None,
     })
 }

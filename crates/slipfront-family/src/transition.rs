@@ -1,11 +1,12 @@
 //! The distance at which a rupture along an edge outruns shear waves.
 
+use rayon::prelude::*;
 use slipfront::Simulation;
+use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
 use crate::rupture::{C_S_SQUARE, EdgeRupture, STEP};
-use slipfront_plot::{Response, Responses};
 
 /// Fall of strength per slip, for a cohesive zone of some 20 blocks: `mu*/W` with `mu* = 1.1`.
 const WEAKENING: f64 = 0.055;
@@ -90,21 +91,48 @@ fn run(strength_excess: f64) -> Result<(EdgeRupture, Front), FamilyError> {
     }
 }
 
-pub fn probe(excess: f64) {
-    let start = std::time::Instant::now();
-    let Ok((rupture, front)) = run(excess) else { return };
-    let lc = rupture.critical_length();
-    let at = front
-        .transition((SUSTAINED * lc) as usize)
-        .map(|at| at as f64 / lc);
-    println!(
-        "S={excess} blocks {:?} Lc {lc:.1} distance {:.1} Lc transition {at:?} in {:?}",
-        rupture.blocks,
-        front.distance() as f64 / lc,
-        start.elapsed()
-    );
-    for (d, v) in front.speeds().step_by((0.5 * lc) as usize) {
-        print!("{:.1}:{v:.3} ", d as f64 / lc);
+/// Values of S, all of which are below the limit of 1.77.
+const EXCESSES: [f64; 3] = [0.5, 0.8, 1.2];
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let found: Vec<(EdgeRupture, Front)> = EXCESSES
+        .par_iter()
+        .map(|&excess| run(excess))
+        .collect::<Result<_, _>>()?;
+    let mut answers = Vec::new();
+    let mut curves = Vec::new();
+    for (rupture, front) in &found {
+        let (excess, length) = (rupture.strength_excess, rupture.critical_length());
+        let transition = front.transition((SUSTAINED * length) as usize);
+        let distance = transition.map_or(f64::INFINITY, |at| at as f64 / length);
+        let answer = Answer::new(
+            format!("S = {excess}: distance over L_c at which the front outruns shear waves, at most 40"),
+            [FARTHEST, distance],
+            (0.0, "nearer is right"),
+        );
+        answers.push(answer.at_most_below(f64::INFINITY));
+        let every = front.speeds().step_by((0.25 * length) as usize);
+        let (x, y): (Vec<f64>, Vec<f64>) = every
+            .map(|(at, speed)| (at as f64 / length, speed.min(2.0)))
+            .unzip();
+        curves.push(Response {
+            line: true,
+            ..Response::of_values(&format!("S = {excess}"), &x, &y)
+        });
     }
-    println!();
+    Ok(Chapter {
+        title: "The transition to fronts faster than shear waves",
+        name: "speed",
+        text: include_str!("text/transition_speed.md"),
+        answers,
+        picture: Some((
+            "Speed of the front over that of shear waves, over 20 blocks, against the distance over L_c, until it has outrun them for 3 L_c.",
+            Responses {
+                x_title: "distance/L_c".to_owned(),
+                y_title: "front speed v/c_S".to_owned(),
+                curves,
+                ..Responses::default()
+            },
+        )),
+    })
 }

@@ -16,9 +16,12 @@ use crate::threads::{count_from_one, set_worker_threads};
   slipfront family                         one line per option and benchmark
   slipfront family --docs docs/validation   the pages of the documentation, with pictures")]
 pub(crate) struct FamilyCommand {
-    /// Write family.md, rupture.md and their pictures to this folder
+    /// Write family.md, rupture.md and their pictures to this folder; with --long transition.md, too
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
+    /// Run the benchmark of fronts faster than shear waves, too, for half an hour or more
+    #[arg(long)]
+    long: bool,
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -34,7 +37,7 @@ impl FamilyCommand {
                 path.display()
             )));
         }
-        let books = slipfront_family::books().map_err(Failure::running)?;
+        let books = slipfront_family::books(self.long).map_err(Failure::running)?;
         print_message(&slipfront_family::summary(&books));
         if let Some(docs) = &self.docs {
             // A signal leaves neither half a page nor a hidden file.

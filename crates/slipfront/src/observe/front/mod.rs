@@ -63,10 +63,10 @@ impl Front {
     /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least
     /// squares) to the times of 7 x 7 blocks around one that has slipped; 7 blocks in a chain. There are
     /// windows around all blocks but those in which slip nucleates, and those where too few have slipped:
-    /// fewer than 25, or 5 times the number of rows (or columns) of a lattice that has fewer than five. A
-    /// front passes through a window where the plane explains half of the variance of the times, and g turns
-    /// by no more than 60 degrees to the windows 3 blocks away along either axis: where two fronts meet, it
-    /// does.
+    /// fewer than 25, or 5 times the number of rows (or columns) of a lattice, or of the part of it that has
+    /// slipped, that has fewer than five. A front passes through a window where the plane explains half of
+    /// the variance of the times, and g turns by no more than 60 degrees to the windows 3 blocks away along
+    /// either axis: where two fronts meet, it does.
     ///
     /// ```
     /// use slipfront::{Lattice, observe::Front};

@@ -5,7 +5,8 @@ use crate::vector_field::dot;
 
 /// Blocks from the middle of a window to its edge.
 const REACH: usize = 3;
-/// Least number of blocks of a window that have slipped, for each of its rows, up to five of them.
+/// Least number of blocks of a window that have slipped, for each row of the window or of all blocks that
+/// have slipped, up to five of them.
 const LEAST_PER_ROW: usize = 5;
 
 /// Least share of the variance of the times in a window that a plane explains where a front passes. White
@@ -36,8 +37,9 @@ pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) 
             }
         }
     }
-    let rows = axes[0].window().min(axes[1].window());
-    let least = LEAST_PER_ROW * rows.min(LEAST_PER_ROW);
+    let slipped = extents(lattice, times);
+    let rows = [0, 1].map(|axis| axes[axis].window().min(slipped[axis]));
+    let least = LEAST_PER_ROW * rows[0].min(rows[1]).min(LEAST_PER_ROW);
     let mut n_windows = 0;
     let mut slopes = vec![[f64::NAN; 2]; times.len()];
     let mut is_plane = vec![false; times.len()];
@@ -55,6 +57,20 @@ pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) 
         speeds: (0..times.len()).filter(passes).map(speed).collect(),
         n_windows,
     }
+}
+
+/// Numbers of columns and rows of the smallest rectangle that holds all blocks that have slipped: of a line
+/// of contacts one of the two is 1.
+fn extents(lattice: &Lattice, times: &[f64]) -> [usize; 2] {
+    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+    for block in (0..times.len()).filter(|&b| !times[b].is_nan()) {
+        let (i, j) = lattice.column_row(block);
+        for (axis, place) in [i, j].into_iter().enumerate() {
+            low[axis] = low[axis].min(place);
+            high[axis] = high[axis].max(place);
+        }
+    }
+    [0, 1].map(|axis| (high[axis] + 1).saturating_sub(low[axis]))
 }
 
 /// Whether the front has another direction in one of the windows that lie as far from that of a block, along

@@ -380,3 +380,26 @@ fn plain_search(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     sites.sort_unstable();
     sites.into_iter().map(|place| order[place]).collect()
 }
+
+/// On a line of contacts slip runs as on a chain, along either axis.
+#[test]
+fn a_line_of_contacts_has_the_speed_of_a_chain() {
+    let (lattice, chain) = (Lattice::free(40, 30), Lattice::free(30, 1));
+    let time = |place: f64| 3.0 + (place - 12.0).abs() / 0.8;
+    let of_chain = front(&chain, &times_of(&chain, |x, _| time(x)));
+    let speed = of_chain.speed.unwrap();
+    assert!((speed.median - 0.8).abs() < 1e-12);
+    let along_x = times_of(
+        &lattice,
+        |x, y| if y == 7.0 && x < 30.0 { time(x) } else { f64::NAN },
+    );
+    let along_y = times_of(&lattice, |x, y| if x == 39.0 { time(y) } else { f64::NAN });
+    for times in [along_x, along_y] {
+        let of_line = Front::of(&lattice, &times, 30).unwrap();
+        assert_eq!((of_line.speed, of_line.share), (of_chain.speed, of_chain.share));
+        assert_eq!(
+            (of_line.nucleations.len(), of_line.duration),
+            (1, of_chain.duration)
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! Nucleation of slip on a line of contacts across the middle of a sheet, under a load that hardly rises.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use slipfront::communicator::Alone;
+use slipfront::surface::{Coefficients, Contact, Load};
+use slipfront::{DeadLoad, Drive, Lattice, Model, Program, Slider, Surface, scales};
+use slipfront_plot::{Response, Responses};
+
+use crate::answer::{Answer, Chapter};
+use crate::error::FamilyError;
+use crate::falling_strength;
+use crate::runs::Experiment;
+
+const BLOCKS: [usize; 2] = [201, 101];
+/// Row of the contacts.
+const ROW: usize = 50;
+/// Stiffness of the drive springs of the line, in units of `E h`.
+const SPRINGS: f64 = 1e-4;
+/// Blocks to each side of the middle whose first slips are watched.
+const WATCHED: usize = 30;
+/// Loads over 1 at which the patch of n blocks grows for W = 0.1, quasi-static on this lattice: from the
+/// Schur complement of its stiffness on the line.
+const QUASI_STATIC: [(usize, f64); 3] = [(9, 1.56e-3), (17, 3.95e-3), (21, 4.93e-3)];
+/// Fall of strength per slip, the largest quasi-static load over 1, and the number of blocks of which the
+/// least eigenvalue of the stiffness on the line is W, from the same Schur complement.
+const CRITICAL: [[f64; 3]; 4] = [
+    [0.07, 1.050e-2, 36.1],
+    [0.1, 5.29e-3, 25.5],
+    [0.14, 2.758e-3, 18.4],
+    [0.2, 1.365e-3, 12.8],
+];
+/// Time within which the next block follows when slip has run away.
+const RUNAWAY: f64 = 40.0;
+
+/// A line whose strength rises from its middle as `1 + (x/60)^2/2` and falls with slip.
+struct Line {
+    /// Fall of strength per slip, `W`.
+    weakening: f64,
+    /// The largest quasi-static load over 1.
+    largest: f64,
+}
+
+impl Line {
+    /// Loads over 1 at which the blocks of one half of the line slip first, from the middle on, and these
+    /// times. The load rises fast to 0.15 of the largest, slowly to 0.83 of it, and from there on by 5e-7 a
+    /// unit of time, or less where the largest load is less.
+    fn loads(&self) -> Result<Vec<[f64; 2]>, FamilyError> {
+        let [nx, ny] = BLOCKS;
+        let lattice = Lattice::free(nx, ny);
+        let n = lattice.n_blocks();
+        let is_line = |b: usize| b / nx == ROW;
+        let static_of = |b: usize| 1.0 + 0.5 * ((b % nx) as f64 - (nx / 2) as f64).powi(2) / 3600.0;
+        let coefficients = Coefficients::given(
+            (0..n).map(static_of).collect(),
+            (0..n).map(|b| static_of(b) - 0.5).collect(),
+        );
+        let mut slider = Slider::default();
+        slider.attach(n, is_line, &Alone);
+        let textured = (0..n).map(|b| !is_line(b)).collect();
+        let contact = Contact::new(Load::Kept, 1.0);
+        let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone)?;
+        // Speeds of the drive, in units of the load 1e-4, and the times at which they end.
+        let slow = 0.005 * (self.largest / 5.29e-3).min(1.0);
+        let start = 1.0 - 1e-3;
+        let fast_until = (0.15 * self.largest + 1e-3) / SPRINGS;
+        let medium_until = fast_until + 0.68 * self.largest / SPRINGS / (10.0 * slow);
+        let program = [
+            (1.0, fast_until),
+            (10.0 * slow, medium_until),
+            (slow, f64::INFINITY),
+        ];
+        let drive = Drive {
+            k_drive: SPRINGS,
+            program: Some(Arc::new(Program::new(program))),
+            ..Drive::along_x(1.0)
+        };
+        let on_line = (0..n).map(|b| f64::from(u8::from(is_line(b)))).collect();
+        let load = DeadLoad::of_blocks([start, 0.0], on_line, &slider, &Alone);
+        let friction = slipfront::Friction::Coulomb(falling_strength(0.5 / self.weakening));
+        let model = Model::new(lattice, surface, drive, scales::damping(0.05), 0.0, friction);
+        let experiment = Experiment {
+            model: Arc::new(model.with_slider(slider).with_dead_load(load)),
+            dt_star: 0.4,
+            state: None,
+        };
+        let mut simulation = experiment.begin();
+        let middle = ROW * nx + nx / 2;
+        // Far beyond the largest quasi-static load.
+        while simulation.time_star() < medium_until + 0.5 * self.largest / SPRINGS / slow {
+            for _ in 0..100 {
+                simulation.step();
+            }
+            if simulation.snapshot().first_slip_time_star()[middle + WATCHED].is_finite() {
+                break;
+            }
+        }
+        let first = simulation.snapshot().first_slip_time_star();
+        let drive = &experiment.model.drive;
+        let slips = (0..=WATCHED).map(|k| first[middle + k]);
+        Ok(slips
+            .map(|time| [start + SPRINGS * drive.path(time) - 1.0, time])
+            .collect())
+    }
+
+    /// Number of blocks that slip, and the load over 1, when the next block follows within 40 t*, among
+    /// patches of at least half the critical size.
+    fn runaway(loads: &[[f64; 2]], critical: f64) -> [f64; 2] {
+        let pairs = loads.windows(2).enumerate();
+        let sizes = pairs.map(|(k, pair)| (2 * k + 1, pair[1][1] - pair[0][1], pair[0][0]));
+        let mut late = sizes.filter(|(size, ..)| *size as f64 > 0.5 * critical);
+        let found = late.find(|(_, until_next, _)| *until_next < RUNAWAY);
+        found.map_or([f64::NAN; 2], |(size, _, load)| [size as f64, load])
+    }
+}
+
+pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+    let found: Vec<Vec<[f64; 2]>> = CRITICAL
+        .par_iter()
+        .map(|&[weakening, largest, _]| Line { weakening, largest }.loads())
+        .collect::<Result<_, _>>()?;
+    let mut answers = Vec::new();
+    let (mut weakenings, mut sizes, mut critical_sizes) = (Vec::new(), Vec::new(), Vec::new());
+    for (loads, [weakening, largest, critical]) in found.iter().zip(CRITICAL) {
+        if weakening == 0.1 {
+            for (n, load) in QUASI_STATIC {
+                answers.push(Answer::new(
+                    format!("W = {weakening}: load over 1 at which a patch of {n} blocks grows"),
+                    [load, loads[n / 2 + 1][0]],
+                    (
+                        0.05 * load,
+                        "near the instability slip grows as slowly as the load: the delay goes with the rate to 2/3",
+                    ),
+                ));
+            }
+        }
+        let [size, load] = Line::runaway(loads, critical);
+        answers.push(Answer::new(
+            format!("W = {weakening}: load over 1 from which the next block follows within 40 t*"),
+            [largest, load],
+            (0.05 * largest, "the delay of growth that is as slow as the load"),
+        ));
+        weakenings.push(weakening);
+        sizes.push(size);
+        critical_sizes.push(critical);
+    }
+    let all: Vec<f64> = (0..=30).map(|k| 0.06 + 0.005 * f64::from(k)).collect();
+    Ok(Chapter {
+        title: "Nucleation on a line",
+        name: "nucleation",
+        text: include_str!("text/rupture_nucleation.md"),
+        answers,
+        picture: Some((
+            "Size in blocks from which slip runs away, against the fall of strength per slip. The runs show the patch whose next block follows \
+             within 40 t*: the load goes on rising, slowly, while it grows from the critical size.",
+            Responses {
+                x_title: "fall of strength per slip W".to_owned(),
+                y_title: "blocks".to_owned(),
+                curves: vec![
+                    Response::of_values("runs", &weakenings, &sizes),
+                    Response::of_values("lattice, quasi-static", &weakenings, &critical_sizes),
+                    Response::of_formula("continuum, 1.158 \u{3bc}*/W", &all, |weakening| {
+                        1.158 * 2.25 / weakening
+                    }),
+                ],
+                ..Responses::default()
+            },
+        )),
+    })
+}
