@@ -20,6 +20,7 @@ enum Variety {
     Ages,
     RateAndState,
     Springs,
+    Slide,
     Turns,
     /// Two sheets above the lattice.
     Stack,
@@ -49,7 +50,7 @@ fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
             Differ => slider.body = varied(blocks[0] * blocks[1], true),
             Loaded => slider.dead_load = ([0.3, 0.2], options.contains(&Differ)),
             Viscous => (slider.body.viscosity_time, slider.dt_star) = (0.2, 0.05),
-            Ages | RateState | Springs | Turns | Stack => {}
+            Ages | RateState | Springs | Slide | Turns | Stack => {}
         }
     }
     slider
@@ -79,10 +80,15 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
                     slip_speed: 1e-3,
                 });
             }
-            Springs => {
+            Springs | Slide => {
+                let forms_again = AfterBreak::FormsAgain { redraw: None };
                 model.friction = Friction::ContactSprings(ContactSprings {
                     stiffness: 1.5,
-                    after_break: AfterBreak::FormsAgain { redraw: None },
+                    after_break: if *option == Slide {
+                        AfterBreak::Slides
+                    } else {
+                        forms_again
+                    },
                 });
             }
             Turns => {
@@ -96,13 +102,13 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
     }
 }
 
-use Variety::{Ages, Differ, Law, Loaded, RateAndState as RateState, Springs, Stack, Turns, Viscous};
+use Variety::{Ages, Differ, Law, Loaded, RateAndState as RateState, Slide, Springs, Stack, Turns, Viscous};
 
 #[test_matrix(
     [
         &[Law(FrictionLaw::Reversal)], &[Law(FrictionLaw::Literal), Differ], &[Viscous], &[Ages], &[RateState],
         &[Springs], &[Turns], &[Stack, RateState], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
-        &[Springs, Turns, Differ], &[Ages, Loaded], &[Viscous, Differ, Loaded]
+        &[Springs, Turns, Differ], &[Slide, Differ, Loaded], &[Ages, Loaded], &[Viscous, Differ, Loaded]
     ],
     [Edges::Free, Edges::Periodic]
 )]
@@ -114,7 +120,7 @@ fn the_same_bits_over_ranks(options: &'static [Variety], edges: Edges) {
     assert_same_with(&slider, &change, Some(&from), 100);
 }
 
-#[test_matrix([&[Viscous, Differ, Ages, Loaded], &[RateState], &[Springs, Turns], &[Stack, Ages, Loaded]])]
+#[test_matrix([&[Viscous, Differ, Ages, Loaded], &[RateState], &[Springs, Turns], &[Slide, Loaded], &[Stack, Ages, Loaded]])]
 fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_goes_on(&slider(BLOCKS, Edges::Free, options), &change);
@@ -122,7 +128,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
 
 #[test_matrix(
     [
-        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Stack, Springs],
+        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Stack, Springs], &[Slide, Loaded],
         &[Viscous, Differ, Turns],
         &[Viscous, Differ, RateState, Loaded], &[Springs, Turns, Differ], &[Ages, Loaded]
     ],
