@@ -20,7 +20,8 @@ pub struct CurvePoint {
     pub mu_lateral_star: f64,
     /// Number of blocks that slide, textured ones included.
     pub n_sliding: usize,
-    /// N*, the sliding blocks in % of all blocks that exist.
+    /// N*, the sliding blocks in % of all blocks that exist; of an upright sheet, those in contact in % of the
+    /// lowest row.
     pub sliding_percent: f64,
 }
 
@@ -34,12 +35,15 @@ impl CurvePoint {
     pub(crate) fn measure(model: &Model, totals: &Totals, drive_time_star: f64) -> Self {
         let [along, across] = pull_of_springs(model, totals, drive_time_star);
         let [dead_along, dead_across] = model.mean_dead_load();
-        let n_blocks = model.n_blocks() as f64;
+        let (sliding, blocks) = match model.friction.interface() {
+            Some(_) => (totals.n_slipping, model.surface.n_facing()),
+            None => (totals.n_sliding, model.n_blocks()),
+        };
         Self {
             mu_star: along + dead_along,
             mu_lateral_star: across + dead_across,
             n_sliding: totals.n_sliding,
-            sliding_percent: 100.0 * totals.n_sliding as f64 / n_blocks,
+            sliding_percent: 100.0 * sliding as f64 / blocks as f64,
         }
     }
 }

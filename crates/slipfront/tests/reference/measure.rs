@@ -68,9 +68,18 @@ impl Reference<'_> {
         [all.count(), in_contact.count()]
     }
 
-    /// N*, in % of all blocks that exist (Eq. 11a).
+    /// N*, in % of all blocks that exist (Eq. 11a); of an upright sheet, those in contact in % of the facing
+    /// ones.
     pub(crate) fn n_star(&self) -> f64 {
-        100.0 * self.sliding()[0] as f64 / self.n_blocks()
+        let [sliding, slipping] = self.sliding();
+        match self.interface() {
+            Some(_) => {
+                let faces = |b: &usize| self.contact.faces.as_ref().is_none_or(|faces| faces[*b]);
+                let facing = (0..self.blocks.len()).filter(|b| self.blocks[*b].exists && faces(b));
+                100.0 * slipping as f64 / facing.count() as f64
+            }
+            None => 100.0 * sliding as f64 / self.n_blocks(),
+        }
     }
 
     /// Contact stress `tau_c = |F_f + F_c|` (Eq. 10).
