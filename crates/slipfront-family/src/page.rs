@@ -1,4 +1,5 @@
-//! The pages `family.md`, `rupture.md` and `transition.md` of `docs/validation`, and the lines that the command prints.
+//! The pages `family.md`, `rupture.md` and `transition.md` of `docs/validation`, and the lines that the
+//! command prints.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

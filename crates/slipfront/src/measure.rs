@@ -20,8 +20,8 @@ pub struct CurvePoint {
     pub mu_lateral_star: f64,
     /// Number of blocks that slide, textured ones included.
     pub n_sliding: usize,
-    /// N*, the sliding blocks in % of all blocks that exist; of an upright sheet, those in contact in % of the
-    /// lowest row.
+    /// N*, the sliding blocks in % of all blocks that exist; of an upright sheet, those in contact in % of
+    /// the lowest row.
     pub sliding_percent: f64,
 }
 

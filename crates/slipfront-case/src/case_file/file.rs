@@ -181,7 +181,7 @@ impl CaseFile {
         let mut tables = toml::Value::try_from(self)?;
         let friction = tables.get_mut("friction").and_then(toml::Value::as_table_mut);
         if let Some(friction) = friction.filter(|_| !self.friction.has_kinetic_coefficient()) {
-            friction.retain(|key, _| !Friction::KINETIC.iter().any(|of_kinetic| *of_kinetic == key));
+            friction.retain(|key, _| !Friction::KINETIC.contains(&key));
         }
         Ok(tables)
     }

@@ -114,9 +114,9 @@ impl Piecewise {
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if falls(middle) > 0.0 {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         low
