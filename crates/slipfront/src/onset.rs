@@ -7,9 +7,9 @@ use crate::vector_field::length;
 
 impl Model {
     /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
-    /// bear their load alone, which is larger by the [load factor](Surface::load_factor) f where only some
-    /// touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that is
-    /// later, for blocks that stand alone and are pushed by their free neighbours too:
+    /// bear their load alone, which is larger by the [load factor](crate::Surface::load_factor) f where only
+    /// some touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that
+    /// is later, for blocks that stand alone and are pushed by their free neighbours too:
     ///
     /// ```text
     /// max(2.5 c f, f/A k_2)/V* ... 2.5 f/V*
