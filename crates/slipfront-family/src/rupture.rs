@@ -1,4 +1,4 @@
-//! Speed of a rupture along the edge of an upright sheet.
+//! Speed of a rupture along the edge of an upright sheet, and along a line across a sheet.
 
 use std::f64::consts::{PI, SQRT_2};
 use std::sync::Arc;
@@ -21,8 +21,18 @@ const C_R: f64 = 0.9194;
 const KINETIC: f64 = 0.5;
 pub(crate) const STEP: f64 = 0.25;
 
-/// A rupture along the lower edge of an upright sheet, from a weak patch in its middle.
-pub(crate) struct EdgeRupture {
+/// Place of the contacts of a rupture.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Place {
+    /// Lower edge of an upright sheet, along which friction acts.
+    Edge,
+    /// Line across the middle of a sheet that lies on its substrate, all other blocks of which are textured.
+    Line,
+}
+
+/// A rupture along a row of contacts, from a weak patch in its middle.
+pub(crate) struct Rupture {
+    pub(crate) place: Place,
     /// Blocks along x and y.
     pub(crate) blocks: [usize; 2],
     /// Fall of strength per slip, `W`.
@@ -31,11 +41,23 @@ pub(crate) struct EdgeRupture {
     pub(crate) strength_excess: f64,
 }
 
-impl EdgeRupture {
-    /// Length from which a shear crack under the prestress grows, `L_c = mu* (1 + S)^2/(pi W)` with
-    /// `mu* = 1.1` (Andrews, 1976).
+impl Rupture {
+    /// Row of the contacts.
+    fn row(&self) -> usize {
+        match self.place {
+            Place::Edge => 0,
+            Place::Line => self.blocks[1] / 2,
+        }
+    }
+
+    /// Length from which a shear crack under the prestress grows, `L_c = mu* (1 + S)^2/(pi W)` with the
+    /// stiffness `mu*` of the sheet at the contacts, 1.1 or 2.25 (Andrews, 1976).
     pub(crate) fn critical_length(&self) -> f64 {
-        1.1 / self.weakening * (1.0 + self.strength_excess).powi(2) / PI
+        let stiffness = match self.place {
+            Place::Edge => 1.1,
+            Place::Line => 2.25,
+        };
+        stiffness / self.weakening * (1.0 + self.strength_excess).powi(2) / PI
     }
 
     /// Half length of the weak patch.
@@ -48,17 +70,26 @@ impl EdgeRupture {
         let lattice = Lattice::free(nx, ny);
         let n = lattice.n_blocks();
         let shear = (1.0 + self.strength_excess * KINETIC) / (1.0 + self.strength_excess);
-        let is_weak = |b: usize| (b as f64 - (nx / 2) as f64).abs() <= self.half_patch();
+        let is_in_contact = |b: usize| b / nx == self.row();
+        let is_weak = |b: usize| ((b % nx) as f64 - (nx / 2) as f64).abs() <= self.half_patch();
         let static_of = |b: usize| if is_weak(b) { shear - 0.004 } else { 1.0 };
         let coefficients = Coefficients::given((0..n).map(static_of).collect(), vec![KINETIC; n]);
         let slider = Slider::default();
-        let contact = Contact {
-            faces: Some((0..n).map(|b| b < nx).collect()),
-            ..Contact::new(Load::Redistributed, 1.0)
+        let (faces, textured, interface) = match self.place {
+            Place::Edge => (
+                Some((0..n).map(is_in_contact).collect()),
+                vec![false; n],
+                Some(Interface { foundation: 0.0 }),
+            ),
+            Place::Line => (None, (0..n).map(|b| !is_in_contact(b)).collect(), None),
         };
-        let surface = Surface::of_ranks(coefficients, vec![false; n], contact, &slider, &Alone)?;
+        let contact = Contact {
+            faces,
+            ..Contact::new(Load::Kept, 1.0)
+        };
+        let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone)?;
         let law = Coulomb {
-            interface: Some(Interface { foundation: 0.0 }),
+            interface,
             ..falling_strength((1.0 - KINETIC) / self.weakening)
         };
         // The prestress drives; the springs hold the sheet by next to nothing.
@@ -66,8 +97,8 @@ impl EdgeRupture {
             k_drive: 1e-9,
             ..Drive::along_x(1e-6)
         };
-        let along_edge = (0..n).map(|b| f64::from(u8::from(b < nx))).collect();
-        let load = DeadLoad::of_blocks([shear, 0.0], along_edge, &slider, &Alone);
+        let on_contacts = (0..n).map(|b| f64::from(u8::from(is_in_contact(b)))).collect();
+        let load = DeadLoad::of_blocks([shear, 0.0], on_contacts, &slider, &Alone);
         let model = Model::new(
             lattice,
             surface,
@@ -96,7 +127,7 @@ impl EdgeRupture {
         }
         let first = simulation.snapshot().first_slip_time_star();
         let nx = self.blocks[0];
-        let (middle, from) = (nx / 2, self.half_patch() as usize + 5);
+        let (middle, from) = (self.row() * nx + nx / 2, self.half_patch() as usize + 5);
         let speeds = (from..nx / 2 - 20).step_by(25).map(|at| {
             let [begin, end] = [first[middle + at], first[middle + at + 24]];
             [at as f64, 24.0 / (end - begin) / C_S_SQUARE.sqrt()]
@@ -105,36 +136,55 @@ impl EdgeRupture {
     }
 }
 
-/// Speeds that NumPy found for this rupture, by loops of its own over whole arrays.
+/// Speeds that NumPy found for ruptures along an edge, by loops of its own over whole arrays.
 const NUMPY: [(f64, &[f64]); 3] = [
     (2.0, &[0.682, 0.825, 0.852, 0.866]),
     (1.4, &[0.757, 0.852, 0.871, 0.881]),
     (0.9, &[0.968, 1.340, 1.507, 1.552, 1.584, 1.616]),
+];
+/// Speeds that NumPy found for ruptures along a line.
+const NUMPY_LINE: [(f64, &[f64]); 2] = [
+    (0.9, &[0.881, 1.234, 1.340, 1.412, 1.479, 1.537, 1.568]),
+    (2.0, &[0.661, 0.992, 1.066, 1.089]),
 ];
 
 /// Values of S of the picture.
 const EXCESSES: [f64; 6] = [0.5, 0.9, 1.2, 1.4, 1.77, 2.0];
 
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let rupture = |strength_excess: f64| EdgeRupture {
+    let at = |place: Place, strength_excess: f64| Rupture {
+        place,
         blocks: [600, 160],
         weakening: 0.2,
         strength_excess,
     };
+    let rupture = |excess: f64| at(Place::Edge, excess);
+    let lines = NUMPY_LINE.iter().map(|(excess, _)| (Place::Line, *excess));
+    let all: Vec<(Place, f64)> = EXCESSES
+        .map(|excess| (Place::Edge, excess))
+        .into_iter()
+        .chain(lines)
+        .collect();
     // Until waves come back from the upper edge.
-    let found: Vec<Vec<[f64; 2]>> = EXCESSES
+    let mut found: Vec<Vec<[f64; 2]>> = all
         .par_iter()
-        .map(|&excess| rupture(excess).speeds(300.0))
+        .map(|&(place, excess)| at(place, excess).speeds(300.0))
         .collect::<Result<_, _>>()?;
+    let along_lines = found.split_off(EXCESSES.len());
     let of = |excess: f64| {
         let at = EXCESSES.iter().position(|&other| other == excess);
         at.map_or(&[][..], |at| &found[at])
     };
     let mut answers = Vec::new();
-    for (excess, speeds) in NUMPY {
-        for (&reference, &[distance, speed]) in speeds.iter().zip(of(excess)) {
+    let of_numpy = NUMPY
+        .iter()
+        .map(|(excess, speeds)| ("", excess, speeds, of(*excess)));
+    let of_lines = NUMPY_LINE.iter().zip(&along_lines);
+    let of_lines = of_lines.map(|((excess, speeds), found)| ("a line, ", excess, speeds, &found[..]));
+    for (place, excess, speeds, found) in of_numpy.chain(of_lines) {
+        for (&reference, &[distance, speed]) in speeds.iter().zip(found) {
             answers.push(Answer::new(
-                format!("S = {excess}: v/c_S at {distance} blocks, against NumPy"),
+                format!("{place}S = {excess}: v/c_S at {distance} blocks, against NumPy"),
                 [reference, speed],
                 (
                     2.0 * STEP / 24.0 * C_S_SQUARE.sqrt() * reference * reference,

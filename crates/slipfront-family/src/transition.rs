@@ -6,7 +6,7 @@ use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
-use crate::rupture::{C_S_SQUARE, EdgeRupture, STEP};
+use crate::rupture::{C_S_SQUARE, Place, Rupture, STEP};
 
 /// Fall of strength per slip, for a cohesive zone of some 20 blocks: `mu*/W` with `mu* = 1.1`.
 const WEAKENING: f64 = 0.055;
@@ -28,7 +28,7 @@ struct Front {
 }
 
 impl Front {
-    fn of(simulation: &Simulation, rupture: &EdgeRupture) -> Self {
+    fn of(simulation: &Simulation, rupture: &Rupture) -> Self {
         let first = simulation.snapshot().first_slip_time_star();
         let (nx, from) = (rupture.blocks[0], rupture.half_patch() as usize + 5);
         let mut reached = first[nx / 2 + from..nx - 20].to_vec();
@@ -66,8 +66,9 @@ impl Front {
 }
 
 /// Runs a rupture until it has outrun shear waves, or is 40 L_c from the middle.
-fn run(strength_excess: f64) -> Result<(EdgeRupture, Front), FamilyError> {
-    let mut rupture = EdgeRupture {
+fn run(strength_excess: f64) -> Result<(Rupture, Front), FamilyError> {
+    let mut rupture = Rupture {
+        place: Place::Edge,
         blocks: [0, 0],
         weakening: WEAKENING,
         strength_excess,
@@ -95,7 +96,7 @@ fn run(strength_excess: f64) -> Result<(EdgeRupture, Front), FamilyError> {
 const EXCESSES: [f64; 3] = [0.5, 0.8, 1.2];
 
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let found: Vec<(EdgeRupture, Front)> = EXCESSES
+    let found: Vec<(Rupture, Front)> = EXCESSES
         .par_iter()
         .map(|&excess| run(excess))
         .collect::<Result<_, _>>()?;
