@@ -259,7 +259,16 @@ impl Model {
     pub fn loading_speed(&self) -> f64 {
         let per_contact = self.pull_through_rows();
         let stiffness = per_contact.unwrap_or_else(|| self.mount_stiffness() * self.driven_share());
-        self.drive.v_star * (stiffness / K_DRIVE)
+        self.drive.v_star * (stiffness * self.share_along_friction() / K_DRIVE)
+    }
+
+    /// Part of a pull along the drive that friction opposes: `|d_x|` of an upright sheet, along which it
+    /// acts, and else 1.
+    pub(crate) fn share_along_friction(&self) -> f64 {
+        match self.friction.interface() {
+            Some(_) => self.drive.direction[0].abs(),
+            None => 1.0,
+        }
     }
 
     /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in
@@ -335,7 +344,7 @@ impl Model {
             let kinetic = self
                 .friction
                 .steady_force(&self.surface, self.drive.steady_speed());
-            return kinetic + self.steady_drag(ranks);
+            return kinetic * self.share_along_friction() + self.steady_drag(ranks);
         };
         let force = |b: usize| {
             let relative = self.relative_radius(b);

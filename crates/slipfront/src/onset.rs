@@ -1,7 +1,7 @@
 //! Estimates of when the slider begins to slip.
 
 use crate::communicator::Communicator;
-use crate::lattice::{K_DIAGONAL, K_DRIVE, springs_on_a_lone_block};
+use crate::lattice::{Edges, K_DIAGONAL, K_DRIVE, springs_on_a_lone_block};
 use crate::model::{Model, ONSET_PATH};
 use crate::vector_field::length;
 
@@ -19,7 +19,8 @@ impl Model {
     /// f is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks passes to
     /// those that touch is known only for a drive on every block: any other drive has no `load_factor`, and
     /// pulls all blocks together. What a dead load bears, tau, the drive need not: it takes tau/k_2 off each
-    /// path.
+    /// path; adhesion adds its part of the threshold over k_2. Springs in contact take longer to load, by
+    /// (k_s + k_t)/k_t. Under a program it is the time at which the drive has gone the path.
     pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
         let together = ONSET_PATH * self.share_of_load();
@@ -32,7 +33,17 @@ impl Model {
             }
         };
         let [borne, _] = self.mean_dead_load();
-        [early, late].map(|path| (path - borne / K_DRIVE).max(0.0) / speed)
+        let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
+        let adhesion = self.surface.adhesion().of_static * in_contact;
+        let more = (adhesion - borne * self.share_along_friction()) / K_DRIVE;
+        let delay = self.friction.loading_delay(self.mount_stiffness());
+        [early, late].map(|path| {
+            let path = (path + more).max(0.0) * delay;
+            match self.drive.program {
+                None => path / speed,
+                Some(_) => self.drive.time_of_path(path * (self.drive.v_star / speed)),
+            }
+        })
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at
@@ -47,15 +58,23 @@ impl Model {
     /// the stiffness in series, which holds for slow loading: the sheets above swing about it. All `ranks` of
     /// a lattice must call this together.
     ///
-    /// It is not known of an upright sheet only some of whose blocks have a drive spring, which stretch it
-    /// before any slips.
+    /// It is not known where the slider is bent before any block slips: of springs in contact under drive
+    /// springs that differ, and of an upright sheet, unless its blocks are equal and its edges along x are
+    /// joined.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> Option<f64> {
         let through_rows = self.pull_through_rows();
-        if self.friction.interface().is_some() && through_rows.is_none() {
+        let is_joined = self.lattice.edges[0] == Edges::Periodic;
+        let bends = match self.friction.interface() {
+            Some(_) => through_rows.is_none() || (!is_joined && self.lattice.ny > 1),
+            None => self.friction.contact_stiffness() > 0.0 && self.slider.drive_springs.is_some(),
+        };
+        if bends {
             return None;
         }
         let k_drive = through_rows.unwrap_or_else(|| self.mount_stiffness());
         let v_star = self.drive.v_star;
+        // All springs in contact stretch alike, whatever the radius.
+        let delay = self.friction.loading_delay(k_drive);
         let pull =
             |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
         if self.drive.rotation.is_none() {
@@ -77,8 +96,8 @@ impl Model {
                 pull -= self.mean_dead_load()[0];
             }
             return Some(match self.drive.program {
-                None => pull / (k_drive * v_star),
-                Some(_) => self.drive.time_of_path(pull / k_drive),
+                None => delay * pull / (k_drive * v_star),
+                Some(_) => self.drive.time_of_path(delay * pull / k_drive),
             });
         }
         let path = |b: usize| {
@@ -93,7 +112,7 @@ impl Model {
         let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
         let mut negative = [-in_contact.map(path).fold(f64::INFINITY, f64::min)];
         ranks.largest(&mut negative);
-        Some(self.drive.time_of_path(-negative[0]))
+        Some(self.drive.time_of_path(-negative[0] * delay))
     }
 
     /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for

@@ -74,6 +74,17 @@ impl CaseFile {
                 "it would turn out of its substrate",
             ),
         ];
+        // Within a degree of y.
+        let [along, _] = slipfront::Drive::at_angle(0.0, self.drive.direction).direction;
+        if along.abs() < 0.0174 {
+            return check("drive").refuse("direction", |key| {
+                format!(
+                    "`{key}` is {}: a drive across an upright sheet (`friction.along` = \"x\") loads no friction, which acts along x; take a \
+                     direction at least 1 degree away from y",
+                    self.drive.direction
+                )
+            });
+        }
         let wrong = keys.iter().find(|(_, _, is_wrong, _)| *is_wrong);
         wrong.map_or(Ok(()), |(table, key, _, why)| {
             check(table).refuse(key, |path| {

@@ -1,12 +1,15 @@
 //! The textured blocks of a case.
 
 use crate::case::Case;
+use crate::case_file::FrictionAlong;
 
-/// Whether each block is textured: a block that does not exist has no contact either, but is no texture.
+/// Whether each block is textured: blocks that do not exist, or stand above the lowest row of an upright
+/// sheet, have no contact either, but are no texture.
 pub fn textured_blocks(case: &Case) -> Vec<bool> {
-    let (surface, slider) = (&case.model.surface, case.model.slider());
-    let blocks = surface.textured.iter().enumerate();
+    let (model, along) = (&case.model, case.file.friction.along);
+    let faces = |b: usize| along == FrictionAlong::Plane || b < model.lattice.nx;
+    let blocks = model.surface.textured.iter().enumerate();
     blocks
-        .map(|(b, textured)| *textured && slider.exists(b))
+        .map(|(b, textured)| *textured && faces(b) && model.slider().exists(b))
         .collect()
 }

@@ -614,3 +614,15 @@ fn the_smallest_lengths_are_told_of_every_shape() {
         );
     }
 }
+
+/// Only the lowest row of an upright sheet can be textured; the blocks above it are no texture.
+#[test]
+fn an_upright_sheet_has_its_texture_in_the_lowest_row() {
+    let text = "slider.blocks = [12, 5]\nfriction.along = 'x'\n\
+                texture = [{ shape = 'groove', width = '3 um', orientation = 'across' }]";
+    let case = Case::parse(text, "upright", "", &[]).unwrap();
+    let textured = textured_blocks(&case);
+    let in_groove: Vec<usize> = (0..60).filter(|&b| textured[b]).collect();
+    assert_eq!(in_groove, [4, 5, 6]);
+    assert!(case.texture.meshed_percent > 0.0);
+}

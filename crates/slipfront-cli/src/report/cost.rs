@@ -90,7 +90,7 @@ fn onset(case: &Case) -> String {
         )
     } else if expected.first_slip_star.is_none() {
         format!(
-            "onset expected    about {} if the sheet did not yield to the drive, else later{}\n",
+            "onset expected    about {}, if the slider did not bend under its drive{}\n",
             at(to),
             late(to)
         )

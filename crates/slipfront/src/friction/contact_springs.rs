@@ -241,7 +241,9 @@ impl SpringContact {
             let stiffness = self.stiffness(textured[k]);
             let pull = [stiffness * (ux[k] - ax[k]), stiffness * (uy[k] - ay[k])];
             let square = dot(pull, pull);
-            let yields = square > threshold[k] * threshold[k];
+            // A kinetic friction above the static threshold holds, too.
+            let limit = threshold[k].max(after_break[k]);
+            let yields = square > limit * limit;
             let after = after_break[k] / square.sqrt();
             let before = if slid & (slid_before[k] != 0.0) {
                 after

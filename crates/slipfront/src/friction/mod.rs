@@ -142,14 +142,14 @@ impl Friction {
     }
 
     /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this
-    /// threshold slips on a surface without texture. For springs in contact it is the pull that the whole
-    /// slider would need if they did not yield. Under rate and state no block slips at a moment; the pull is
-    /// that of steady sliding.
+    /// threshold slips on a surface without texture; springs in contact are loaded
+    /// [later](Self::loading_delay). Under rate and state no block slips at a moment; the pull is that of
+    /// steady sliding.
     pub(crate) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => law.first_slip_pull(surface, threshold, k, speed),
             Self::RateAndState(_) => self.steady_force(surface, speed),
-            Self::ContactSprings(law) => threshold * law.pull_over_rigid(k),
+            Self::ContactSprings(_) => threshold,
         }
     }
 

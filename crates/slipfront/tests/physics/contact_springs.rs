@@ -6,7 +6,8 @@ use slipfront::observe::{Curve, Scheduled};
 use slipfront::surface::Coefficients;
 use slipfront::surface::Load;
 use slipfront::{
-    AfterBreak, ContactSprings, DeadLoad, Drive, Friction, Lattice, Model, Stop, Surface, scales,
+    AfterBreak, ContactSprings, DeadLoad, Drive, Friction, FrictionLaw, Lattice, Model, Rotation, Stop,
+    Surface, scales,
 };
 use test_case::test_matrix;
 
@@ -195,6 +196,59 @@ fn a_slider_that_slides_pulls_with_its_kinetic_friction() {
     let found = curve.rows.last().unwrap().point.mu_star;
     assert!((found - level).abs() < 1e-9, "{found} {level}");
     assert_eq!(simulation.snapshot().totals.n_slipping, 400);
+}
+
+/// A kinetic friction above the static one is the force at which a spring yields (D12): it breaks where it
+/// then slides on, and no energy is lost with it.
+#[test]
+fn a_kinetic_friction_above_the_static_one_holds() {
+    let lattice = Lattice::free(1, 1);
+    let surface = Surface::uniform(&lattice, 1.0, 1.2);
+    let drive = Drive::along_x(2e-3);
+    let model = Model::new(lattice, surface, drive, 0.1, 0.0, SLIDING);
+    let expected = model.first_slip_estimate(&Alone).unwrap();
+    let delay = (K_DRIVE + SLIDING.stiffness) / SLIDING.stiffness;
+    assert!((expected / (delay * 1.2 / (K_DRIVE * 2e-3)) - 1.0).abs() < 1e-12);
+    let mut simulation = at_rest(&model, 0.1);
+    let mut curve = Curve::every(1);
+    let until = Stop::at_step((1.2 * expected / 0.1) as u64);
+    simulation
+        .run(until, &mut [Scheduled::always(&mut curve)])
+        .unwrap();
+    // It lags by the drag and swings by V/w at most.
+    let first = simulation.snapshot().earliest_first_slip().unwrap();
+    assert!(
+        (first - expected).abs() < delay * (0.1 + 1.0) / K_DRIVE,
+        "{first} {expected}"
+    );
+    let energies = curve.rows.last().unwrap().energies;
+    // The overshoot of a step, over which the extension grows by V dt at most.
+    assert!((0.0..1.2 * 2e-3 * 0.1).contains(&energies.broken_springs_loss));
+}
+
+/// Springs in contact delay first slip and onset by (k_s + k_t)/k_t, in a rotation at every radius; where the
+/// drive springs differ the slider is bent, and the first slip is not known.
+#[test]
+fn first_slip_and_onset_are_delayed_alike() {
+    let rigid = spread(0.1, SLIDING, 0.0, 0.01);
+    let delay = (K_DRIVE + SLIDING.stiffness) / SLIDING.stiffness;
+    let estimates = |model: &Model| (model.first_slip_estimate(&Alone), model.onset_estimate(None)[1]);
+    for turns in [false, true] {
+        let mut springs = rigid.clone();
+        if turns {
+            let rotation =
+                Rotation::about_centroid(&springs.lattice, &springs.rows, springs.slider(), &Alone);
+            springs.drive.rotation = Some(rotation);
+        }
+        let mut stiff = springs.clone();
+        stiff.friction = FrictionLaw::Projection.into();
+        let [(late, onset), (first, onset_of_stiff)] = [&springs, &stiff].map(estimates);
+        assert!((late.unwrap() / first.unwrap() / delay - 1.0).abs() < 1e-12);
+        assert!((onset / onset_of_stiff / delay - 1.0).abs() < 1e-12);
+    }
+    let mut slider = slipfront::Slider::default();
+    slider.attach(400, |b| b % 20 == 0, &Alone);
+    assert_eq!(rigid.with_slider(slider).first_slip_estimate(&Alone), None);
 }
 
 /// Springs hold a dead load below their thresholds where they are: no block moves.

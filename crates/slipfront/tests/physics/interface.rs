@@ -6,8 +6,8 @@ use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::surface::{Coefficients, Contact, Load};
 use slipfront::{
-    Coulomb, DeadLoad, Drive, Edges, Friction, FrictionLaw, Interface, Lattice, Model, Slider, State, Stop,
-    Surface,
+    Coulomb, DeadLoad, Drive, Edges, Friction, FrictionLaw, Interface, Lattice, Model, ONSET_PATH, Slider,
+    State, Stop, Surface,
 };
 use test_case::{test_case, test_matrix};
 
@@ -150,6 +150,13 @@ fn the_rows_above_pull_the_lowest(rows: usize, degrees: f64, dead_load: f64) {
         simulation.time_star()
     );
     assert!(!model.slips_at_once(0));
+    // Friction along x takes its part of a pull at an angle.
+    let along = model.drive.direction[0].abs();
+    let kinetic = model.steady_level(&Alone) - model.steady_drag(&Alone);
+    assert!((kinetic - 0.5 * along).abs() < 1e-12);
+    // Eq. 12 rounds 8/3 to 2.5.
+    let onset = model.onset_estimate(None)[1] * (8.0 / 3.0) / ONSET_PATH;
+    assert!(dead_load != 0.0 || (onset / estimate - 1.0).abs() < 1e-12);
 }
 
 /// Speed of a standing surface wave of `length` blocks at the lower edge, which touches without friction,

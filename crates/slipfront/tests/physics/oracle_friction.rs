@@ -105,7 +105,12 @@ impl World {
                 Friction::ContactSprings(law) => {
                     let pull = [0, 1].map(|axis| law.stiffness * (body.u[axis] - body.anchor[axis]));
                     let slid = law.slides() && body.slides;
-                    body.slides = norm(pull) > if slid { body.mu_k } else { body.mu_s };
+                    let most = if law.slides() {
+                        body.mu_s.max(body.mu_k)
+                    } else {
+                        body.mu_s
+                    };
+                    body.slides = norm(pull) > if slid { body.mu_k } else { most };
                     let left = if law.slides() { body.mu_k / norm(pull) } else { 0.0 };
                     let share = match (body.slides, slid) {
                         (false, _) => 1.0,

@@ -54,7 +54,7 @@ pub(crate) fn update(
     let stretch = difference(place, anchor);
     let pull = law.stiffness * length(stretch);
     let left = if law.slides() { slows } else { 0.0 };
-    let yields = pull > if slid { slows } else { holds };
+    let yields = pull > if slid { slows } else { holds.max(left) };
     let friction = match (yields, slid) {
         (false, _) => pull,
         (true, false) => 0.5 * (pull + left),

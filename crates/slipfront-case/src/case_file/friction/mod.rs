@@ -286,8 +286,8 @@ impl Friction {
 
     /// Lengths of friction that equal the length of a block because no key gives them.
     pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = LengthOfABlock> {
-        let falls_at_once =
-            self.has_kinetic_coefficient() && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
+        let is_rigid = self.has_static_coefficient() && self.contact == ContactModel::Rigid;
+        let falls_at_once = is_rigid && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
         let draws = self.spreads().iter().any(|(_, sigma_star)| *sigma_star > 0.0);
         let drawn_by_block = self.correlation_length.is_none() && draws;
         let slip = falls_at_once.then_some(LengthOfABlock {
