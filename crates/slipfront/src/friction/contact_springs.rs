@@ -168,9 +168,15 @@ impl SpringContact {
         slides: &[bool],
         threshold: &mut [f64],
     ) {
-        let any = |flags: &mut dyn Iterator<Item = bool>| flags.fold(false, |any, flag| any | flag);
+        let any_slides = slides[blocks.clone()]
+            .iter()
+            .fold(false, |any, slides| any | slides);
+        let any_slid = self.law.slides()
+            && self.breaks[blocks.clone()]
+                .iter()
+                .fold(false, |any, breaks| any | (*breaks != 0.0));
         // Most parts have none.
-        if !any(&mut blocks.clone().map(|b| slides[b] | self.slid(b))) {
+        if !(any_slides || any_slid) {
             return;
         }
         for b in blocks.clone() {
