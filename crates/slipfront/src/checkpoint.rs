@@ -159,6 +159,61 @@ impl Default for MotionBounds {
 }
 
 impl MotionBounds {
+    /// Number of numbers in which bounds are handed over.
+    pub(crate) const LEN: usize = 13;
+
+    /// The bounds as numbers, in the order of the fields: of a window its centre and the limit of its
+    /// differences.
+    pub(crate) fn to_numbers(self) -> [f64; Self::LEN] {
+        let [right, left, up, down] = self.extent;
+        let [along_x, along_y] = self.difference;
+        let [x, y] = self.windows;
+        let (growth, speed, spring_range) = (self.growth, self.speed, self.spring_range.limit());
+        let [x, y] = [x, y].map(|window| [window.centre(), window.differences().limit()]);
+        [
+            right,
+            left,
+            up,
+            down,
+            along_x,
+            along_y,
+            growth,
+            speed,
+            x[0],
+            x[1],
+            y[0],
+            y[1],
+            spring_range,
+        ]
+    }
+
+    /// The bounds that [`to_numbers`](Self::to_numbers) gave.
+    pub(crate) fn of_numbers(numbers: [f64; Self::LEN]) -> Self {
+        let [
+            right,
+            left,
+            up,
+            down,
+            along_x,
+            along_y,
+            growth,
+            speed,
+            x0,
+            x1,
+            y0,
+            y1,
+            spring_range,
+        ] = numbers;
+        Self {
+            extent: [right, left, up, down],
+            difference: [along_x, along_y],
+            growth,
+            speed,
+            windows: [Window::of([x0, x1]), Window::of([y0, y1])],
+            spring_range: FixedPoint::of_limit(spring_range),
+        }
+    }
+
     /// Lowest and highest displacement along an axis.
     pub(crate) fn range(&self, axis: usize) -> [f64; 2] {
         let [high, low] = [self.extent[2 * axis], -self.extent[2 * axis + 1]];

@@ -46,6 +46,11 @@ impl FixedPoint {
         self.limit
     }
 
+    /// Multiples of the quantum that belongs to this [limit](Self::limit).
+    pub(crate) fn of_limit(limit: f64) -> Self {
+        Self { limit }
+    }
+
     /// Shift of `1.5 2^52` quanta. A number added to it is rounded to a multiple of the quantum, and the bits
     /// of the sum are those of the shift plus the multiple.
     pub(crate) fn shift(self) -> f64 {
@@ -98,6 +103,14 @@ impl Window {
         Self {
             centre: ((low + high) / 2.0 / grid).round() * grid,
             differences,
+        }
+    }
+
+    /// The window with this [centre](Self::centre) and the limit of its [differences](Self::differences).
+    pub(crate) fn of([centre, limit]: [f64; 2]) -> Self {
+        Self {
+            centre,
+            differences: FixedPoint::of_limit(limit),
         }
     }
 

@@ -24,6 +24,7 @@
 
 pub mod checkpoint;
 pub mod communicator;
+pub mod device;
 pub mod exact_solutions;
 pub mod kernel;
 pub mod lattice;

@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::{Clock, Rest};
-use crate::communicator::{Communicator, lowest_rank};
+use crate::communicator::{Alone, Communicator, lowest_rank};
+use crate::device::DeviceLattice;
 use crate::error::RunError;
 use crate::friction::ContactTotals;
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
+use crate::kernel::replay::Replay;
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 use crate::observe::observer::Scheduled;
@@ -59,7 +61,35 @@ impl Simulation {
             "a displacement or velocity of the state to begin with is not finite"
         );
         let communicator = Arc::clone(&execution.communicator);
-        let mut engine = execution.begin(&model, dt_star, state);
+        let engine = execution.begin(&model, dt_star, state);
+        Self::begin(model, dt_star, engine, communicator)
+    }
+
+    /// A slider at t = 0 whose steps a [`Device`](crate::device::Device) computes: at least the first one was
+    /// recorded of the `lattice`. Each further step must be recorded before it is made, see
+    /// [`device_lattice`](Self::device_lattice). Numbers of single blocks, but for times of first slips, and
+    /// checkpoints can be had where the device has stopped.
+    ///
+    /// # Panics
+    /// If no step was recorded, or if its energies were not.
+    pub fn replay(model: impl Into<Arc<Model>>, lattice: DeviceLattice) -> Self {
+        let dt_star = lattice.equations.dt_star;
+        let engine = Box::new(Replay::new(lattice));
+        Self::begin(model.into(), dt_star, engine, Arc::new(Alone))
+    }
+
+    /// The lattice that a device takes through further steps, of a run that [replays](Self::replay) them.
+    pub fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {
+        self.engine.device_lattice()
+    }
+
+    /// Makes the first step.
+    fn begin(
+        model: Arc<Model>,
+        dt_star: f64,
+        mut engine: Box<dyn Engine>,
+        communicator: Arc<dyn Communicator>,
+    ) -> Self {
         let clock = Clock::start(dt_star);
         let totals = engine.step(&model, &clock, true);
         let mut simulation = Self {

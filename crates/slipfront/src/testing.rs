@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use crate::communicator::Communicator;
-pub use crate::kernel::fused::for_tests::FusedKernel;
+pub use crate::kernel::fused::for_tests::{FusedDevice, FusedKernel};
 
 /// Does some work in a process of its own, for what is measured of a whole process: the test program is begun
 /// once more for the test `name` alone, which calls this.

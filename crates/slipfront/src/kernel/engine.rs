@@ -3,6 +3,7 @@
 use super::block::{Block, Field};
 use crate::checkpoint::{BlockColumn, MotionBounds};
 use crate::clock::Clock;
+use crate::device::DeviceLattice;
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
@@ -77,4 +78,9 @@ pub(crate) trait Engine: Send + Sync {
     /// `column` counts from 0, and first the law's own
     /// [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
+
+    /// The lattice that a device computes, for the kernel that replays its steps.
+    fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {
+        None
+    }
 }

@@ -2,14 +2,17 @@
 //!
 //! `general/` computes every option, one pass over the blocks per equation; `fused/` computes the common ones
 //! in one fast sweep. The [`Simulation`](crate::Simulation) steps the one that its [`Execution`] names,
-//! through the functions of `engine.rs`.
+//! through the functions of `engine.rs`, or `replay.rs` for steps that a [`Device`](crate::device::Device)
+//! has computed.
 
 mod bands;
 pub(crate) mod block;
+mod device_lattice;
 pub(crate) mod engine;
 pub(crate) mod execution;
 pub(crate) mod fused;
 mod general;
+pub(crate) mod replay;
 mod vectors;
 
 pub use block::Block;

@@ -96,6 +96,7 @@ mod general_divided;
 mod handed_over;
 mod kymograph;
 mod ranks;
+mod replay;
 mod rest_and_widths;
 mod sliders;
 mod small_velocities;

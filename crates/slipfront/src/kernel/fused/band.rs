@@ -22,6 +22,7 @@ use super::thresholds::Thresholds;
 use super::upper_sheet::UpperSheet;
 use super::variations::{Variation, Variations, present};
 use super::vector::{Chunks, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
+use crate::device::NEVER;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -139,9 +140,6 @@ pub(super) struct Band {
     /// Elements from a row to the next.
     pub(super) stride: usize,
 }
-
-/// Marks a block that has not slipped, in place of the step of its first slip.
-pub(super) const NEVER: u32 = u32::MAX;
 
 /// Number of elements before and after a band of which it keeps the displacements.
 pub(super) fn halo(layout: &Layout) -> usize {

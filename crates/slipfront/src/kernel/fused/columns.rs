@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use super::band::{Band, NEVER};
+use super::band::Band;
 use super::layout::{Layout, TILE};
 use super::vector::LANES;
 use crate::checkpoint::BlockColumn;
+use crate::device::NEVER;
 
 impl Band {
     /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong

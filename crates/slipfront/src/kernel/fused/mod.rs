@@ -49,19 +49,21 @@ use std::sync::atomic::AtomicU32;
 use fearless_simd::{Level, dispatch};
 
 use self::aligned::Vectors;
-use self::band::{Band, NEVER};
+use self::band::Band;
 use self::blocks::Sums;
 use self::layout::{Layout, TILE};
 use self::neighbours::Neighbours;
 use self::quanta::Quanta;
 use self::schedule::SweepConditions;
+pub(crate) use self::springs::SeriesNumbers;
 use self::springs::{Differing, Series, SquareRoot};
 use self::step::Step;
-use self::variations::{LargestFactors, blocks_differ};
+pub(crate) use self::variations::{LargestFactors, blocks_differ};
 use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::clock::Clock;
-use crate::communicator::Communicator;
+use crate::communicator::{Alone, Communicator};
+use crate::device::NEVER;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::Integrator;
 use crate::kernel::bands::for_each_band;
@@ -196,6 +198,17 @@ impl Fused {
         kernel
     }
 
+    /// Bounds and the sum of velocities with which a run of a whole lattice begins, in a given state or at
+    /// rest.
+    pub(crate) fn begun(model: &Model, dt_star: f64, state: Option<&State>) -> (MotionBounds, [f64; 2]) {
+        let Some(state) = state else {
+            return (MotionBounds::default(), [0.0; 2]);
+        };
+        let mut kernel = Self::new(model, dt_star, Some(state), 1, false, Arc::new(Alone));
+        kernel.begin(model);
+        (kernel.motion_bounds, kernel.totals.velocity_after)
+    }
+
     /// Number of sheets, the lowest included.
     fn n_sheets(&self) -> usize {
         self.bands.first().map_or(1, |band| 1 + band.upper.len())
@@ -216,9 +229,7 @@ impl Fused {
         let mut kernel = Self::new(model, dt_star, None, threads, skips, communicator);
         BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
             read(column as usize, first, values)?;
-            for band in &mut kernel.bands {
-                band.set_column(&kernel.layout, dt_star, column, first, values);
-            }
+            kernel.set_column(column, first, values);
             Ok(())
         })?;
         for column in 0..model.n_memory_columns() {
@@ -233,18 +244,30 @@ impl Fused {
                 Ok(())
             })?;
         }
-        for band in &mut kernel.bands {
-            band.resume();
-        }
-        kernel.copy_ghosts(true);
-        kernel.fill_halos(0.0, true);
         Ok(Self {
             totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
             swept_step: Some(checkpoint.step),
             motion_bounds: checkpoint.motion_bounds.unwrap_or_default(),
-            ..kernel
+            ..kernel.resumed()
         })
+    }
+
+    /// Takes over a column of the blocks from `first` on.
+    pub(crate) fn set_column(&mut self, column: BlockColumn, first: usize, values: &[f64]) {
+        for band in &mut self.bands {
+            band.set_column(&self.layout, self.dt_star, column, first, values);
+        }
+    }
+
+    /// The kernel with what follows from the columns that it has taken over.
+    pub(crate) fn resumed(mut self) -> Self {
+        for band in &mut self.bands {
+            band.resume();
+        }
+        self.copy_ghosts(true);
+        self.fill_halos(0.0, true);
+        self
     }
 
     /// Chooses the formula for springs in a step by the bound on all strains; returns it, and whether sums

@@ -85,6 +85,27 @@ pub(super) struct Series<const DEGREE: usize> {
     pub(super) stiffness: SpringStiffness,
 }
 
+/// The numbers of the series, for a processor that computes them by itself.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeriesNumbers {
+    /// Coefficients of the long series for straight and for diagonal springs; the short series has the first
+    /// four of them.
+    pub(crate) coefficients: [[f64; 8]; 2],
+    /// Largest strains for the short and for the long series.
+    pub(crate) strain_limits: [f64; 2],
+}
+
+impl SeriesNumbers {
+    /// The numbers for springs of this stiffness.
+    pub(crate) fn new(epsilon: f64, stiffness: SpringStiffness) -> Self {
+        let long = Series::<7> { epsilon, stiffness };
+        Self {
+            coefficients: [Bond::EAST, Bond::NORTH_EAST].map(|bond| long.coefficients(&bond)),
+            strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
+        }
+    }
+}
+
 /// Coefficients of g: `(-1)^m (2m + 2)!/((m + 1)!^2 4^(m + 1))`.
 const G: [f64; 8] = [
     1.0 / 2.0,

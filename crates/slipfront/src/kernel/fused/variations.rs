@@ -57,7 +57,7 @@ impl<'a> Variation<'a> {
 }
 
 /// Whether the blocks of a model need [`Variations`].
-pub(super) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
+pub(crate) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
     let slider = &model.slider;
     // Drive springs of 1 on every block that exists are those of a plain slider.
     let drive_springs_differ = slider
@@ -74,7 +74,7 @@ pub(super) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
 
 /// Largest factors of any block of the lattice.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LargestFactors {
+pub(crate) struct LargestFactors {
     /// Largest Young's modulus, and so the largest factor of a spring between blocks.
     pub(super) modulus: f64,
     pub(super) drive_spring: f64,
@@ -99,7 +99,7 @@ pub(super) struct LargestFactors {
 
 impl LargestFactors {
     /// Largest factors of all blocks of this rank and of the others, which call this together.
-    pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
+    pub(crate) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
         let slider = &model.slider;
         let largest = |differs: bool, value: &dyn Fn(usize) -> f64| {
             if differs {

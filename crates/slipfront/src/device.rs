@@ -1,0 +1,196 @@
+//! Plain lattices whose steps a device beside this processor computes, such as a GPU, with the bits of the
+//! fused kernel.
+//!
+//! A [`Device`] takes many lattices at once through some steps and records the totals of each step. A
+//! [`Simulation`](crate::Simulation) that [replays](crate::Simulation::replay) them measures peaks, instants
+//! and means by the code that measures every run.
+
+use std::collections::VecDeque;
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::checkpoint::MotionBounds;
+use crate::drive::Drive;
+use crate::state::State;
+use crate::totals::{StoredEnergy, Totals};
+
+/// First-slip step of a block that has not slipped in contact.
+pub const NEVER: u32 = u32::MAX;
+
+/// Computes the steps of lattices.
+pub trait Device: fmt::Debug + Send + Sync {
+    /// Takes each of the lattices through `steps` steps, whose records it adds to those of the lattice.
+    ///
+    /// # Errors
+    /// When the device fails. The lattices can then not go on.
+    fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError>;
+}
+
+/// Failure of a device, as a sentence.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{0}")]
+pub struct DeviceError(pub String);
+
+/// Why a model is computed on the CPU alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{0} computed on the CPU alone")]
+pub struct CpuOnly(pub(crate) &'static str);
+
+/// Numbers that all blocks and steps of a plain lattice share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Equations {
+    /// Time step `dt*`.
+    pub dt_star: f64,
+    /// Stiffness of the drive springs.
+    pub k_drive: f64,
+    /// Dead load on every block.
+    pub dead_load: [f64; 2],
+    /// The load's strain `eps`.
+    pub epsilon: f64,
+    /// Factor by which damping reduces a velocity in a step.
+    pub velocity_decay: f64,
+    /// Change of velocity per force.
+    pub force_to_velocity: f64,
+    /// Force per change of velocity.
+    pub velocity_to_force: f64,
+    /// Stiffness of straight and of diagonal springs between blocks.
+    pub stiffness: [f64; 2],
+    /// Coefficients of the series for the forces of straight and of diagonal springs. The short series has
+    /// the first four of them.
+    pub series: [[f64; 8]; 2],
+    /// Largest strains for the short and for the long series; springs that stretch more take a square root.
+    pub strain_limits: [f64; 2],
+    /// Number of blocks.
+    pub n_blocks: f64,
+}
+
+/// Numbers of a lattice that change from step to step, beside those of its blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Motion {
+    /// Largest u_x, -u_x, u_y, -u_y when displacements were last measured, largest differences of u_x and
+    /// u_y between the ends of a spring, distance by which displacements may have moved apart since, highest
+    /// speed, centre and limit of the windows for u_x and for u_y, limit of the stretch of springs.
+    pub bounds: [f64; MotionBounds::LEN],
+    /// Sum of the velocities half a step after the latest step.
+    pub velocity_after: [f64; 2],
+    /// Largest square of a contact stress so far.
+    pub stress_square_max: f64,
+}
+
+/// Totals of a step, which a device records.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct StepRecord {
+    /// Sum of displacements at t_n.
+    pub displacement: [f64; 2],
+    /// Sum of velocities at `t_n + dt/2`.
+    pub velocity_after: [f64; 2],
+    /// Sum of squares of velocities at t_n.
+    pub velocity_square: f64,
+    /// Power of friction at t_n.
+    pub friction_power: f64,
+    /// Largest square of a contact stress up to this step.
+    pub stress_square_max: f64,
+    /// Blocks that slide, and those of them that are in contact.
+    pub n_sliding: [u32; 2],
+    /// Kinetic energy, energy of the springs between blocks and of the drive springs, at the steps for which
+    /// they are [wanted](EnergySteps).
+    pub stored: [f64; 3],
+}
+
+/// Steps at which energies are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EnergySteps {
+    /// Steps whose numbers are multiples of this.
+    pub every: u64,
+    /// Number of one more step.
+    pub last: u64,
+}
+
+/// A lattice on its way through the steps, as a device takes it.
+#[derive(Clone, Debug)]
+pub struct DeviceLattice {
+    /// Blocks along x and y.
+    pub blocks: [usize; 2],
+    /// Numbers that all blocks and steps share.
+    pub equations: Equations,
+    /// Steps at which energies are found.
+    pub energies: EnergySteps,
+    /// Squares of the static thresholds `mu_s F_n` of the blocks, row by row.
+    pub static_limit_squares: Vec<f64>,
+    /// Change of velocity by kinetic friction in a step, `q = dt mu_k F_n/c+`, of the blocks.
+    pub kinetic_impulses: Vec<f64>,
+    /// [Flags](flag) of the blocks.
+    pub flags: Vec<u16>,
+    /// Number of steps done: the next one has this number.
+    pub steps_done: u64,
+    /// Numbers of the lattice after the latest step, or at the start.
+    pub motion: Motion,
+    /// Displacements at the latest step, velocities half a step later.
+    pub state: State,
+    /// Step at which each block first slipped in contact, or [`NEVER`].
+    pub first_slips: Vec<u32>,
+    /// Records of the latest steps, without those that have been replayed.
+    pub records: VecDeque<StepRecord>,
+    /// Sum of velocities half a step before t = 0.
+    pub(crate) velocity_at_start: [f64; 2],
+    pub(crate) drive: Drive,
+}
+
+/// Flags of a block. The springs of a block are numbered east, north, north-east, north-west, west, south,
+/// south-west, south-east; a flag is set for each that exists.
+pub mod flag {
+    /// Number of springs, whose flags are the lowest bits.
+    pub const SPRINGS: u32 = 8;
+    /// The block exists.
+    pub const EXISTS: u16 = 1 << 8;
+    /// The block is in contact with the substrate.
+    pub const IN_CONTACT: u16 = 1 << 9;
+    /// The block is in the first column.
+    pub const FIRST_COLUMN: u16 = 1 << 10;
+    /// The block is in the last column.
+    pub const LAST_COLUMN: u16 = 1 << 11;
+    /// The block is in the first row.
+    pub const FIRST_ROW: u16 = 1 << 12;
+    /// The block is in the last row.
+    pub const LAST_ROW: u16 = 1 << 13;
+}
+
+impl DeviceLattice {
+    /// Displacements of the driven ends of the drive springs at the next steps.
+    pub fn drive_positions(&self, steps: u32) -> impl Iterator<Item = [f64; 2]> {
+        (self.steps_done..self.steps_done + u64::from(steps))
+            .map(|step| self.drive.position(step as f64 * self.equations.dt_star))
+    }
+
+    /// Whether energies are found at a step.
+    pub fn needs_energies(&self, step: u64) -> bool {
+        step.is_multiple_of(self.energies.every) || step == self.energies.last
+    }
+}
+
+impl StepRecord {
+    /// The totals of the step, after one with this sum of velocities.
+    pub(crate) fn totals(&self, velocity_before: [f64; 2], energies: bool) -> Totals {
+        let [before, after] = [velocity_before, self.velocity_after];
+        let [kinetic, lattice, drive_springs] = self.stored;
+        Totals {
+            displacement: self.displacement,
+            velocity: [0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])],
+            velocity_after: after,
+            velocity_square: self.velocity_square,
+            friction_power: self.friction_power,
+            n_sliding: self.n_sliding[0] as usize,
+            n_slipping: self.n_sliding[1] as usize,
+            stored_energy: energies.then_some(StoredEnergy {
+                kinetic,
+                lattice,
+                drive_springs,
+                between_sheets: 0.0,
+            }),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! A run whose steps a device has recorded is the run of the fused kernel, to the last bit.
+
+use slipfront::communicator::Alone;
+use slipfront::device::{Device, DeviceLattice, EnergySteps};
+use slipfront::observe::{Curve, Field, Scheduled};
+use slipfront::surface::{Load, Texture};
+use slipfront::testing::FusedDevice;
+use slipfront::{
+    Ageing, Coulomb, Edges, Execution, Friction, Interface, Loading, Model, Rotation, Sheet, Simulation,
+    State, Stop,
+};
+use test_case::test_matrix;
+
+use crate::common::{Slider, cavity, thrown, varied};
+use crate::executions::{shown, state};
+use crate::fields::assert_fields_match_blocks;
+use crate::{bits, columns, fused, go};
+
+const EVERY: EnergySteps = EnergySteps { every: 1, last: 0 };
+
+fn lattice(model: &Model, dt_star: f64, from: Option<&State>) -> DeviceLattice {
+    DeviceLattice::new(model, dt_star, from, EVERY).unwrap()
+}
+
+/// Takes a lattice through some steps.
+fn record(device: &FusedDevice, lattice: &mut DeviceLattice, steps: u32) {
+    device.run(&mut [lattice], steps).unwrap();
+}
+
+/// Recorded in parts of so many steps; a number of steps of 16 is that between two measurements.
+#[test_matrix(
+    [Edges::Free, Edges::Periodic],
+    [None, Some(cavity([17, 12], 10.0, 1, 0.3, true))],
+    [1e-6, 5e-3],
+    [1, 16, 35]
+)]
+fn a_replay_has_the_same_bits(edges: Edges, texture: Option<Texture>, epsilon: f64, part: u32) {
+    let slider = Slider {
+        blocks: [17, 12],
+        edges: [edges, Edges::Free],
+        textures: texture.into_iter().collect(),
+        epsilon,
+        degrees: 25.0,
+        v_star: 0.1,
+        dt_star: 0.2,
+        load: Load::Kept,
+        dead_load: ([0.02, -0.03], false),
+        ..Slider::default()
+    };
+    for from in [None, Some(thrown(17 * 12, 0.1, 40))] {
+        let (model, dt_star) = (slider.model(), slider.dt_star);
+        let device = FusedDevice {
+            models: vec![model.clone()],
+        };
+        let mut begun = lattice(&model, dt_star, from.as_ref());
+        record(&device, &mut begun, 1);
+        let mut replayed = Simulation::replay(model.clone(), begun);
+        let mut direct = Simulation::new(model.clone(), dt_star, from.clone(), fused());
+        assert_eq!(shown(&replayed), shown(&direct));
+        for step in 1..=slider.steps(4.0) {
+            if (step - 1).is_multiple_of(u64::from(part)) {
+                record(&device, replayed.device_lattice().unwrap(), part);
+            }
+            go(&mut direct, step % 5 == 0);
+            go(&mut replayed, step % 5 == 0);
+            assert_eq!(shown(&replayed), shown(&direct), "step {step}");
+            let first_slips = [&direct, &replayed].map(|run| bits(&run.snapshot().first_slip_time_star()));
+            assert_eq!(first_slips[0], first_slips[1], "step {step}");
+            if step.is_multiple_of(u64::from(part)) && step.is_multiple_of(7) {
+                assert_eq!(state(&replayed), state(&direct), "step {step}");
+                assert_fields_match_blocks(&replayed);
+                let [one, other] =
+                    [&direct, &replayed].map(|run| postcard::to_stdvec(&run.checkpoint()).unwrap());
+                assert_eq!(one, other, "step {step}");
+                let [one, other] = [&direct, &replayed].map(columns);
+                let bits_of =
+                    |columns: Vec<Vec<f64>>| columns.iter().map(|column| bits(column)).collect::<Vec<_>>();
+                assert_eq!(bits_of(one), bits_of(other), "step {step}");
+            }
+        }
+    }
+}
+
+/// Several lattices at once, of different shapes, up to their onsets, which come at different steps: the
+/// device goes beyond some of them.
+#[test]
+fn several_lattices_stop_each_at_its_onset() {
+    let sliders: Vec<_> = (1..6_u64)
+        .map(|seed| Slider {
+            blocks: [9 + seed as usize, 8],
+            v_star: 0.1,
+            seed,
+            ..Slider::default()
+        })
+        .collect();
+    let models: Vec<_> = sliders.iter().map(Slider::model).collect();
+    let device = FusedDevice {
+        models: models.clone(),
+    };
+    let stop = Stop::after_onset(sliders[0].steps(8.0));
+    let mut lattices: Vec<_> = models.iter().map(|model| lattice(model, 0.1, None)).collect();
+    let mut all: Vec<_> = lattices.iter_mut().collect();
+    device.run(&mut all, 500).unwrap();
+    let mut onsets = Vec::new();
+    for (model, lattice) in models.into_iter().zip(lattices) {
+        let (mut curve, mut directly) = (Curve::every(40), Curve::every(40));
+        let mut replayed = Simulation::replay(model.clone(), lattice);
+        let mut direct = Simulation::new(model, 0.1, None, Execution::default());
+        replayed.run(stop, &mut [Scheduled::always(&mut curve)]).unwrap();
+        direct.run(stop, &mut [Scheduled::always(&mut directly)]).unwrap();
+        assert_eq!(curve.rows, directly.rows);
+        assert_eq!(shown(&replayed), shown(&direct));
+        onsets.push(replayed.snapshot().step);
+        let first_slips = [direct, replayed].map(|run| bits(&run.into_first_slip_time_star()));
+        assert_eq!(first_slips[0], first_slips[1]);
+    }
+    onsets.dedup();
+    assert!(
+        onsets.len() > 1 && onsets.iter().all(|step| *step < 499),
+        "{onsets:?}"
+    );
+}
+
+#[test]
+#[should_panic(expected = "where the device has stopped, and not at step 3")]
+fn blocks_are_known_where_the_device_has_stopped() {
+    let model = Slider::default().model();
+    let device = FusedDevice {
+        models: vec![model.clone()],
+    };
+    let mut lattice = lattice(&model, 0.1, None);
+    record(&device, &mut lattice, 8);
+    let mut replayed = Simulation::replay(model, lattice);
+    for _ in 0..3 {
+        replayed.step();
+    }
+    let mut values = vec![0.0; 625];
+    replayed.snapshot().read_field(Field::DisplacementX, &mut values);
+}
+
+#[test]
+#[should_panic(expected = "step 2 was not recorded")]
+fn a_replay_ends_with_what_is_recorded() {
+    let model = Slider::default().model();
+    let device = FusedDevice {
+        models: vec![model.clone()],
+    };
+    let mut lattice = lattice(&model, 0.1, None);
+    record(&device, &mut lattice, 2);
+    let mut replayed = Simulation::replay(model, lattice);
+    replayed.step();
+    replayed.step();
+}
+
+/// Models with anything that the equations of a device lack are refused.
+#[test]
+fn models_that_are_not_plain_are_refused() {
+    let plain = || Slider {
+        blocks: [8, 6],
+        ..Slider::default()
+    };
+    let (n, springs) = (48, plain().model().springs());
+    let mut turning = plain().model();
+    turning.drive.rotation = Some(Rotation::about_centroid(
+        &turning.lattice,
+        &turning.rows,
+        turning.slider(),
+        &Alone,
+    ));
+    let ageing = Friction::Coulomb(Coulomb {
+        ageing: Some(Ageing {
+            beta: 0.02,
+            time: 1.0,
+        }),
+        ..plain().law.into()
+    });
+    let mut aged = plain().model();
+    aged.friction = ageing;
+    let cases = [
+        (
+            plain().model().with_sheets(
+                vec![Sheet {
+                    thickness: 1.0,
+                    coupling: 1.0,
+                }],
+                springs,
+            ),
+            "a stack of sheets is",
+        ),
+        (
+            Slider {
+                interface: Some(Interface { foundation: 0.0 }),
+                ..plain()
+            }
+            .model(),
+            "an upright sheet is",
+        ),
+        (aged, "friction other than Coulomb's"),
+        (turning, "a drive that rotates is"),
+        (
+            Slider {
+                loading: Loading::Held { onset_steps: 9 },
+                ..plain()
+            }
+            .model(),
+            "a drive that is held is",
+        ),
+        (
+            Slider {
+                body: varied(n, false),
+                ..plain()
+            }
+            .model(),
+            "sliders whose blocks",
+        ),
+    ];
+    for (model, what) in cases {
+        let refused = DeviceLattice::new(&model, 0.1, None, EVERY)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            refused.starts_with(what) && refused.ends_with("computed on the CPU alone"),
+            "{refused}"
+        );
+    }
+}
