@@ -1,0 +1,19 @@
+//! Compiles the kernels for the CPU, for the feature `emulated`.
+
+fn main() {
+    println!("cargo::rerun-if-changed=kernels");
+    #[cfg(feature = "emulated")]
+    cc::Build::new()
+        .cpp(true)
+        .std("c++20")
+        .file("kernels/emulated.cpp")
+        // A product and a sum are two operations with two roundings, as everywhere in slipfront.
+        .flag("-ffp-contract=off")
+        // A behaviour that the standard leaves open ends the test.
+        .flag("-fsanitize=undefined")
+        .flag("-fsanitize-undefined-trap-on-error")
+        .flag("-Wno-unknown-pragmas")
+        .warnings_into_errors(true)
+        .opt_level(2)
+        .compile("slipfront_kernels");
+}

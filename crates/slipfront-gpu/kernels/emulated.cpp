@@ -1,0 +1,13 @@
+// The kernels on emulated groups of threads, one lattice after the other.
+#define EMULATED
+#include "small_lattices.h"
+
+extern "C" void slipfront_run_emulated(Lattice* lattices, size_t count, int threads) {
+    for (size_t k = 0; k < count; k++) {
+        std::vector<double> memory((lattices[k].n * BYTES_PER_BLOCK + 7) / 8);
+        auto shared = std::make_unique<Shared>();
+        emulated::run(threads, [&] { run_lattice(lattices[k], memory.data(), *shared); });
+    }
+}
+
+extern "C" size_t slipfront_lattice_bytes() { return sizeof(Lattice); }

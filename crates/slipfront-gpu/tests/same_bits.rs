@@ -1,0 +1,174 @@
+//! The kernels for a GPU have the bits of the fused kernel: every number of every step, of the state and of
+//! the bounds that a checkpoint keeps, for random plain models.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use slipfront::communicator::Alone;
+use slipfront::device::{Device, DeviceLattice, EnergySteps};
+use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load};
+use slipfront::testing::FusedDevice;
+use slipfront::{
+    DeadLoad, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Outline, Program, Simulation, Slider,
+    State, Stop, Surface, VectorField,
+};
+use slipfront_gpu::Emulated;
+
+/// A number as its bits, by which NaN equals itself.
+fn bits(numbers: &[f64]) -> Vec<u64> {
+    numbers.iter().map(|x| x.to_bits()).collect()
+}
+
+/// Everything that a device leaves of a lattice.
+fn left(lattice: &DeviceLattice) -> (Vec<Vec<u64>>, Vec<u32>) {
+    let State {
+        displacement: u,
+        velocity: v,
+    } = &lattice.state;
+    let motion = &lattice.motion;
+    let mut numbers = [&u.x, &u.y, &v.x, &v.y].map(|field| bits(field)).to_vec();
+    numbers.push(bits(&motion.bounds));
+    numbers.push(bits(&motion.velocity_after));
+    numbers.push(bits(&[motion.stress_square_max]));
+    (numbers, lattice.first_slips.clone())
+}
+
+fn assert_same(emulated: &mut DeviceLattice, fused: &mut DeviceLattice) {
+    for (k, (one, other)) in emulated
+        .records
+        .drain(..)
+        .zip(fused.records.drain(..))
+        .enumerate()
+    {
+        assert_eq!(format!("{one:?}"), format!("{other:?}"), "record {k}");
+        assert_eq!(bits(&one.stored), bits(&other.stored), "record {k}");
+    }
+    assert_eq!(left(emulated), left(fused));
+}
+
+/// Takes a model on both devices through steps, in two parts.
+fn compare(model: &Model, dt_star: f64, from: Option<&State>, [threads, first, second, every]: [u32; 4]) {
+    let energies = EnergySteps {
+        every: u64::from(every),
+        last: u64::from(first + second - 1),
+    };
+    let device = FusedDevice {
+        models: vec![model.clone()],
+    };
+    let mut fused = DeviceLattice::new(model, dt_star, from, energies).unwrap();
+    let mut emulated = fused.clone();
+    for steps in [first, second] {
+        device.run(&mut [&mut fused], steps).unwrap();
+        Emulated { threads }.run(&mut [&mut emulated], steps).unwrap();
+        assert_same(&mut emulated, &mut fused);
+    }
+}
+
+fn edges() -> impl Strategy<Value = Edges> {
+    prop_oneof![Just(Edges::Free), Just(Edges::Periodic)]
+}
+
+prop_compose! {
+    /// A plain model, its time step, and a state to begin with.
+    fn models()(
+        (nx, ny) in (3_usize..24, 3_usize..20),
+        edges in (edges(), edges()),
+        (degrees, speed) in (prop_oneof![Just(0.0), -180.0..180.0], prop_oneof![Just(0.1), 0.01..2.0]),
+        goes_back in any::<bool>(),
+        // Strains need the short series, the long one, or the square root.
+        epsilon in prop_oneof![Just(0.0), Just(1e-6), 1e-5..1e-2, 1e-2..0.3],
+        (damping, k_drive) in (0.0..2.0, 0.01..1.0),
+        (r_star, deviation, seed) in (0.0..1.2, 0.0..0.3, any::<u64>()),
+        (texture, hole) in (prop::option::of(2_usize..7), prop::option::of(2_usize..5)),
+        (load, adhesion) in (prop_oneof![Just(Load::Redistributed), Just(Load::Kept)], 0.0..0.5),
+        dead_load in prop_oneof![Just([0.0; 2]), (-0.3..0.3, -0.3..0.3).prop_map(|(x, y)| [x, y])],
+        ratio in prop_oneof![Just(3.0), 1.5..6.0],
+        thrown in prop::option::of(0.001..2.0),
+        dt_star in 0.05..0.3,
+    ) -> (Model, f64, Option<State>) {
+        let lattice = Lattice::with_edges(nx, ny, [edges.0, edges.1]);
+        let n = lattice.n_blocks();
+        let gauss = |mean: f64| Distribution { mean, deviation: deviation * mean };
+        let coefficients = Coefficients::draw_blocks(0..n, gauss(1.0), gauss(r_star), seed);
+        let textured = (0..n).map(|b| texture.is_some_and(|each| b % each == 0)).collect();
+        let exists: Vec<bool> = (0..n).map(|b| hole.is_none_or(|hole| lattice.column_row(b).0.max(lattice.column_row(b).1) >= hole)).collect();
+        let is_whole = exists.iter().all(|exists| *exists);
+        let outline = (!is_whole && exists.contains(&true)).then(|| Outline::new(exists, &Alone));
+        let slider = Slider::new(None, None, outline, &Alone);
+        let contact = Contact {
+            adhesion: Adhesion { of_static: adhesion, of_kinetic: 0.5 * adhesion },
+            ..Contact::new(load, 1.0)
+        };
+        let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone).unwrap();
+        let program = goes_back.then(|| Arc::new(Program::new([(speed, 3.0), (-speed, 5.0), (speed, f64::INFINITY)])));
+        let drive = Drive { program, k_drive, ..Drive::at_angle(speed, degrees) };
+        let model = Model::new(lattice, surface, drive, damping, epsilon, FrictionLaw::Projection)
+            .with_sheets(Vec::new(), slipfront::lattice::SpringStiffness::with_ratio(ratio))
+            .with_slider(slider.clone())
+            .with_dead_load(DeadLoad::uniform(dead_load));
+        let wave = |k: f64, apart: usize, size: f64| -> Vec<f64> {
+            let one = |b: usize| if slider.exists(b) && b.is_multiple_of(apart) { size * (k * b as f64 + 1.0).sin() } else { 0.0 };
+            (0..n).map(one).collect()
+        };
+        let state = thrown.map(|size| State {
+            displacement: VectorField { x: wave(1.7, 1, size), y: wave(2.9, 1, size) },
+            velocity: VectorField { x: wave(0.7, 4, 0.1 * size), y: wave(1.3, 4, 0.1 * size) },
+        });
+        (model, dt_star, state)
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_plain_models(
+        (model, dt_star, state) in models(),
+        threads in prop_oneof![Just(32_u32), Just(64), Just(128)],
+        (first, second) in (1..40_u32, 1..60_u32),
+        every in 1..9_u32,
+    ) {
+        let mut simulation = Simulation::new(model.clone(), dt_star, state.clone(), Execution::default());
+        prop_assume!(simulation.run(Stop::at_step(u64::from(first + second)), &mut []).is_ok(), "diverges");
+        compare(&model, dt_star, state.as_ref(), [threads, first, second, every]);
+    }
+}
+
+/// The baseline of the paper through its onset.
+#[test]
+fn the_baseline_slips() {
+    let lattice = Lattice::free(25, 25);
+    let gauss = |mean: f64| Distribution {
+        mean,
+        deviation: 0.05 * mean,
+    };
+    let coefficients = Coefficients::draw_blocks(0..625, gauss(1.0), gauss(0.5), 1);
+    let textured = (0..625)
+        .map(|b| b % 25 > 9 && b % 25 < 15 && b / 25 > 9 && b / 25 < 15)
+        .collect();
+    let surface = Surface::of_ranks(
+        coefficients,
+        textured,
+        Contact::new(Load::Redistributed, 1.0),
+        &Slider::default(),
+        &Alone,
+    )
+    .unwrap();
+    let model = Model::new(
+        lattice,
+        surface,
+        Drive::along_x(0.1),
+        0.1 * 0.75_f64.sqrt(),
+        1e-6,
+        FrictionLaw::Projection,
+    );
+    compare(&model, 0.2, None, [128, 100, 60, 7]);
+    let mut lattice = DeviceLattice::new(&model, 0.2, None, EnergySteps { every: 1, last: 0 }).unwrap();
+    Emulated { threads: 128 }.run(&mut [&mut lattice], 160).unwrap();
+    assert!(
+        lattice.records.iter().any(|record| record.n_sliding[1] > 500),
+        "the slider slips"
+    );
+}
