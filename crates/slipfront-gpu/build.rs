@@ -1,7 +1,14 @@
-//! Compiles the kernels for the CPU, for the feature `emulated`.
+//! Compiles the kernels for the CPU, for the feature `emulated`, and finds those for a GPU, for `cuda`.
 
 fn main() {
     println!("cargo::rerun-if-changed=kernels");
+    #[cfg(feature = "cuda")]
+    {
+        let out = std::env::var("OUT_DIR").expect("cargo sets OUT_DIR");
+        // Where the script has not made it, the program asks NVRTC.
+        let ptx = std::fs::read("kernels/kernels.ptx").unwrap_or_default();
+        std::fs::write(format!("{out}/kernels.ptx"), ptx).expect("OUT_DIR can be written");
+    }
     #[cfg(feature = "emulated")]
     cc::Build::new()
         .cpp(true)

@@ -37,7 +37,7 @@ struct GroupOfThreads {
     std::vector<long long> exchanged;
     std::function<void()> work;
     ucontext_t caller;
-    int current = 0;
+    int current = 0, stride = 1;
 };
 inline thread_local GroupOfThreads* group;
 
@@ -51,14 +51,16 @@ inline void switch_to(int next) {
     setcontext(&to.start);
 }
 
-// The last thread that arrives goes on; then the others find it in turn.
+// The last thread that arrives goes on; then the others find it in turn, each `stride` threads after another.
 inline void meet(Meeting& meeting) {
     long number = meeting.number;
     if (++meeting.arrived == meeting.count) {
         meeting.arrived = 0;
         meeting.number++;
     }
-    while (meeting.number == number) switch_to(meeting.first + (group->current - meeting.first + 1) % meeting.count);
+    while (meeting.number == number) {
+        switch_to(meeting.first + (group->current - meeting.first + group->stride) % meeting.count);
+    }
 }
 
 inline void run_thread() {
@@ -67,14 +69,16 @@ inline void run_thread() {
     setcontext(&group->caller);
 }
 
-// Runs `work` on each of `count` threads, a multiple of the lanes of a warp.
-inline void run(int count, const std::function<void()>& work) {
+// Runs `work` on each of `count` threads, a multiple of the lanes of a warp. Their order is set by the stride,
+// which has no divisor in common with the count: a result that depends on it shows that a barrier is missing.
+inline void run(int count, int stride, const std::function<void()>& work) {
     const size_t stack = 1 << 16;
     GroupOfThreads threads;
     threads.fibers = std::vector<Fiber>(count);
     threads.exchanged.assign(count, 0);
     threads.all = {0, count};
     threads.work = work;
+    threads.stride = stride;
     for (int first = 0; first < count; first += LANES) threads.warps.push_back({first, LANES});
     for (Fiber& fiber : threads.fibers) {
         fiber.stack.reset(new char[stack]);
@@ -122,5 +126,5 @@ inline int __clzll(long long x) { return std::countl_zero((unsigned long long)x)
 inline long long __double_as_longlong(double x) { return std::bit_cast<long long>(x); }
 inline double __longlong_as_double(long long x) { return std::bit_cast<double>(x); }
 using std::fabs;
-using std::round;
 using std::sqrt;
+using std::trunc;

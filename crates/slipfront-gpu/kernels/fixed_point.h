@@ -57,11 +57,17 @@ struct Window {
     double centre, limit;
 };
 
+// The nearest integer, ties away from zero. The difference is exact.
+FN double rounded(double x) {
+    double whole = trunc(x), rest = x - whole;
+    return rest >= 0.5 ? whole + 1.0 : rest <= -0.5 ? whole - 1.0 : whole;
+}
+
 FN Window window_around(double low, double high) {
     Window window;
     window.limit = limit_of(larger(1e-9, high - low));
     double grid = window.limit / 8.0;
-    window.centre = round((low + high) / 2.0 / grid) * grid;
+    window.centre = rounded((low + high) / 2.0 / grid) * grid;
     return window;
 }
 

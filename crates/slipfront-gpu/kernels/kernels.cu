@@ -3,10 +3,13 @@
 #include "small_lattices.h"
 
 #define SMALL_LATTICES(NAME, THREADS, GROUPS)                                                    \
-    extern "C" __global__ void __launch_bounds__(THREADS, GROUPS) NAME(Lattice* lattices) {      \
+    extern "C" __global__ void __launch_bounds__(THREADS, GROUPS) NAME(                          \
+        Lattice* lattices, double* state, const double* given, const u16* flags,                 \
+        u32* first_slips, StepRecord* records) {                                                 \
         extern __shared__ double memory[];                                                       \
         __shared__ Shared shared;                                                                \
-        run_lattice(lattices[blockIdx.x], memory, shared);                                       \
+        Arrays arrays = {lattices, state, given, flags, first_slips, records};                   \
+        run_lattice(arrays, blockIdx.x, memory, shared);                                         \
     }
 
 SMALL_LATTICES(small_lattices_128, 128, 6)

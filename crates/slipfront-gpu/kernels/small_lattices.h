@@ -12,16 +12,18 @@ struct Shared {
     double stress_square[MAX_WARPS], speed_square[MAX_WARPS], measured[6][MAX_WARPS];
 };
 
-// Numbers of the blocks of a lattice.
+// Numbers of the blocks of a lattice; all but first slips in shared memory.
 struct Blocks {
     double *ux, *uy, *vx, *vy, *limit_squares, *impulses;
-    u32* flags;
+    u32 *flags, *first_slips;
 };
 
 static const int BYTES_PER_BLOCK = 6 * 8 + 4;
 
-FN Blocks blocks_in(double* memory, u32 n) {
-    Blocks a = {memory, memory + n, memory + 2 * n, memory + 3 * n, memory + 4 * n, memory + 5 * n, (u32*)(memory + 6 * n)};
+FN Blocks blocks_in(double* memory, u32 n, u32* first_slips) {
+    double* flags = memory + 6 * n;
+    Blocks a = {memory,         memory + n,     memory + 2 * n, memory + 3 * n,
+                memory + 4 * n, memory + 5 * n, (u32*)flags,    first_slips};
     return a;
 }
 
@@ -111,7 +113,7 @@ template <Springs SPRINGS, bool ENERGY> FN void sweep(const Lattice& lattice, co
                                                   a.impulses[b], s);
         a.vx[b] = moved.velocity.x;
         a.vy[b] = moved.velocity.y;
-        if (moved.slips && lattice.first_slips[b] == 0xffffffffu) lattice.first_slips[b] = (u32)step.number;
+        if (moved.slips && a.first_slips[b] == 0xffffffffu) a.first_slips[b] = (u32)step.number;
     }
     int warp = threadIdx.x / WARP, lane = threadIdx.x % WARP;
     i64 sums[8] = {s.displacement[0], s.displacement[1], s.velocity[0],  s.velocity[1],
@@ -169,59 +171,66 @@ FN Totals join_sums(const Shared& shared) {
     return t;
 }
 
-// Takes a lattice through its steps. `memory` has room for BYTES_PER_BLOCK of each block.
-FN void run_lattice(Lattice& lattice, double* memory, Shared& shared) {
-    Blocks a = blocks_in(memory, lattice.n);
+// Takes lattice number k through its steps. `memory` has room for BYTES_PER_BLOCK of each block.
+FN void run_lattice(const Arrays& arrays, u32 k, double* memory, Shared& shared) {
+    Lattice& lattice = arrays.lattices[k];
+    u64 first_step = lattice.first_step, first_record = (u64)k * lattice.steps;
     int n = lattice.n;
+    double* state = arrays.state + 4 * lattice.first_block;
+    const double* given = arrays.given + 2 * (lattice.first_block + first_record);
+    const double* positions = given + 2 * n;
+    const u16* flags = arrays.flags + lattice.first_block;
+    StepRecord* records = arrays.records + first_record;
+    Blocks a = blocks_in(memory, n, arrays.first_slips + lattice.first_block);
     bool is_first_warp = threadIdx.x < WARP, is_first_thread = threadIdx.x == 0;
     for (int b = threadIdx.x; b < n; b += blockDim.x) {
-        a.ux[b] = lattice.ux[b];
-        a.uy[b] = lattice.uy[b];
-        a.vx[b] = lattice.vx[b];
-        a.vy[b] = lattice.vy[b];
-        a.limit_squares[b] = lattice.static_limit_squares[b];
-        a.impulses[b] = lattice.kinetic_impulses[b];
-        a.flags[b] = lattice.flags[b];
+        a.ux[b] = state[b];
+        a.uy[b] = state[n + b];
+        a.vx[b] = state[2 * n + b];
+        a.vy[b] = state[3 * n + b];
+        a.limit_squares[b] = given[b];
+        a.impulses[b] = given[n + b];
+        a.flags[b] = flags[b];
     }
     __syncthreads();
-    if (lattice.first_step % MEASUREMENT_INTERVAL == 0) measure_blocks(lattice, a, shared);
+    bool measures = first_step % MEASUREMENT_INTERVAL == 0;
+    if (measures) measure_blocks(lattice, a, shared);
     __syncthreads();
     if (is_first_warp) {
         double measured[6];
-        bool measures = lattice.first_step % MEASUREMENT_INTERVAL == 0;
         if (measures) join_measured(shared, measured);
         if (is_first_thread) {
             if (measures) take_measured(lattice.motion.bounds, measured);
-            begin_step(lattice, lattice.motion.bounds, shared.step, lattice.first_step);
+            begin_step(lattice, positions, lattice.motion.bounds, shared.step, first_step);
         }
     }
     // At the start displacements are those of t_0 already.
-    move_blocks(a, n, lattice.first_step == 0 ? 0.0 : lattice.equations.dt);
+    move_blocks(a, n, first_step == 0 ? 0.0 : lattice.equations.dt);
     __syncthreads();
-    for (u32 k = 0; k < lattice.steps; k++) {
+    for (u32 done = 0; done < lattice.steps; done++) {
         const Step& step = shared.step;
         if (step.has_energies) sweep_with<true>(step.springs, lattice, a, shared);
         else sweep_with<false>(step.springs, lattice, a, shared);
         if (step.measures) measure_blocks(lattice, a, shared);
         __syncthreads();
-        bool is_last = k + 1 == lattice.steps;
+        bool is_last = done + 1 == lattice.steps;
         // The other warps need nothing of the next step to move their blocks.
         if (is_first_warp) {
             Totals totals = join_sums(shared);
             // No lane reads numbers of this step once those of the next one are written.
             __syncwarp();
             if (is_first_thread) {
-                finish_step(lattice.equations, lattice.motion, step, totals, lattice.records[k]);
-                if (!is_last) begin_step(lattice, lattice.motion.bounds, shared.step, step.number + 1);
+                finish_step(lattice.equations, lattice.motion, step, totals, records[done]);
+                if (!is_last) begin_step(lattice, positions, lattice.motion.bounds, shared.step, step.number + 1);
             }
         }
         if (!is_last) move_blocks(a, n, lattice.equations.dt);
         __syncthreads();
     }
     for (int b = threadIdx.x; b < n; b += blockDim.x) {
-        lattice.ux[b] = a.ux[b];
-        lattice.uy[b] = a.uy[b];
-        lattice.vx[b] = a.vx[b];
-        lattice.vy[b] = a.vy[b];
+        state[b] = a.ux[b];
+        state[n + b] = a.uy[b];
+        state[2 * n + b] = a.vx[b];
+        state[3 * n + b] = a.vy[b];
     }
 }

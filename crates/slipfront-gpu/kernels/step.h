@@ -3,7 +3,7 @@
 #pragma once
 #include "fixed_point.h"
 
-// The structs down to Lattice have the layout of those in crates/slipfront/src/device.rs and src/lattices.rs.
+// The structs down to Lattice have the layout of those in crates/slipfront/src/device.rs and src/batch.rs.
 struct Equations {
     double dt, k_drive, dead_load[2], epsilon, velocity_decay, force_to_velocity, velocity_to_force;
     // Of straight and of diagonal springs.
@@ -31,13 +31,19 @@ struct Lattice {
     Equations equations;
     Motion motion;
     u64 first_step, energies_every, energies_last;
+    // Number of blocks of all lattices before this one.
+    u64 first_block;
     u32 steps, nx, n, unused;
-    // x and y of the driven ends of the drive springs at every step.
-    const double* positions;
-    const double* static_limit_squares;
-    const double* kinetic_impulses;
+};
+
+// Numbers of all lattices, one lattice after the other.
+struct Arrays {
+    Lattice* lattices;
+    // Displacements along x and along y, velocities along x and along y of the blocks of a lattice.
+    double* state;
+    // Squares of static thresholds, and kinetic impulses of the blocks; x and y of the driven ends at each step.
+    const double* given;
     const u16* flags;
-    double *ux, *uy, *vx, *vy;
     u32* first_slips;
     StepRecord* records;
 };
@@ -91,7 +97,7 @@ FN double highest_speed(const Equations& e, const Bounds& b, const double* posit
 }
 
 // Numbers of a step, before which displacements have been measured if it is a multiple of the interval.
-FN void begin_step(const Lattice& lattice, Bounds& b, Step& s, u64 number) {
+FN void begin_step(const Lattice& lattice, const double* positions, Bounds& b, Step& s, u64 number) {
     const Equations& e = lattice.equations;
     const double margin = 1.0 + 1e-6;
     u64 k = number - lattice.first_step;
@@ -101,7 +107,7 @@ FN void begin_step(const Lattice& lattice, Bounds& b, Step& s, u64 number) {
     s.springs = choose_springs(e, b);
     move_ranges(b);
     for (int axis = 0; axis < 2; axis++) {
-        s.position[axis] = lattice.positions[2 * k + axis];
+        s.position[axis] = positions[2 * k + axis];
         s.centre[axis] = b.windows[axis].centre;
         s.displacement_base[axis] = shift_of(b.windows[axis].limit);
         s.displacement_shift[axis] = s.displacement_base[axis] - s.centre[axis];

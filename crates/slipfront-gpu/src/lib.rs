@@ -9,9 +9,13 @@
 
 #![cfg(any(feature = "cuda", feature = "emulated"))]
 
+mod batch;
+#[cfg(feature = "cuda")]
+mod cuda;
 #[cfg(feature = "emulated")]
 mod emulated;
-mod lattice;
 
+#[cfg(feature = "cuda")]
+pub use cuda::Gpu;
 #[cfg(feature = "emulated")]
 pub use emulated::Emulated;

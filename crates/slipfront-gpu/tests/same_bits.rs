@@ -49,19 +49,25 @@ fn assert_same(emulated: &mut DeviceLattice, fused: &mut DeviceLattice) {
 }
 
 /// Takes a model on both devices through steps, in two parts.
-fn compare(model: &Model, dt_star: f64, from: Option<&State>, [threads, first, second, every]: [u32; 4]) {
+fn compare(
+    model: &Model,
+    dt_star: f64,
+    from: Option<&State>,
+    device: Emulated,
+    [first, second, every]: [u32; 3],
+) {
     let energies = EnergySteps {
         every: u64::from(every),
         last: u64::from(first + second - 1),
     };
-    let device = FusedDevice {
+    let on_cpu = FusedDevice {
         models: vec![model.clone()],
     };
     let mut fused = DeviceLattice::new(model, dt_star, from, energies).unwrap();
     let mut emulated = fused.clone();
     for steps in [first, second] {
-        device.run(&mut [&mut fused], steps).unwrap();
-        Emulated { threads }.run(&mut [&mut emulated], steps).unwrap();
+        on_cpu.run(&mut [&mut fused], steps).unwrap();
+        device.run(&mut [&mut emulated], steps).unwrap();
         assert_same(&mut emulated, &mut fused);
     }
 }
@@ -127,12 +133,13 @@ proptest! {
     fn random_plain_models(
         (model, dt_star, state) in models(),
         threads in prop_oneof![Just(32_u32), Just(64), Just(128)],
+        half_stride in 0..16_u32,
         (first, second) in (1..40_u32, 1..60_u32),
         every in 1..9_u32,
     ) {
         let mut simulation = Simulation::new(model.clone(), dt_star, state.clone(), Execution::default());
         prop_assume!(simulation.run(Stop::at_step(u64::from(first + second)), &mut []).is_ok(), "diverges");
-        compare(&model, dt_star, state.as_ref(), [threads, first, second, every]);
+        compare(&model, dt_star, state.as_ref(), Emulated { threads, stride: 2 * half_stride + 1 }, [first, second, every]);
     }
 }
 
@@ -164,9 +171,13 @@ fn the_baseline_slips() {
         1e-6,
         FrictionLaw::Projection,
     );
-    compare(&model, 0.2, None, [128, 100, 60, 7]);
+    let device = Emulated {
+        threads: 128,
+        stride: 1,
+    };
+    compare(&model, 0.2, None, device, [100, 60, 7]);
     let mut lattice = DeviceLattice::new(&model, 0.2, None, EnergySteps { every: 1, last: 0 }).unwrap();
-    Emulated { threads: 128 }.run(&mut [&mut lattice], 160).unwrap();
+    device.run(&mut [&mut lattice], 160).unwrap();
     assert!(
         lattice.records.iter().any(|record| record.n_sliding[1] > 500),
         "the slider slips"

@@ -1,0 +1,135 @@
+//! Lattices as the kernels take them: their numbers in common arrays, one lattice after the other.
+
+use slipfront::VectorField;
+use slipfront::device::{DeviceError, DeviceLattice, Equations, Motion, StepRecord};
+
+/// The struct `Lattice` of `kernels/step.h`.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct Lattice {
+    equations: Equations,
+    motion: Motion,
+    first_step: u64,
+    energies_every: u64,
+    energies_last: u64,
+    first_block: u64,
+    steps: u32,
+    nx: u32,
+    n: u32,
+    unused: u32,
+}
+
+/// Numbers of a record, each of 8 bytes.
+pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
+
+/// Lattices and the steps through which they go.
+#[derive(Debug)]
+pub(crate) struct Batch {
+    pub(crate) lattices: Vec<Lattice>,
+    /// Displacements along x and along y, velocities along x and along y of the blocks of each lattice.
+    pub(crate) state: Vec<f64>,
+    /// Squares of static thresholds and kinetic impulses of the blocks, and the positions of the driven ends
+    /// at each step, of each lattice.
+    pub(crate) given: Vec<f64>,
+    pub(crate) flags: Vec<u16>,
+    pub(crate) first_slips: Vec<u32>,
+    /// Records of the steps of each lattice, as numbers of 8 bytes.
+    pub(crate) records: Vec<u64>,
+}
+
+impl Batch {
+    /// Lattices that are to go through `steps` steps.
+    ///
+    /// # Errors
+    /// For a lattice that has taken as many steps as can be counted.
+    pub(crate) fn new(lattices: &[&mut DeviceLattice], steps: u32) -> Result<Self, DeviceError> {
+        let mut batch = Self {
+            lattices: Vec::with_capacity(lattices.len()),
+            state: Vec::new(),
+            given: Vec::new(),
+            flags: Vec::new(),
+            first_slips: Vec::new(),
+            records: vec![0; lattices.len() * steps as usize * RECORD],
+        };
+        for lattice in lattices {
+            batch.add(lattice, steps)?;
+        }
+        Ok(batch)
+    }
+
+    fn add(&mut self, lattice: &DeviceLattice, steps: u32) -> Result<(), DeviceError> {
+        let last = lattice.steps_done + u64::from(steps);
+        if last >= u64::from(u32::MAX) {
+            let message = format!("a run ends before step {}, and not at step {last}", u32::MAX);
+            return Err(DeviceError(message));
+        }
+        let [nx, ny] = lattice.blocks;
+        let n = nx * ny;
+        self.lattices.push(Lattice {
+            equations: lattice.equations,
+            motion: lattice.motion,
+            first_step: lattice.steps_done,
+            energies_every: lattice.energies.every,
+            energies_last: lattice.energies.last,
+            first_block: self.flags.len() as u64,
+            steps,
+            nx: nx as u32,
+            n: n as u32,
+            unused: 0,
+        });
+        let (u, v) = (&lattice.state.displacement, &lattice.state.velocity);
+        for field in [&u.x, &u.y, &v.x, &v.y] {
+            self.state.extend(field);
+        }
+        self.given.extend(&lattice.static_limit_squares);
+        self.given.extend(&lattice.kinetic_impulses);
+        self.given.extend(lattice.drive_positions(steps).flatten());
+        self.flags.extend(&lattice.flags);
+        self.first_slips.extend(&lattice.first_slips);
+        // The kernels read as much of each array.
+        let blocks = self.flags.len();
+        let expected = 2 * (blocks + self.lattices.len() * steps as usize);
+        assert!(
+            self.state.len() == 4 * blocks
+                && self.first_slips.len() == blocks
+                && blocks as u64 == self.lattices[self.lattices.len() - 1].first_block + n as u64
+                && self.given.len() == expected,
+            "the arrays of a lattice of {nx} x {ny} blocks have other lengths"
+        );
+        Ok(())
+    }
+
+    /// Hands the lattices back after the steps.
+    pub(crate) fn return_to(&self, lattices: &mut [&mut DeviceLattice]) {
+        let mut first = 0;
+        for (k, (lattice, after)) in lattices.iter_mut().zip(&self.lattices).enumerate() {
+            let (n, steps) = (after.n as usize, after.steps as usize);
+            let field = |which: usize| self.state[4 * first + which * n..][..n].to_vec();
+            lattice.state.displacement = VectorField::from([field(0), field(1)]);
+            lattice.state.velocity = VectorField::from([field(2), field(3)]);
+            lattice
+                .first_slips
+                .copy_from_slice(&self.first_slips[first..first + n]);
+            lattice.motion = after.motion;
+            lattice.steps_done += steps as u64;
+            let records = &self.records[k * steps * RECORD..][..steps * RECORD];
+            lattice.records.extend(records.as_chunks().0.iter().map(record));
+            first += n;
+        }
+    }
+}
+
+/// A record from its numbers.
+fn record(words: &[u64; RECORD]) -> StepRecord {
+    let number = |k: usize| f64::from_bits(words[k]);
+    StepRecord {
+        displacement: [number(0), number(1)],
+        velocity_after: [number(2), number(3)],
+        velocity_square: number(4),
+        friction_power: number(5),
+        stress_square_max: number(6),
+        // GPUs and the CPUs beside them store the lower bytes first.
+        n_sliding: [words[7] as u32, (words[7] >> 32) as u32],
+        stored: [number(8), number(9), number(10)],
+    }
+}
