@@ -1,5 +1,5 @@
-//! Runs a second of many small sliders on a GPU, beside one core and all cores of the machine, and whether they
-//! have the same bits.
+//! Runs a second of many small sliders on a GPU, beside one core and all cores of the machine, and whether
+//! they have the same bits.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-gpu --features cuda --example gpu_ensembles
@@ -11,6 +11,7 @@
 //! records are copied back and replayed on all cores.
 
 use std::error::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -28,7 +29,7 @@ const ENERGIES: EnergySteps = EnergySteps {
     last: 0,
 };
 
-fn model(size: usize, seed: u64) -> Result<Model, Box<dyn Error + Send + Sync>> {
+fn model(size: usize, seed: u64) -> Result<Arc<Model>, Box<dyn Error + Send + Sync>> {
     let lattice = Lattice::free(size, size);
     let gauss = |mean: f64| Distribution {
         mean,
@@ -39,14 +40,14 @@ fn model(size: usize, seed: u64) -> Result<Model, Box<dyn Error + Send + Sync>> 
     let textured = vec![false; lattice.n_blocks()];
     let surface = Surface::of_ranks(coefficients, textured, contact, &Slider::default(), &Alone)?;
     let damping = scales::damping(0.1);
-    Ok(Model::new(
+    Ok(Arc::new(Model::new(
         lattice,
         surface,
         Drive::along_x(0.03),
         damping,
         1e-6,
         FrictionLaw::Projection,
-    ))
+    )))
 }
 
 /// The largest mu* of a run after the step at t = 0.
@@ -56,19 +57,19 @@ fn largest(mut simulation: Simulation) -> f64 {
     ended.map_or(f64::NAN, |_| simulation.peak().largest.mu_star)
 }
 
-fn on_gpu(gpu: &Gpu, models: &[Model]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
+fn on_gpu(gpu: &Gpu, models: &[Arc<Model>]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
     let begun = models
         .par_iter()
-        .map(|model| DeviceLattice::new(model, DT_STAR, None, ENERGIES));
+        .map(|model| DeviceLattice::new(Arc::clone(model), DT_STAR, None, ENERGIES));
     let mut lattices = begun.collect::<Result<Vec<_>, _>>()?;
     gpu.run(&mut lattices.iter_mut().collect::<Vec<_>>(), STEPS)?;
-    let replayed = models.par_iter().cloned().zip(lattices);
-    Ok(replayed
-        .map(|(model, lattice)| largest(Simulation::replay(model, lattice)))
+    Ok(lattices
+        .into_par_iter()
+        .map(|lattice| largest(Simulation::replay(lattice)))
         .collect())
 }
 
-fn on_cpu(model: &Model) -> f64 {
+fn on_cpu(model: &Arc<Model>) -> f64 {
     largest(Simulation::new(
         model.clone(),
         DT_STAR,

@@ -60,8 +60,8 @@ impl Device for Emulated {
                 batch.lattices.len(),
                 threads as i32,
                 stride as i32,
-            )
-        };
+            );
+        }
         batch.return_to(lattices);
         Ok(())
     }

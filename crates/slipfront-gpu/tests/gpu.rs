@@ -31,12 +31,13 @@ fn a_gpu_has_the_same_bits_or_is_refused_with_a_remedy() {
         FrictionLaw::Projection,
     );
     let energies = EnergySteps { every: 7, last: 0 };
-    let mut on_gpu = DeviceLattice::new(&model, 0.2, None, energies).expect("the model is plain");
+    let mut on_gpu = DeviceLattice::new(model, 0.2, None, energies).expect("the model is plain");
     let mut on_cpu = on_gpu.clone();
-    let fused = FusedDevice { models: vec![model] };
     for steps in [100, 77] {
         gpu.run(&mut [&mut on_gpu], steps).expect("the GPU computes");
-        fused.run(&mut [&mut on_cpu], steps).expect("the CPU computes");
+        FusedDevice
+            .run(&mut [&mut on_cpu], steps)
+            .expect("the CPU computes");
         assert_eq!(format!("{on_gpu:?}"), format!("{on_cpu:?}"));
     }
 }

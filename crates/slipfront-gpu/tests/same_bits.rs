@@ -60,13 +60,10 @@ fn compare(
         every: u64::from(every),
         last: u64::from(first + second - 1),
     };
-    let on_cpu = FusedDevice {
-        models: vec![model.clone()],
-    };
-    let mut fused = DeviceLattice::new(model, dt_star, from, energies).unwrap();
+    let mut fused = DeviceLattice::new(model.clone(), dt_star, from, energies).unwrap();
     let mut emulated = fused.clone();
     for steps in [first, second] {
-        on_cpu.run(&mut [&mut fused], steps).unwrap();
+        FusedDevice.run(&mut [&mut fused], steps).unwrap();
         device.run(&mut [&mut emulated], steps).unwrap();
         assert_same(&mut emulated, &mut fused);
     }
@@ -176,7 +173,7 @@ fn the_baseline_slips() {
         stride: 1,
     };
     compare(&model, 0.2, None, device, [100, 60, 7]);
-    let mut lattice = DeviceLattice::new(&model, 0.2, None, EnergySteps { every: 1, last: 0 }).unwrap();
+    let mut lattice = DeviceLattice::new(model, 0.2, None, EnergySteps { every: 1, last: 0 }).unwrap();
     device.run(&mut [&mut lattice], 160).unwrap();
     assert!(
         lattice.records.iter().any(|record| record.n_sliding[1] > 500),

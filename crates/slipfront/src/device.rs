@@ -7,11 +7,12 @@
 
 use std::collections::VecDeque;
 use std::fmt;
+use std::sync::Arc;
 
 use thiserror::Error;
 
 use crate::checkpoint::MotionBounds;
-use crate::drive::Drive;
+use crate::model::Model;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 
@@ -137,7 +138,7 @@ pub struct DeviceLattice {
     pub records: VecDeque<StepRecord>,
     /// Sum of velocities half a step before t = 0.
     pub(crate) velocity_at_start: [f64; 2],
-    pub(crate) drive: Drive,
+    pub(crate) model: Arc<Model>,
 }
 
 /// Flags of a block. The springs of a block are numbered east, north, north-east, north-west, west, south,
@@ -163,7 +164,7 @@ impl DeviceLattice {
     /// Displacements of the driven ends of the drive springs at the next steps.
     pub fn drive_positions(&self, steps: u32) -> impl Iterator<Item = [f64; 2]> {
         (self.steps_done..self.steps_done + u64::from(steps))
-            .map(|step| self.drive.position(step as f64 * self.equations.dt_star))
+            .map(|step| self.model.drive.position(step as f64 * self.equations.dt_star))
     }
 
     /// Whether energies are found at a step.

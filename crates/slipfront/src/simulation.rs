@@ -72,10 +72,10 @@ impl Simulation {
     ///
     /// # Panics
     /// If no step was recorded, or if its energies were not.
-    pub fn replay(model: impl Into<Arc<Model>>, lattice: DeviceLattice) -> Self {
-        let dt_star = lattice.equations.dt_star;
+    pub fn replay(lattice: DeviceLattice) -> Self {
+        let (model, dt_star) = (Arc::clone(&lattice.model), lattice.equations.dt_star);
         let engine = Box::new(Replay::new(lattice));
-        Self::begin(model.into(), dt_star, engine, Arc::new(Alone))
+        Self::begin(model, dt_star, engine, Arc::new(Alone))
     }
 
     /// The lattice that a device takes through further steps, of a run that [replays](Self::replay) them.

@@ -1,6 +1,7 @@
 //! The numbers of a plain model that a device needs.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::fused::{Fused, LargestFactors, SeriesNumbers, blocks_differ};
 use crate::communicator::Alone;
@@ -19,20 +20,21 @@ impl DeviceLattice {
     /// # Panics
     /// If this process holds a part of the lattice alone.
     pub fn new(
-        model: &Model,
+        model: impl Into<Arc<Model>>,
         dt_star: f64,
         state: Option<&State>,
         energies: EnergySteps,
     ) -> Result<Self, CpuOnly> {
+        let model = model.into();
         let lattice = &model.lattice;
         assert_eq!(model.rows, 0..lattice.ny, "a device takes whole lattices");
-        is_plain(model)?;
+        is_plain(&model)?;
         let (surface, slider, n) = (&model.surface, &model.slider, lattice.n_blocks());
         let integrator = Integrator::new(model.damping, dt_star);
         let series = SeriesNumbers::new(model.epsilon, model.springs);
         let static_limits = (0..n).map(|b| surface.static_limit(b));
         let kinetic_forces = (0..n).map(|b| surface.kinetic_force(b));
-        let (bounds, velocity_after) = Fused::begun(model, dt_star, state);
+        let (bounds, velocity_after) = Fused::begun(&model, dt_star, state);
         Ok(Self {
             blocks: [lattice.nx, lattice.ny],
             equations: Equations {
@@ -53,7 +55,7 @@ impl DeviceLattice {
             kinetic_impulses: kinetic_forces
                 .map(|force| integrator.force_to_velocity * force)
                 .collect(),
-            flags: (0..n).map(|b| flags(model, b)).collect(),
+            flags: (0..n).map(|b| flags(&model, b)).collect(),
             steps_done: 0,
             motion: Motion {
                 bounds: bounds.to_numbers(),
@@ -64,7 +66,7 @@ impl DeviceLattice {
             first_slips: vec![NEVER; n],
             records: VecDeque::new(),
             velocity_at_start: velocity_after,
-            drive: model.drive.clone(),
+            model,
         })
     }
 }

@@ -19,12 +19,12 @@ use crate::{bits, columns, fused, go};
 const EVERY: EnergySteps = EnergySteps { every: 1, last: 0 };
 
 fn lattice(model: &Model, dt_star: f64, from: Option<&State>) -> DeviceLattice {
-    DeviceLattice::new(model, dt_star, from, EVERY).unwrap()
+    DeviceLattice::new(model.clone(), dt_star, from, EVERY).unwrap()
 }
 
 /// Takes a lattice through some steps.
-fn record(device: &FusedDevice, lattice: &mut DeviceLattice, steps: u32) {
-    device.run(&mut [lattice], steps).unwrap();
+fn record(lattice: &mut DeviceLattice, steps: u32) {
+    FusedDevice.run(&mut [lattice], steps).unwrap();
 }
 
 /// Recorded in parts of so many steps; a number of steps of 16 is that between two measurements.
@@ -49,17 +49,14 @@ fn a_replay_has_the_same_bits(edges: Edges, texture: Option<Texture>, epsilon: f
     };
     for from in [None, Some(thrown(17 * 12, 0.1, 40))] {
         let (model, dt_star) = (slider.model(), slider.dt_star);
-        let device = FusedDevice {
-            models: vec![model.clone()],
-        };
         let mut begun = lattice(&model, dt_star, from.as_ref());
-        record(&device, &mut begun, 1);
-        let mut replayed = Simulation::replay(model.clone(), begun);
+        record(&mut begun, 1);
+        let mut replayed = Simulation::replay(begun);
         let mut direct = Simulation::new(model.clone(), dt_star, from.clone(), fused());
         assert_eq!(shown(&replayed), shown(&direct));
         for step in 1..=slider.steps(4.0) {
             if (step - 1).is_multiple_of(u64::from(part)) {
-                record(&device, replayed.device_lattice().unwrap(), part);
+                record(replayed.device_lattice().unwrap(), part);
             }
             go(&mut direct, step % 5 == 0);
             go(&mut replayed, step % 5 == 0);
@@ -94,17 +91,14 @@ fn several_lattices_stop_each_at_its_onset() {
         })
         .collect();
     let models: Vec<_> = sliders.iter().map(Slider::model).collect();
-    let device = FusedDevice {
-        models: models.clone(),
-    };
     let stop = Stop::after_onset(sliders[0].steps(8.0));
     let mut lattices: Vec<_> = models.iter().map(|model| lattice(model, 0.1, None)).collect();
     let mut all: Vec<_> = lattices.iter_mut().collect();
-    device.run(&mut all, 500).unwrap();
+    FusedDevice.run(&mut all, 500).unwrap();
     let mut onsets = Vec::new();
     for (model, lattice) in models.into_iter().zip(lattices) {
         let (mut curve, mut directly) = (Curve::every(40), Curve::every(40));
-        let mut replayed = Simulation::replay(model.clone(), lattice);
+        let mut replayed = Simulation::replay(lattice);
         let mut direct = Simulation::new(model, 0.1, None, Execution::default());
         replayed.run(stop, &mut [Scheduled::always(&mut curve)]).unwrap();
         direct.run(stop, &mut [Scheduled::always(&mut directly)]).unwrap();
@@ -125,12 +119,9 @@ fn several_lattices_stop_each_at_its_onset() {
 #[should_panic(expected = "where the device has stopped, and not at step 3")]
 fn blocks_are_known_where_the_device_has_stopped() {
     let model = Slider::default().model();
-    let device = FusedDevice {
-        models: vec![model.clone()],
-    };
     let mut lattice = lattice(&model, 0.1, None);
-    record(&device, &mut lattice, 8);
-    let mut replayed = Simulation::replay(model, lattice);
+    record(&mut lattice, 8);
+    let mut replayed = Simulation::replay(lattice);
     for _ in 0..3 {
         replayed.step();
     }
@@ -142,12 +133,9 @@ fn blocks_are_known_where_the_device_has_stopped() {
 #[should_panic(expected = "step 2 was not recorded")]
 fn a_replay_ends_with_what_is_recorded() {
     let model = Slider::default().model();
-    let device = FusedDevice {
-        models: vec![model.clone()],
-    };
     let mut lattice = lattice(&model, 0.1, None);
-    record(&device, &mut lattice, 2);
-    let mut replayed = Simulation::replay(model, lattice);
+    record(&mut lattice, 2);
+    let mut replayed = Simulation::replay(lattice);
     replayed.step();
     replayed.step();
 }
@@ -215,7 +203,7 @@ fn models_that_are_not_plain_are_refused() {
         ),
     ];
     for (model, what) in cases {
-        let refused = DeviceLattice::new(&model, 0.1, None, EVERY)
+        let refused = DeviceLattice::new(model, 0.1, None, EVERY)
             .unwrap_err()
             .to_string();
         assert!(

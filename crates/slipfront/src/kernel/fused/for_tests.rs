@@ -103,24 +103,21 @@ impl FusedKernel {
 }
 
 /// A device that is the fused kernel on one thread: what other devices must agree with to the last bit.
-#[derive(Debug)]
-pub struct FusedDevice {
-    /// Models of the lattices, in their order.
-    pub models: Vec<Model>,
-}
+#[derive(Clone, Copy, Debug)]
+pub struct FusedDevice;
 
 impl Device for FusedDevice {
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
-        assert_eq!(lattices.len(), self.models.len(), "a model for each lattice");
-        for (lattice, model) in lattices.iter_mut().zip(&self.models) {
-            run_on_fused(lattice, model, steps);
+        for lattice in lattices {
+            run_on_fused(lattice, steps);
         }
         Ok(())
     }
 }
 
 /// Takes a lattice through some steps.
-fn run_on_fused(lattice: &mut DeviceLattice, model: &Model, steps: u32) {
+fn run_on_fused(lattice: &mut DeviceLattice, steps: u32) {
+    let model = &*Arc::clone(&lattice.model);
     let (dt_star, n) = (lattice.equations.dt_star, model.lattice.n_blocks());
     let state = (lattice.steps_done == 0).then_some(&lattice.state);
     let mut kernel = Fused::new(model, dt_star, state, 1, false, Arc::new(Alone));
