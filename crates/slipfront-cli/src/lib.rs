@@ -12,6 +12,7 @@ mod browser;
 mod case_args;
 mod checkpoint_timer;
 mod commands;
+mod device;
 mod divided_override;
 mod failure;
 mod help;

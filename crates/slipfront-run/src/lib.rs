@@ -13,6 +13,8 @@ pub mod checkpoint;
 pub mod checksum;
 pub mod clock;
 pub mod columns;
+#[cfg(not(target_family = "wasm"))]
+pub mod device_summaries;
 pub mod error;
 pub mod estimate_cost;
 pub mod export;

@@ -60,7 +60,7 @@ pub fn run_summary_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result
 }
 
 /// The numbers of a run that has ended.
-fn summary(
+pub(crate) fn summary(
     case: &Case,
     simulation: Simulation,
     reason: StopReason,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use jiff::SignedDuration;
 use slipfront::RunError;
+use slipfront::device::DeviceError;
 use thiserror::Error;
 
 use slipfront_base::number_format::{are, count};
@@ -22,6 +23,8 @@ use slipfront_run::program;
 pub enum StudyError {
     #[error(transparent)]
     File(#[from] CaseError),
+    #[error(transparent)]
+    Device(#[from] DeviceError),
     #[error("the point {point} is not a valid case: {source}")]
     Point { point: String, source: CaseError },
     #[error("the study has {runs} runs, more than {limit}: give --yes if that is meant")]

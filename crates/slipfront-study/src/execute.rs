@@ -111,14 +111,14 @@ fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<TaskResult
 }
 
 /// The reason of a run that failed by a panic.
-fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
+pub(crate) fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
     let message = panic.downcast_ref::<String>().map(String::as_str);
     let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
     format!("a fault of the program: {}", message.unwrap_or("unknown"))
 }
 
 /// Runs the case of a run, and writes its folder to `runs` if the study keeps it.
-fn run_one(
+pub(crate) fn run_one(
     plan: &Plan,
     runs: &Path,
     run: RunKey,
@@ -174,7 +174,7 @@ fn write_folder(
 
 /// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the pool would run
 /// cases that nobody records.
-struct SetOnDrop<'a>(&'a AtomicBool);
+pub(crate) struct SetOnDrop<'a>(pub(crate) &'a AtomicBool);
 
 impl Drop for SetOnDrop<'_> {
     fn drop(&mut self) {

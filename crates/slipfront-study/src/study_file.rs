@@ -117,6 +117,11 @@ const MAX_POINTS: usize = 1_000_000;
 const MAX_REPLICATES: u32 = 100_000;
 
 impl Settings {
+    /// Whether every run leaves its folder, with fields and pictures.
+    pub fn keeps_all_runs(&self) -> bool {
+        self.keep == RetainRuns::All
+    }
+
     /// Confidence of all intervals.
     pub fn confidence(&self) -> f64 {
         self.until.as_ref().map_or(CONFIDENCE, |until| until.confidence)

@@ -46,6 +46,11 @@ impl Stop {
         Self::at_step(u64::MAX)
     }
 
+    /// Whether the run stops as soon as static friction is known.
+    pub fn is_after_onset(&self) -> bool {
+        self.after_onset
+    }
+
     /// Whether the next step may be the last. A fall of mu* is known one step ahead.
     pub(crate) fn may_end(&self, now: &Snapshot) -> bool {
         let next = now.next_clock();

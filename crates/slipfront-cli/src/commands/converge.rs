@@ -87,7 +87,7 @@ impl ConvergeCommand {
         let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
-        let results = run_all(&plan, &folder, &signals, self.quiet)?;
+        let results = run_all(&plan, &folder, None, &signals, self.quiet)?;
         let found = write(&plan, &results, &folder, &signals.stop);
         let found = found.map_err(|error| Failure::of_results(&signals, error))?;
         if self.json {

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront::device::Device;
 use slipfront_base::disk::is_same;
 use slipfront_study as study;
-use slipfront_study::{Plan, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
+use slipfront_study::{Plan, Progress, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
+use crate::device::DeviceChoice;
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::print_stderr::print_notes;
@@ -34,6 +36,9 @@ pub(crate) struct StudyRun {
     /// Most runs at once [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    /// Where runs are computed; results do not depend on it
+    #[arg(long, value_name = "DEVICE", value_enum, default_value_t)]
+    device: DeviceChoice,
     /// Show neither progress nor tables
     #[arg(short, long)]
     quiet: bool,
@@ -50,6 +55,9 @@ pub(crate) struct StudyRun {
     #[arg(long)]
     yes: bool,
 }
+
+/// Reason for which the runs of some studies are computed on the CPU.
+const FOLDERS_ON_CPU: &str = "folders of all runs (`study.keep = \"all\"`) are made on the CPU alone: keep those of failed runs, or none";
 
 /// Largest number of runs of a study that is run without `--yes`.
 const MAX_UNCONFIRMED_RUNS: u64 = 10_000;
@@ -84,6 +92,8 @@ impl StudyRun {
             return print(&dry_run(&plan, threads)?);
         }
         plan.check_memory(threads).map_err(Failure::input)?;
+        let kept = plan.settings.keeps_all_runs().then_some(FOLDERS_ON_CPU);
+        let device = self.device.open(kept, self.quiet)?;
         let is_changed_unsaid = self.out.is_none() && !self.overrides.is_empty();
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, file.has_base_file() || is_changed_unsaid, &out)?;
@@ -92,7 +102,7 @@ impl StudyRun {
         let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
-        let results = run_all(&plan, &folder, &signals, self.quiet)?;
+        let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;
         let shown = if self.json {
             Shown::Json
         } else if self.quiet {
@@ -135,6 +145,7 @@ fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
 pub(in crate::commands) fn run_all(
     plan: &Plan,
     folder: &StudyFolder,
+    device: Option<&dyn Device>,
     signals: &Signals,
     quiet: bool,
 ) -> Result<StudyResults, Failure> {
@@ -143,9 +154,12 @@ pub(in crate::commands) fn run_all(
         note_before_runs(plan, folder);
     }
     let path = folder.path().to_owned();
-    let done = study::execute(plan, &folder.records, &path, &signals.stop, &mut |now| {
-        progress.show(now);
-    });
+    let (records, stop) = (&folder.records, &signals.stop);
+    let watch = &mut |now: &Progress| progress.show(now);
+    let done = match device {
+        Some(device) => study::execute_on_device(plan, records, &path, device, stop, watch),
+        None => study::execute(plan, records, &path, stop, watch),
+    };
     progress.finish();
     done.map_err(|error| Failure::of_results(signals, error))
 }

@@ -230,3 +230,24 @@ fn a_very_large_study_is_asked_for() {
     workspace.succeed("study study.toml --yes --quiet --shard 1/100 -o out");
     workspace.results("out").assert_each_run_once(101);
 }
+
+/// The command that tests build has no feature `gpu`; one that has it names the remedy, too. All run folders are
+/// made on the CPU alone, whatever there is.
+#[test]
+fn a_device_that_is_missing_is_refused_or_replaced_by_the_cpu() {
+    let workspace = Workspace::with_study(SMALL);
+    let refused = workspace.fail("study study.toml -o out --device gpu", 2);
+    assert!(refused.contains("the CPU gives the same results"), "{refused}");
+    assert!(!workspace.exists("out"));
+    let output = workspace.output("study study.toml -o out --device auto");
+    let said = stderr(&output);
+    assert!(
+        output.status.success() && said.contains("note: runs are computed on the CPU"),
+        "{said}"
+    );
+    let kept = SMALL.replace("replicates = 3", "replicates = 3\nkeep = 'all'");
+    assert_ne!(kept, SMALL);
+    workspace.write("kept.toml", kept);
+    let refused = workspace.fail("study kept.toml -o kept --device gpu", 2);
+    assert!(refused.contains("`study.keep = \"all\"`"), "{refused}");
+}

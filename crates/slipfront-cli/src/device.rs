@@ -1,0 +1,65 @@
+//! The device on which many runs are computed.
+
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use slipfront::device::{Device, DeviceError};
+
+use crate::failure::Failure;
+use crate::print_stderr::print_notes;
+
+/// Where runs are computed. Results do not depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DeviceChoice {
+    /// On the cores of this machine
+    #[default]
+    Cpu,
+    /// On its first NVIDIA GPU; on the cores what is not a plain lattice of at most 4000 blocks
+    Gpu,
+    /// On the GPU if there is one
+    Auto,
+}
+
+impl DeviceChoice {
+    /// Opens the device, unless `refused` says why there is nothing for it; none for the cores of this
+    /// machine.
+    pub(crate) fn open(self, refused: Option<&str>, quiet: bool) -> Result<Option<Arc<dyn Device>>, Failure> {
+        if self == Self::Cpu {
+            return Ok(None);
+        }
+        let opened = match refused {
+            Some(reason) => Err(DeviceError(reason.to_owned())),
+            None => open_gpu(),
+        };
+        match opened {
+            Ok((device, name)) => {
+                note(quiet, format!("plain runs are computed on the GPU ({name})"));
+                Ok(Some(device))
+            }
+            Err(reason) if self == Self::Auto => {
+                note(quiet, format!("runs are computed on the CPU: {reason}"));
+                Ok(None)
+            }
+            Err(reason) => Err(Failure::input(reason)),
+        }
+    }
+}
+
+fn note(quiet: bool, sentence: String) {
+    if !quiet {
+        print_notes([sentence]);
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn open_gpu() -> Result<(Arc<dyn Device>, String), DeviceError> {
+    let gpu = slipfront_gpu::Gpu::open()?;
+    let name = gpu.name()?;
+    Ok((Arc::new(gpu), name))
+}
+
+#[cfg(not(feature = "gpu"))]
+fn open_gpu() -> Result<(Arc<dyn Device>, String), DeviceError> {
+    let message = "this program is built without the feature `gpu`: leave `--device` out, the CPU gives the same results";
+    Err(DeviceError(message.to_owned()))
+}

@@ -1,0 +1,217 @@
+//! Makes the missing runs of a study on a device, as many at once as wait, and on the pool those that a
+//! device does not compute.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use slipfront::device::{Device, DeviceError};
+
+use crate::error::StudyError;
+use crate::execute::{SetOnDrop, panicked, run_one};
+use crate::finished_run::{FinishedRun, Outcome};
+use crate::plan::Plan;
+use crate::run_journal::RunJournal;
+use crate::scheduler::{Scheduler, Task, TaskResult};
+use crate::study_results::{Progress, StudyResults};
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
+use slipfront_run::device_summaries::{device_summaries, refusal};
+use slipfront_run::names::RUNS;
+
+/// Most runs at once.
+const AT_ONCE: usize = 4096;
+
+/// Runs on their way.
+struct DeviceRuns<'a> {
+    plan: &'a Plan,
+    runs: &'a Path,
+    device: &'a dyn Device,
+    is_stopped: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// Executes a plan as [`execute`](crate::execute) does, with the same results, on a device.
+///
+/// # Panics
+/// If the study keeps the folders of all runs, which a device does not make.
+pub fn execute_on_device(
+    plan: &Plan,
+    records: &RunJournal,
+    folder: &Path,
+    device: &dyn Device,
+    stop: &AtomicBool,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<StudyResults, StudyError> {
+    assert!(
+        !plan.settings.keeps_all_runs(),
+        "a device makes no folders of runs"
+    );
+    let (to_scheduler, finished) = mpsc::channel::<TaskResult>();
+    let (to_device, tasks) = mpsc::channel::<Task>();
+    let abandon = AtomicBool::new(false);
+    let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
+    let path = folder.join(RUNS);
+    let runs = DeviceRuns {
+        plan,
+        runs: &path,
+        device,
+        is_stopped: &is_stopped,
+    };
+    thread::scope(|threads| {
+        threads.spawn(move || runs.make(&tasks, &to_scheduler));
+        let _abandon = SetOnDrop(&abandon);
+        let start = move |task| {
+            // A thread that has ended by a panic wants no more of them.
+            let _ = to_device.send(task);
+        };
+        Scheduler::new(plan, records, &start, AT_ONCE).run(&finished, stop, watch)
+    })
+}
+
+impl DeviceRuns<'_> {
+    /// Makes runs until no more can come.
+    fn make(&self, tasks: &Receiver<Task>, to_scheduler: &Sender<TaskResult>) {
+        while let Ok(first) = tasks.recv() {
+            let waiting = tasks.try_iter().take(AT_ONCE - 1);
+            let tasks: Vec<Task> = std::iter::once(first).chain(waiting).collect();
+            // Without an answer the scheduler would wait without end.
+            let made = catch_unwind(AssertUnwindSafe(|| self.make_at_once(tasks)));
+            let fault = |panic: Box<dyn Any + Send>| vec![Err(DeviceError(panicked(panic.as_ref())).into())];
+            for result in made.unwrap_or_else(fault) {
+                // A scheduler that has ended wants no more of them.
+                let _ = to_scheduler.send(result);
+            }
+        }
+    }
+
+    /// Makes some runs at once.
+    fn make_at_once(&self, tasks: Vec<Task>) -> Vec<TaskResult> {
+        let began = Instant::now();
+        let made = tasks.into_par_iter().map(|task| (self.case(&task), task));
+        let (mut cases, mut on_device, mut results) = (Vec::new(), Vec::new(), Vec::new());
+        let mut on_cpu = Vec::new();
+        for (case, task) in made.collect::<Vec<_>>() {
+            match case {
+                Ok(Some(case)) if refusal(&case).is_none() => {
+                    cases.push(case);
+                    on_device.push(task);
+                }
+                Ok(Some(_)) => on_cpu.push(task),
+                Ok(None) => results.push(Ok(None)),
+                Err(error) => results.push(Err(error)),
+            }
+        }
+        results.par_extend(on_cpu.into_par_iter().map(|task| self.make_on_cpu(task)));
+        match device_summaries(&cases, self.device, self.is_stopped) {
+            Ok(summaries) => {
+                let wall_time_s = began.elapsed().as_secs_f64() / cases.len().max(1) as f64;
+                results.extend(
+                    on_device
+                        .into_iter()
+                        .zip(summaries)
+                        .map(|(task, ended)| match ended {
+                            None => Ok(None),
+                            Some(Ok(summary)) => Ok(Some(FinishedRun {
+                                id: task.id,
+                                wall_time_s,
+                                outcome: Outcome::of(summary),
+                            })),
+                            // What is kept of a run that failed is kept there.
+                            Some(Err(_)) => self.make_on_cpu(task),
+                        }),
+                );
+            }
+            Err(error) => results.push(Err(error.into())),
+        }
+        results
+    }
+
+    /// The case of a run; none after a stop.
+    fn case(&self, task: &Task) -> Result<Option<Arc<Case>>, StudyError> {
+        match self.plan.case(task.run, &mut |_| !(self.is_stopped)()) {
+            Ok(case) => Ok(Some(Arc::new(case))),
+            Err(CaseError::Stopped) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn make_on_cpu(&self, Task { run, id }: Task) -> TaskResult {
+        let began = Instant::now();
+        let outcome = run_one(self.plan, self.runs, run, &|_, _, _| true, self.is_stopped)?;
+        Ok(outcome.map(|outcome| FinishedRun {
+            id,
+            wall_time_s: began.elapsed().as_secs_f64(),
+            outcome,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront::device::DeviceLattice;
+    use slipfront::testing::FusedDevice;
+
+    use super::*;
+    use crate::execute::execute;
+    use crate::study_file::StudyFile;
+
+    /// Plain runs, runs of the CPU alone and runs that fail: all are recorded as on the CPU.
+    const STUDY: &str = "base = { slider.blocks = [12, 10], time.stop = 'after_onset', drive.v_star = 0.1 }\n\
+                         study = { replicates = 3, keep = 'failed', reference = { texture = [] } }\n\
+                         [[axes]]\nkey = 'drive.loading'\nlist = ['constant', 'held']\n\
+                         [[axes]]\nkey = 'time.step'\nlist = [0.1, 0.2]";
+
+    fn plan(text: &str) -> Plan {
+        let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+        Plan::new(&file, None).unwrap()
+    }
+
+    fn executed(text: &str, device: Option<&dyn Device>) -> Result<StudyResults, StudyError> {
+        let (plan, folder, never) = (plan(text), tempfile::tempdir().unwrap(), AtomicBool::new(false));
+        let records = RunJournal::open(folder.path()).unwrap();
+        match device {
+            Some(device) => execute_on_device(&plan, &records, folder.path(), device, &never, &mut |_| {}),
+            None => execute(&plan, &records, folder.path(), &never, &mut |_| {}),
+        }
+    }
+
+    #[test]
+    fn a_study_has_the_same_results_on_a_device() {
+        let on_device = executed(STUDY, Some(&FusedDevice)).unwrap();
+        let on_cpu = executed(STUDY, None).unwrap();
+        assert_eq!(on_device.points, on_cpu.points);
+        assert_eq!(on_device.runs, on_cpu.runs);
+        // Each with its reference.
+        assert_eq!(on_cpu.runs.len(), 2 * 4 * 3);
+    }
+
+    /// A device that fails, or that has a fault.
+    #[derive(Debug)]
+    struct Broken {
+        panics: bool,
+    }
+
+    impl Device for Broken {
+        fn run(&self, _: &mut [&mut DeviceLattice], _: u32) -> Result<(), DeviceError> {
+            assert!(!self.panics, "out of bounds");
+            Err(DeviceError("the GPU failed: it is too hot".to_owned()))
+        }
+    }
+
+    #[test]
+    fn a_study_ends_with_the_sentence_of_a_device_that_fails() {
+        for (panics, sentence) in [
+            (false, "too hot"),
+            (true, "a fault of the program: out of bounds"),
+        ] {
+            let error = executed(STUDY, Some(&Broken { panics })).unwrap_err().to_string();
+            assert!(error.contains(sentence), "{error}");
+        }
+    }
+}
