@@ -231,8 +231,8 @@ fn a_very_large_study_is_asked_for() {
     workspace.results("out").assert_each_run_once(101);
 }
 
-/// The command that tests build has no feature `gpu`; one that has it names the remedy, too. All run folders are
-/// made on the CPU alone, whatever there is.
+/// The command that tests build has no feature `gpu`; one that has it names the remedy, too. All run folders
+/// are made on the CPU alone, whatever there is.
 #[test]
 fn a_device_that_is_missing_is_refused_or_replaced_by_the_cpu() {
     let workspace = Workspace::with_study(SMALL);
