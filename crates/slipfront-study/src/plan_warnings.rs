@@ -60,6 +60,6 @@ pub(crate) fn note_on_replicates(case: &Case) -> Option<&'static str> {
              are the same for every seed",
         )
     } else {
-        Some("all replicates are the same run: no coefficient is random, and one replicate says all")
+        Some("all replicates are the same run: no coefficient is random, so that one replicate is enough")
     }
 }
