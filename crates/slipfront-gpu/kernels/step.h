@@ -36,7 +36,7 @@ struct Lattice {
     u32 steps, nx, n, unused;
 };
 
-static_assert(sizeof(Lattice) == 440 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
+static_assert(sizeof(Lattice) == 408 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
 
 // Numbers of all lattices, one lattice after the other.
 struct Arrays {

@@ -20,7 +20,7 @@ pub(crate) struct Lattice {
 }
 
 // The sizes that `kernels/step.h` has.
-const _: () = assert!(size_of::<Lattice>() == 440 && size_of::<StepRecord>() == 88);
+const _: () = assert!(size_of::<Lattice>() == 408 && size_of::<StepRecord>() == 88);
 
 /// Numbers of a record, each of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;

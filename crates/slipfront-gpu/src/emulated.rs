@@ -49,8 +49,8 @@ impl Device for Emulated {
             first_slips: batch.first_slips.as_mut_ptr(),
             records: batch.records.as_mut_ptr(),
         };
-        // SAFETY: the pointers are to arrays of the batch, which are as long as the kernels take them to be, as the
-        // batch has checked. Nothing else refers to them meanwhile.
+        // SAFETY: the pointers are to arrays of the batch, as long as the kernels take them to be, as the batch
+        // has checked. Nothing else refers to them meanwhile.
         unsafe {
             slipfront_run_emulated(
                 &raw const arrays,
