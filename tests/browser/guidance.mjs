@@ -34,6 +34,31 @@ test('a run says what to try, and at its end what it has found and three ways on
   await until(async () => (await lab.text('pause')) !== say('ended_button'), 'a run that can be stopped');
 });
 
+test('static friction over seeds that change nothing comes with a note', async (t) => {
+  const of = async (kinetic) => {
+    const lab = await open(t, { toml: SMALL.replace('sigma_static_star = 0.02', `sigma_static_star = 0\nsigma_kinetic_star = ${kinetic}`) });
+    await lab.after(() => lab.press('repeat'), 'repeated', ({ finished }) => finished);
+    return lab.text('repeated');
+  };
+  assert.match(await of(0), /Note: every seed gives the same run/);
+  assert.match(await of(0.1), /Note: only the kinetic coefficients differ from seed to seed/);
+});
+
+test('a case opens at the pace that suits its onset, and full speed stays', async (t) => {
+  const lab = await open(t, {});
+  const go = (name) => lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#preset=${name}`), 'case', (shown) => shown.name === name);
+  const pace = () => lab.sent.filter((message) => message.pace !== undefined).at(-1).pace;
+  // The onset is expected 10/3 s after the beginning, to the tenth of a decade that the slider has.
+  for (const name of ['steel', 'fast', 'circle']) {
+    const { onset_star: onset } = await go(name);
+    await until(() => Math.abs(Math.log10((pace() * 10) / 3 / onset)) < 0.06, () => `a pace for ${name}, not ${pace()}`);
+  }
+  await lab.find('#pace').press('End');
+  await go('steel');
+  await lab.find('#pace').press('End');
+  assert.equal(pace(), 0);
+});
+
 test('a number may have its unit, and what is none is said to be none', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.find('#control-load').fill('2 MPa');

@@ -218,6 +218,8 @@ export interface CaseReply {
   duration_star: number;
   /** Null before the peak that it is counted from. */
   kinetic_from_star: number | null;
+  /** Time t* at which the onset is expected first, or that of the end of the run, if that comes before. */
+  onset_star: number;
   /** Direction of the drive, degrees from x towards y; null if it turns the slider. */
   drive_degrees: number | null;
   /** Rise of mu* in one t* of the drive as long as no block slides; null if it turns the slider. */
@@ -235,6 +237,8 @@ export interface CaseReply {
   warnings: string[];
   /** The one of the warnings that blocks are too coarse for the outlines of the texture. */
   too_coarse: string | null;
+  /** Note on what other seeds change, if it is less than static friction. */
+  seeds: string | null;
   search: SearchLimits;
 }
 

@@ -219,9 +219,8 @@ function make() {
 export function startCurves() {
   make();
   on('curve', take);
-  on('case', ({ why, twin: compared }) => {
+  on('case', ({ why }) => {
     if (why === 'open') clear(recorded);
-    if (why === 'open' || !compared) clear(twin);
     refresh();
   });
   new ResizeObserver(fit).observe(find('plot-mu'));

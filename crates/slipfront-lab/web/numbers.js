@@ -110,7 +110,8 @@ function showRepeated({ done, of, finished, change_percent: change, with: textur
   const text = change
     ? say('repeated_change', { change: estimate(change, 1), with: estimate(textured), without: estimate(without), done })
     : textured ? say('repeated_plain', { with: estimate(textured), done }) : say('repeated_none', { done, of });
-  find('repeated').textContent = creeping ? `${text} ${say('repeated_creeping', { creeping })}` : text;
+  const note = state.case?.seeds ? say('repeated_note', { sentence: state.case.seeds }) : '';
+  find('repeated').textContent = [text, creeping ? say('repeated_creeping', { creeping }) : '', finished ? note : ''].filter(Boolean).join(' ');
   if (finished) announce(text);
 }
 

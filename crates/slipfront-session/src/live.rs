@@ -160,11 +160,6 @@ impl LiveRun {
         }
     }
 
-    /// Lets all points of this leg be sent again.
-    pub(crate) fn resend_points(&mut self) {
-        self.n_sent = 0;
-    }
-
     /// The first peak of mu* since rest; none of a later leg, which does not begin at rest.
     pub(crate) fn peak(&self) -> Option<PeakReply> {
         let now = self.running.snapshot();

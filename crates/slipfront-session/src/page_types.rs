@@ -206,6 +206,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             dt_star: 0.1,
             duration_star: 400.0,
             kinetic_from_star,
+            onset_star: 80.0,
             drive_degrees: too_coarse.is_none().then_some(30.0),
             loading_rate: too_coarse.is_none().then_some(0.01),
             steady_level: 0.5,
@@ -218,6 +219,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             has_memory: false,
             mesh: "the block decides".to_owned(),
             warnings: vec!["a warning".to_owned()],
+            seeds: too_coarse.is_none().then_some("a note"),
             too_coarse,
             search: SearchLimits {
                 width_blocks: 4,

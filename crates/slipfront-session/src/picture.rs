@@ -213,10 +213,10 @@ pub(crate) fn lengths(x: &mut [f32], y: &[f32]) {
     }
 }
 
-/// The next of 1, 1.5, 2, 3, 5, 7 and 10 times a power of ten.
+/// The next of 1, 1.5, 2, 3, 5, 7 and 10 times a power of ten; 1 where nothing is above 0.
 fn round_up(value: f32) -> f32 {
     if value <= 0.0 || !value.is_finite() {
-        return 1e-30;
+        return 1.0;
     }
     let power = libm::powf(10.0, libm::log10f(value).floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];

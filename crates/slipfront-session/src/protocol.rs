@@ -233,6 +233,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) dt_star: f64,
     pub(crate) duration_star: f64,
     pub(crate) kinetic_from_star: f64,
+    /// Time t* at which the onset is expected first, or that of the end of the run, if that comes before.
+    pub(crate) onset_star: f64,
     /// Direction of the drive, degrees from x towards y; none if it turns the slider.
     pub(crate) drive_degrees: Option<f64>,
     /// Rise of mu* in one t* of the drive as long as no block slides; none of a drive that turns the slider.
@@ -250,6 +252,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) warnings: Vec<String>,
     /// The one of the warnings that blocks are too coarse for the outlines of the texture.
     pub(crate) too_coarse: Option<String>,
+    /// Note on what other seeds change, if it is less than static friction.
+    pub(crate) seeds: Option<&'static str>,
     pub(crate) search: SearchLimits,
 }
 

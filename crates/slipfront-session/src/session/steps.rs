@@ -20,7 +20,8 @@ impl Session {
         }
         if let Err(sentence) = self.take_steps(now) {
             self.host.reply(Reply::Failed { sentence }.json());
-            (self.live, self.twin) = (None, None);
+            self.live = None;
+            self.end_twin();
             self.is_stepping = false;
             return;
         }
