@@ -127,13 +127,15 @@ test('every field is shown with its name', async (t) => {
   // A run that does not end before it is stopped.
   const lab = await open(t, { toml: SMALL.replace('= 120', '= 400') });
   const fields = await lab.find('#field option').evaluateAll((options) => options.map(({ value }) => value));
-  assert.equal(fields.length, 6);
+  const { FIELDS } = await import('../../crates/slipfront-lab/web/frames.js');
+  assert.deepEqual(fields.toSorted(), FIELDS.toSorted());
   await lab.press('pause');
   await until(() => lab.last.numbers?.t_star > 2, 'some time');
   await lab.press('pause');
-  for (const [k, field] of fields.entries()) {
+  for (const [k, field] of FIELDS.entries()) {
     await lab.after(() => lab.find('#field').selectOption(field), 'picture', (picture) => picture.field === k);
-    assert.equal(await lab.find('#legend-not-yet').isVisible(), field === 'first_slip');
+    assert.equal(await lab.find('#legend-not-yet').isVisible(), ['first_slip', 'front'].includes(field));
+    assert.equal(await lab.find('#legend-sliding').isVisible(), field === 'front');
   }
   await sleep(300);
   const viridis = await lab.find('#bar').screenshot();

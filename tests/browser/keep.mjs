@@ -234,7 +234,6 @@ test('a clip is recorded', async (t) => {
   const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[50, 50]'), calm: false });
   // Blocks that move at different speeds give the clip something to tell.
   await lab.find('#field').selectOption('speed');
-  await lab.find('#pace').press('PageUp');
   await lab.press('open-keep');
   await lab.press('clip');
   await lab.press('rest');

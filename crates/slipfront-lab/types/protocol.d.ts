@@ -41,7 +41,7 @@ export interface Texture {
 }
 
 /** A field of all blocks. */
-export type Field = 'contact_stress' | 'traction' | 'displacement' | 'speed' | 'sliding' | 'first_slip';
+export type Field = 'contact_stress' | 'traction' | 'displacement' | 'speed' | 'sliding' | 'first_slip' | 'front';
 
 /** How the run goes on after the case was changed. */
 export type AfterChange = 'rest' | 'go_on';
@@ -291,6 +291,8 @@ export interface NumbersReply {
   change_percent: number | null;
   kinetic: number | null;
   instants: Record<string, number>;
+  /** Whether every block in contact has slipped since rest. */
+  crossed: boolean;
   steps_per_second: number;
   ended: boolean;
   summary: Summary | null;

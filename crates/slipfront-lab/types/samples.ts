@@ -36,6 +36,7 @@ export const requests = {
     {"do":"view","field":"speed","loading_pace":0},
     {"do":"view","field":"sliding","twin":true},
     {"do":"view","field":"first_slip","kymograph":true},
+    {"do":"view","field":"front"},
     {"do":"view","frames_per_second":60},
     {"do":"view","probe":[1,1]},
     {"do":"view","probe":null},
@@ -101,9 +102,9 @@ export const replies = {
     {"is":"hello","version":"1","presets":[{"name":"circle","group":"cases","title":"A circle"}],"folders":["run"],"results":"results","max_blocks":1,"controls":[{"id":"speed","key":"drive.v_star","si_key":"drive.speed","unit":"m/s","min":0.003,"max":0.3,"logarithmic":true,"whole":false},{"id":"load","key":"load.pressure","si_key":"load.pressure","unit":"Pa","min":1000.0,"max":100000000.0,"logarithmic":true,"whole":false},{"id":"r_star","key":"friction.r_star","si_key":null,"unit":"","min":0.0,"max":1.0,"logarithmic":false,"whole":false}]},
   ],
   numbers: [
-    {"is":"numbers","step":1,"t_star":0.5,"time_s":0.5,"mu_star":0.5,"sliding_percent":0.5,"peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"twin_peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"change_percent":0.5,"kinetic":0.5,"instants":{"A":0.5},"steps_per_second":0.5,"ended":true,"summary":{"energy_error":0.0,"front_duration_star":null,"front_speed_c_s":null,"front_speed_m_s":null,"kinetic_friction_star":null,"nucleation_sites":null,"onset_time_star":0.0,"static_friction_star":0.0,"transition":false}},
-    {"is":"numbers","step":1,"t_star":0.5,"time_s":0.5,"mu_star":0.5,"sliding_percent":0.5,"peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"twin_peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"change_percent":0.5,"kinetic":0.5,"instants":{"A":0.5},"steps_per_second":0.5,"ended":true,"summary":{"energy_error":0.0,"front_duration_star":0.5,"front_speed_c_s":0.5,"front_speed_m_s":0.5,"kinetic_friction_star":0.5,"nucleation_sites":1,"onset_time_star":0.0,"static_friction_star":0.0,"transition":false}},
-    {"is":"numbers","step":1,"t_star":0.5,"time_s":0.5,"mu_star":0.5,"sliding_percent":0.5,"peak":null,"twin_peak":null,"change_percent":null,"kinetic":null,"instants":{"A":0.5},"steps_per_second":0.5,"ended":true,"summary":null},
+    {"is":"numbers","step":1,"t_star":0.5,"time_s":0.5,"mu_star":0.5,"sliding_percent":0.5,"peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"twin_peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"change_percent":0.5,"kinetic":0.5,"instants":{"A":0.5},"crossed":false,"steps_per_second":0.5,"ended":true,"summary":{"energy_error":0.0,"front_duration_star":null,"front_speed_c_s":null,"front_speed_m_s":null,"kinetic_friction_star":null,"nucleation_sites":null,"onset_time_star":0.0,"static_friction_star":0.0,"transition":false}},
+    {"is":"numbers","step":1,"t_star":0.5,"time_s":0.5,"mu_star":0.5,"sliding_percent":0.5,"peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"twin_peak":{"t_star":1.0,"mu_star":1.0,"certain":true},"change_percent":0.5,"kinetic":0.5,"instants":{"A":0.5},"crossed":false,"steps_per_second":0.5,"ended":true,"summary":{"energy_error":0.0,"front_duration_star":0.5,"front_speed_c_s":0.5,"front_speed_m_s":0.5,"kinetic_friction_star":0.5,"nucleation_sites":1,"onset_time_star":0.0,"static_friction_star":0.0,"transition":false}},
+    {"is":"numbers","step":1,"t_star":0.5,"time_s":0.5,"mu_star":0.5,"sliding_percent":0.5,"peak":null,"twin_peak":null,"change_percent":null,"kinetic":null,"instants":{"A":0.5},"crossed":false,"steps_per_second":0.5,"ended":true,"summary":null},
   ],
   probe: [
     {"is":"probe","block":[0,0],"exists":true,"textured":true,"sliding":true,"mu_static":0.5,"mu_kinetic":0.5,"contact_stress_pa":0.5,"traction_pa":0.5,"displacement_m":0.5,"speed_m_s":0.5,"first_slip_star":0.5},

@@ -123,10 +123,7 @@ export function startNumbers() {
   on('hello', () => showRepeating(false));
   onPress('repeat', () => send({ do: 'repeat', seeds: find('repeat').dataset.busy ? 0 : find('repeat-seeds').valueAsNumber }));
   on('case', ({ why, mesh }) => {
-    // One line, with the reason behind it.
-    const sentence = mesh.replaceAll('`', '').replace(/(\d) um\b/g, '$1 \u00b5m');
-    find('mesh').textContent = say('mesh', { sentence: sentence.split(':')[0] });
-    find('mesh').title = sentence;
+    find('mesh-sentence').textContent = say('mesh_sentence', { sentence: mesh.replaceAll('`', '').replace(/(\d) um\b/g, '$1 \u00b5m') });
     if (why !== 'rest') find('repeated').textContent = '';
   });
 }

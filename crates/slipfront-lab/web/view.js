@@ -13,7 +13,7 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 const fieldOfAddress = () => FIELDS.find((field) => field === inAddress('field'));
 
 put('view', {
-  field: fieldOfAddress() ?? 'traction',
+  field: fieldOfAddress() ?? 'front',
   visible: !document.hidden,
   paused: calm,
   pace: 25,

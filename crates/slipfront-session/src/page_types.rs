@@ -23,7 +23,7 @@ use crate::shapes;
 
 /// Requests as the page may send them: every key with every kind of value, and every key that may be absent
 /// so.
-const REQUESTS: [&str; 30] = [
+const REQUESTS: [&str; 31] = [
     r#"{"do":"open","source":{}}"#,
     r#"{"do":"open","source":{"preset":"circle"}}"#,
     r#"{"do":"open","source":{"folder":"run"}}"#,
@@ -42,6 +42,7 @@ const REQUESTS: [&str; 30] = [
     r#"{"do":"view","field":"speed","loading_pace":0}"#,
     r#"{"do":"view","field":"sliding","twin":true}"#,
     r#"{"do":"view","field":"first_slip","kymograph":true}"#,
+    r#"{"do":"view","field":"front"}"#,
     r#"{"do":"view","frames_per_second":60}"#,
     r#"{"do":"view","probe":[1,1]}"#,
     r#"{"do":"view","probe":null}"#,
@@ -280,6 +281,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             change_percent: present.then_some(0.5),
             kinetic: present.then_some(0.5),
             instants: BTreeMap::from([('A', 0.5)]),
+            crossed: false,
             steps_per_second: 0.5,
             ended: true,
             summary: summary.cloned(),

@@ -305,6 +305,8 @@ pub(crate) struct NumbersReply {
     pub(crate) change_percent: Option<f64>,
     pub(crate) kinetic: Option<f64>,
     pub(crate) instants: BTreeMap<char, f64>,
+    /// Whether every block in contact has slipped since rest.
+    pub(crate) crossed: bool,
     pub(crate) steps_per_second: f64,
     pub(crate) ended: bool,
     pub(crate) summary: Option<Value>,

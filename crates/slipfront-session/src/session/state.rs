@@ -80,6 +80,8 @@ pub(super) struct PendingUpdates {
     pub(super) recorded: bool,
     /// How many ends of the run and its twin have been sent.
     pub(super) ends_sent: usize,
+    /// How many stages of the transition have been sent.
+    pub(super) stages_sent: usize,
 }
 
 impl Session {

@@ -165,6 +165,38 @@ fn changes_between_two_pictures_are_run_once() {
     assert_eq!(live.case().groups.r_star, 0.5);
 }
 
+/// Each stage of the transition is told in the step in which it is seen, and the field of the front then has
+/// blocks that slide, blocks that have slipped and blocks that have not.
+#[test]
+fn the_stages_of_a_transition_are_told_at_once() {
+    let mut tried = Tried::new();
+    tried.ask(json!({ "do": "view", "pace": 25, "field": "front" }));
+    let toml = "slider.blocks = [20, 20]\nfriction.sigma_static_star = 0.1\ndrive.v_star = 0.03\n";
+    tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
+    let (mut stages, mut kinds) = (0, [false; 3]);
+    while stages < 3 {
+        let before = tried.session.live.as_ref().unwrap().stages_seen();
+        assert_eq!(before, stages, "a stage was not told");
+        tried.now = tried.advance().unwrap().max(tried.now + Duration::from_millis(1));
+        let told = tried.replies();
+        for numbers in told.iter().filter(|reply| reply["is"] == "numbers") {
+            let seen = [
+                !numbers["instants"]["B"].is_null(),
+                numbers["peak"]["certain"] == true,
+                numbers["crossed"] == true,
+            ];
+            stages = seen.into_iter().filter(|is_seen| *is_seen).count();
+        }
+        for picture in tried.host.pictures.take() {
+            let values = &picture[36..];
+            kinds[0] |= values.contains(&252);
+            kinds[1] |= values.contains(&253);
+            kinds[2] |= values.iter().any(|value| *value <= 250);
+        }
+    }
+    assert_eq!(kinds, [true; 3]);
+}
+
 /// At rest nothing is above 0, and the scale has the unit itself rather than a power of ten of its own.
 #[test]
 fn the_scale_of_a_slider_at_rest_goes_to_1() {

@@ -11,7 +11,7 @@ use slipfront_study::note_on_seeds;
 
 use super::clock::is_due;
 use super::state::{PendingUpdates, Session};
-use crate::live::CurvePoints;
+use crate::live::{CurvePoints, LiveRun};
 use crate::picture::{self, PictureFrame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
 use crate::{controls, search, shapes};
@@ -110,21 +110,23 @@ impl Session {
     pub(super) fn send_updates(&mut self, now: Duration) {
         self.send_curve();
         let ends = self.count_ended();
-        let ended_now = ends != self.pending.ends_sent;
+        let stages = self.live.as_ref().map_or(0, LiveRun::stages_seen);
+        let is_new = ends != self.pending.ends_sent || stages != self.pending.stages_sent;
         let redraw = self.pending.redraw;
         self.pending = PendingUpdates {
             ends_sent: ends,
+            stages_sent: stages,
             ..PendingUpdates::default()
         };
         self.send_picture();
-        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL, now) {
+        if redraw | is_new | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL, now) {
             self.send_numbers(now);
         }
-        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE_INTERVAL, now) {
+        if redraw | is_new | is_due(&mut self.clock.probe, PROBE_INTERVAL, now) {
             self.send_probe();
         }
         if self.view.kymograph
-            && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL, now))
+            && (redraw | is_new | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL, now))
         {
             self.send_kymograph();
         }
@@ -197,6 +199,7 @@ impl Session {
             change_percent,
             kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
             instants: map_of(instants),
+            crossed: live.crossed,
             steps_per_second: self.clock.steps_per_second(at),
             ended: live.ended.is_some(),
             summary,
