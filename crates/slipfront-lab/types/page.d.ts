@@ -108,6 +108,7 @@ export interface Elements {
   'image-file': HTMLInputElement;
   'brush-size': HTMLInputElement;
   'option-w': HTMLInputElement;
+  'polygon-close': HTMLButtonElement;
   'option-s': HTMLInputElement;
   'option-sharp': HTMLInputElement;
   'option-orientation': HTMLSelectElement;

@@ -21,8 +21,8 @@ const BAR_HEIGHT = 46;
 
 export const camera = new Camera();
 
-/** What follows the pointer and the keyboard. @type {import('./overlay.js').Pointers} */
-export const pointers = { ring: null, cursor: null };
+/** What follows the pointer and the keyboard, and the corners of an outline that is not closed. @type {import('./overlay.js').Pointers} */
+export const pointers = { ring: null, cursor: null, corners: [] };
 
 /** @type {Picture} */
 let picture;
