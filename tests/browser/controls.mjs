@@ -214,7 +214,11 @@ test('cases are found by their words and opened', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.press('open-presets');
   const entries = lab.find('#presets-list button');
+  // Each has a sentence and, but for recorded runs, a small picture of what it is.
+  await until(() => lab.find('#presets-list canvas').count(), 'pictures');
   assert.equal(await entries.count(), lab.last.hello.presets.length + lab.last.hello.folders.length);
+  assert.equal(await lab.find('#presets-list canvas').count(), lab.last.hello.presets.length);
+  assert.ok(await lab.find('#presets-list canvas').evaluateAll((all) => all.every((canvas) => canvas.getContext('2d').getImageData(0, 0, 32, 32).data.some((value) => value > 0))));
   await lab.find('#presets-search').fill('groove ACROSS');
   const found = await entries.allTextContents();
   assert.ok(found.length > 0 && found.length < lab.last.hello.presets.length);
@@ -226,6 +230,17 @@ test('cases are found by their words and opened', async (t) => {
   assert.deepEqual([opened.name, opened.why, opened.texture[0].shape], ['groove_across', 'open', 'groove']);
   await lab.reads('case-name', 'groove_across');
   assert.equal(await lab.find('#presets').isVisible(), false);
+});
+
+test('a case of the list says what it is, and a figure of many runs that it is one of them', async (t) => {
+  const lab = await open(t, {});
+  const go = (name) => lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#preset=${name}`), 'case', (shown) => shown.why === 'open');
+  const titleOf = (name) => lab.last.hello.presets.find((preset) => preset.name === name).title;
+  await go('paper/fig16');
+  await lab.notice(say('preset_study', { title: titleOf('paper/fig16') }));
+  await go('gear');
+  await lab.notice(say('preset_case', { title: titleOf('gear') }));
+  assert.equal((await lab.text('notices')).includes(titleOf('paper/fig16')), false);
 });
 
 test('the theme is chosen, and remembered', async (t) => {

@@ -8,6 +8,80 @@ use toml::{Table, Value};
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
+/// The groups of the list with the cases of the folder in them. The cases of the paper are another group.
+const GROUPS: [(&str, &[&str]); 6] = [
+    (
+        "holes",
+        &[
+            "circle",
+            "ellipse_across",
+            "semi_square",
+            "polygon",
+            "rough_circle",
+            "oblique",
+            "dimples",
+            "hexagonal_dimples",
+            "hierarchical_dimples",
+            "mask",
+        ],
+    ),
+    (
+        "grooves",
+        &[
+            "groove_across",
+            "groove_along",
+            "hierarchical_grooves",
+            "adhesion",
+        ],
+    ),
+    (
+        "surfaces",
+        &["baseline", "given_surface", "ground", "composite", "graded"],
+    ),
+    (
+        "materials",
+        &["steel", "steel_part", "pdms_pad", "sheet", "rigid_slider"],
+    ),
+    (
+        "laws",
+        &[
+            "ageing",
+            "rate_and_state",
+            "weakening",
+            "contact_springs",
+            "slide_hold_slide",
+            "velocity_steps",
+            "damped",
+            "viscous",
+            "fast",
+        ],
+    ),
+    (
+        "sliders",
+        &[
+            "single_block",
+            "chain",
+            "burridge_knopoff",
+            "gear",
+            "disc",
+            "torsion",
+            "tilted_load",
+            "edge_driven",
+            "edge_driven_chain",
+            "vertical_slider",
+            "fault",
+        ],
+    ),
+];
+
+/// The place of a case in the list: its group, and its place in it.
+fn place(name: &str) -> Option<(usize, usize)> {
+    GROUPS.iter().enumerate().find_map(|(group, (_, names))| {
+        let place = names.iter().position(|other| *other == name)?;
+        Some((group, place))
+    })
+}
+
 /// The case with which the page opens unless another one is named.
 ///
 /// # Errors
@@ -32,7 +106,7 @@ fn figures() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// All cases to choose from.
 pub(crate) fn all() -> Presets {
     let mut all: Vec<_> = cases().map(|(name, text)| case(name, text)).collect();
-    all.sort_by(|one, other| one.name.cmp(&other.name));
+    all.sort_by_key(|preset| place(&preset.name));
     all.extend(figures().map(|(name, text)| figure(name, text)));
     Presets(all)
 }
@@ -48,7 +122,10 @@ fn case(name: &str, text: &str) -> Preset {
     let files = files.collect();
     Preset {
         name: name.to_owned(),
-        group: "cases".to_owned(),
+        group: place(name)
+            .map_or("other", |(group, _)| GROUPS[group].0)
+            .to_owned(),
+        is_study: false,
         title: title(text),
         toml: text.to_owned(),
         files,
@@ -60,6 +137,9 @@ fn figure(name: &str, text: &str) -> Preset {
     Preset {
         name: format!("paper/{name}"),
         group: "paper".to_owned(),
+        is_study: text
+            .parse::<Table>()
+            .is_ok_and(|table| table.contains_key("base")),
         title: title(text),
         toml: case_of_study(text),
         files: BTreeMap::new(),
@@ -93,4 +173,74 @@ fn case_of_study(text: &str) -> String {
         time.remove("stop");
     }
     case.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use base64::Engine;
+    use slipfront_case::case::Case;
+
+    use super::*;
+
+    /// Pixels along each side of the small picture of a case.
+    const SIZE: usize = 32;
+    /// Values of pixels without contact and without a block; between them are static coefficients.
+    const NO_CONTACT: u8 = 0;
+    const NO_BLOCK: u8 = 15;
+
+    /// The small picture of a case from its upper left corner on, half a byte for each pixel: the static
+    /// coefficient over its mean, from 0.7 to 1.3.
+    fn small_picture(case: &Case) -> String {
+        let (lattice, surface) = (&case.model.lattice, &case.model.surface);
+        let exists = |b: usize| case.model.slider().exists(b);
+        let touching: Vec<f64> = (0..lattice.n_blocks())
+            .filter(|&b| exists(b) && !surface.textured[b])
+            .map(|b| surface.mu_static[b])
+            .collect();
+        let mean = touching.iter().sum::<f64>() / touching.len() as f64;
+        let pixel = |k: usize| {
+            let (column, row) = (k % SIZE, SIZE - 1 - k / SIZE);
+            let b = lattice.block(column * lattice.nx / SIZE, row * lattice.ny / SIZE);
+            if !exists(b) {
+                NO_BLOCK
+            } else if surface.textured[b] {
+                NO_CONTACT
+            } else {
+                let share = (surface.mu_static[b] / mean - 0.7) / 0.6;
+                1 + (13.0 * share.clamp(0.0, 1.0)).round() as u8
+            }
+        };
+        let bytes: Vec<u8> = (0..SIZE * SIZE / 2)
+            .map(|k| pixel(2 * k) << 4 | pixel(2 * k + 1))
+            .collect();
+        base64::engine::general_purpose::STANDARD.encode(bytes)
+    }
+
+    /// Every case of the folder has a group, and the list has a small picture of every case.
+    #[test]
+    fn cases_have_a_group_and_a_small_picture() {
+        let presets = all();
+        let named = GROUPS.iter().flat_map(|(_, names)| *names);
+        assert_eq!(named.count(), cases().count());
+        let mut lines = Vec::new();
+        for preset in &presets.0 {
+            assert_ne!(preset.group, "other", "{} has no group", preset.name);
+            let document = presets.document(&preset.name).unwrap();
+            let case = document.case_to_show(&mut |_| true).unwrap();
+            lines.push(format!("  \"{}\": \"{}\"", preset.name, small_picture(&case)));
+        }
+        let text = format!("{{\n{}\n}}\n", lines.join(",\n"));
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("web/preset_pictures.json");
+        if std::env::var_os("UPDATE").is_some() {
+            std::fs::write(&file, &text).unwrap();
+        }
+        let written = std::fs::read_to_string(&file).unwrap_or_default();
+        assert!(
+            written == text,
+            "{} is not of these cases: `UPDATE=1 cargo test -p slipfront-lab --lib presets` writes it anew",
+            file.display()
+        );
+    }
 }

@@ -114,7 +114,7 @@ function turnPage(by) {
 function list() {
   const entries = lessons.map(({ id }) => {
     const { title, minutes, summary } = words[id];
-    const button = make('button', { type: 'button' }, [make('strong', { textContent: told(title) }), make('span', { textContent: say('lesson_summary', { minutes, summary: told(summary) }) })]);
+    const button = make('button', { type: 'button' }, [make('span', {}, [make('strong', { textContent: told(title) }), make('span', { textContent: say('lesson_summary', { minutes, summary: told(summary) }) })])]);
     button.addEventListener('click', () => {
       find('lessons').close();
       put('lesson', { lesson: id, step: 0 });

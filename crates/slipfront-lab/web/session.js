@@ -4,7 +4,9 @@
 import { inAddress } from './address.js';
 import { send } from './connection.js';
 import { readLink } from './link.js';
+import { notice, withdraw } from './notices.js';
 import { next, on, put, state } from './store.js';
+import { say } from './text.js';
 import { sendView } from './view.js';
 
 /** @import { CaseReply, Source } from '../types/protocol' */
@@ -17,8 +19,11 @@ let quiet = 0;
 /** @type {Record<string, string>} */
 let files = {};
 
-/** Opens another case. @param {Source} source */
+/** Opens another case; of one of the list it says what it is. @param {Source} source */
 export function open(source) {
+  withdraw('preset');
+  const listed = state.hello?.presets.find(({ name }) => name === source.preset);
+  if (listed) notice(say(listed.is_study ? 'preset_study' : 'preset_case', { title: listed.title }), { topic: 'preset' });
   put('recorded', null);
   put('selected', null);
   send({ do: 'open', source });

@@ -163,7 +163,8 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     let case = document.case(&mut |_| true).unwrap();
     let presets = [PresetEntry {
         name: "circle",
-        group: "cases",
+        group: "holes",
+        is_study: false,
         title: "A circle",
     }];
     for results in [None, Some("results")] {

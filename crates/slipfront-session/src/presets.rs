@@ -14,8 +14,10 @@ use crate::protocol::PresetEntry;
 pub struct Preset {
     /// The name by which the case is chosen.
     pub name: String,
-    /// The group of the list in which the case stands: `cases` or `paper`.
+    /// The group of the list in which the case stands, such as `grooves` or `paper`.
     pub group: String,
+    /// Whether the case is the base of a study of many runs.
+    pub is_study: bool,
     /// A sentence that says what the case shows.
     pub title: String,
     /// The case as a text.
@@ -52,6 +54,7 @@ impl Presets {
             PresetEntry {
                 name: &preset.name,
                 group: &preset.group,
+                is_study: preset.is_study,
                 title: &preset.title,
             }
         }
