@@ -119,16 +119,17 @@ impl LiveRun {
         if self.ended.is_none() {
             self.ended = self.running.advance(steps).map_err(|error| error.to_string())?;
         }
+        Ok(())
+    }
+
+    /// How much of a transition from rest has been seen: the first slip, the first peak, the slip of every
+    /// block in contact. It looks at every block.
+    pub(crate) fn look_for_stages(&mut self) -> usize {
         if self.leg == 0 && !self.crossed && self.has_slipped() {
             let first_slips = self.running.snapshot().first_slip_time_star();
             let slipped = first_slips.iter().filter(|time| !time.is_nan()).count();
             self.crossed = slipped == self.case().model.surface.n_contact();
         }
-        Ok(())
-    }
-
-    /// How much of a transition has been seen: the first slip, the first peak, the slip of every block.
-    pub(crate) fn stages_seen(&self) -> usize {
         let has_peak = self.peak().is_some_and(|peak| peak.certain);
         [self.leg == 0 && self.has_slipped(), has_peak, self.crossed]
             .into_iter()

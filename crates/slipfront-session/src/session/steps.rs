@@ -79,7 +79,7 @@ impl Session {
             self.clock.begin_slice(taken, now);
             self.clock.count_steps(taken);
             self.clock.due -= taken as f64;
-            if self.view.pace > 0.0 && live.stages_seen() > self.pending.stages_sent {
+            if self.view.pace > 0.0 && live.look_for_stages() > self.pending.stages_sent {
                 // A page that can follow is told at once, so that it can stop there.
                 self.pending.redraw = true;
                 self.is_stepping = false;

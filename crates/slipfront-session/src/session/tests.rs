@@ -175,7 +175,7 @@ fn the_stages_of_a_transition_are_told_at_once() {
     tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
     let (mut stages, mut kinds) = (0, [false; 3]);
     while stages < 3 {
-        let before = tried.session.live.as_ref().unwrap().stages_seen();
+        let before = tried.session.live.as_mut().unwrap().look_for_stages();
         assert_eq!(before, stages, "a stage was not told");
         tried.now = tried.advance().unwrap().max(tried.now + Duration::from_millis(1));
         let told = tried.replies();

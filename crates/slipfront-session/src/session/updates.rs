@@ -11,7 +11,7 @@ use slipfront_study::note_on_seeds;
 
 use super::clock::is_due;
 use super::state::{PendingUpdates, Session};
-use crate::live::{CurvePoints, LiveRun};
+use crate::live::CurvePoints;
 use crate::picture::{self, PictureFrame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
 use crate::{controls, search, shapes};
@@ -110,7 +110,11 @@ impl Session {
     pub(super) fn send_updates(&mut self, now: Duration) {
         self.send_curve();
         let ends = self.count_ended();
-        let stages = self.live.as_ref().map_or(0, LiveRun::stages_seen);
+        let stages = match &mut self.live {
+            // At full speed nothing waits for them.
+            Some(live) if self.view.pace > 0.0 || ends > 0 => live.look_for_stages(),
+            _ => self.pending.stages_sent,
+        };
         let is_new = ends != self.pending.ends_sent || stages != self.pending.stages_sent;
         let redraw = self.pending.redraw;
         self.pending = PendingUpdates {
