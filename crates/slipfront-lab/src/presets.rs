@@ -2,84 +2,30 @@
 
 use std::collections::BTreeMap;
 
-use include_dir::{Dir, include_dir};
+use include_dir::{Dir, File, include_dir};
 use slipfront_session::{Document, Preset, Presets};
 use toml::{Table, Value};
 
+/// The file with the small pictures of all cases, by their names.
+const PICTURES: &str = "pictures.json";
+
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
-/// The groups of the list with the cases of the folder in them. The cases of the paper are another group.
-const GROUPS: [(&str, &[&str]); 6] = [
-    (
-        "holes",
-        &[
-            "circle",
-            "ellipse_across",
-            "semi_square",
-            "polygon",
-            "rough_circle",
-            "oblique",
-            "dimples",
-            "hexagonal_dimples",
-            "hierarchical_dimples",
-            "mask",
-        ],
-    ),
-    (
-        "grooves",
-        &[
-            "groove_across",
-            "groove_along",
-            "hierarchical_grooves",
-            "adhesion",
-        ],
-    ),
-    (
-        "surfaces",
-        &["baseline", "given_surface", "ground", "composite", "graded"],
-    ),
-    (
-        "materials",
-        &["steel", "steel_part", "pdms_pad", "sheet", "rigid_slider"],
-    ),
-    (
-        "laws",
-        &[
-            "ageing",
-            "rate_and_state",
-            "weakening",
-            "contact_springs",
-            "slide_hold_slide",
-            "velocity_steps",
-            "damped",
-            "viscous",
-            "fast",
-        ],
-    ),
-    (
-        "sliders",
-        &[
-            "single_block",
-            "chain",
-            "burridge_knopoff",
-            "gear",
-            "disc",
-            "torsion",
-            "tilted_load",
-            "edge_driven",
-            "edge_driven_chain",
-            "vertical_slider",
-            "fault",
-        ],
-    ),
-];
+/// A file of the folder that is no case.
+fn text_of(name: &str) -> &'static str {
+    CASES
+        .get_file(name)
+        .and_then(File::contents_utf8)
+        .unwrap_or_default()
+}
 
-/// The place of a case in the list: its group, and its place in it.
-fn place(name: &str) -> Option<(usize, usize)> {
-    GROUPS.iter().enumerate().find_map(|(group, (_, names))| {
-        let place = names.iter().position(|other| *other == name)?;
-        Some((group, place))
-    })
+/// The groups of the list with the cases of the folder in them, in their order. The cases of the paper are
+/// another group.
+fn groups() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let groups = text_of("groups.txt")
+        .lines()
+        .filter_map(|line| line.split_once(": "));
+    groups.flat_map(|(group, names)| names.split(", ").map(move |name| (group, name)))
 }
 
 /// The case with which the page opens unless another one is named.
@@ -106,8 +52,12 @@ fn figures() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// All cases to choose from.
 pub(crate) fn all() -> Presets {
     let mut all: Vec<_> = cases().map(|(name, text)| case(name, text)).collect();
-    all.sort_by_key(|preset| place(&preset.name));
+    all.sort_by_key(|preset| groups().position(|(_, name)| name == preset.name));
     all.extend(figures().map(|(name, text)| figure(name, text)));
+    let mut pictures: BTreeMap<String, String> = serde_json::from_str(text_of(PICTURES)).unwrap_or_default();
+    for preset in &mut all {
+        preset.picture = pictures.remove(&preset.name).unwrap_or_default();
+    }
     Presets(all)
 }
 
@@ -122,9 +72,11 @@ fn case(name: &str, text: &str) -> Preset {
     let files = files.collect();
     Preset {
         name: name.to_owned(),
-        group: place(name)
-            .map_or("other", |(group, _)| GROUPS[group].0)
+        group: groups()
+            .find(|(_, other)| *other == name)
+            .map_or("other", |(group, _)| group)
             .to_owned(),
+        picture: String::new(),
         is_study: false,
         title: title(text),
         toml: text.to_owned(),
@@ -137,6 +89,7 @@ fn figure(name: &str, text: &str) -> Preset {
     Preset {
         name: format!("paper/{name}"),
         group: "paper".to_owned(),
+        picture: String::new(),
         is_study: text
             .parse::<Table>()
             .is_ok_and(|table| table.contains_key("base")),
@@ -222,8 +175,7 @@ mod tests {
     #[test]
     fn cases_have_a_group_and_a_small_picture() {
         let presets = all();
-        let named = GROUPS.iter().flat_map(|(_, names)| *names);
-        assert_eq!(named.count(), cases().count());
+        assert_eq!(groups().count(), cases().count());
         let mut lines = Vec::new();
         for preset in &presets.0 {
             assert_ne!(preset.group, "other", "{} has no group", preset.name);
@@ -232,7 +184,7 @@ mod tests {
             lines.push(format!("  \"{}\": \"{}\"", preset.name, small_picture(&case)));
         }
         let text = format!("{{\n{}\n}}\n", lines.join(",\n"));
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("web/preset_pictures.json");
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(PICTURES);
         if std::env::var_os("UPDATE").is_some() {
             std::fs::write(&file, &text).unwrap();
         }

@@ -177,6 +177,8 @@ export interface HelloReply {
 export interface PresetEntry {
   name: string;
   group: string;
+  /** Its small picture, 32 x 32 values of half a byte, in Base64. */
+  picture: string;
   /** Whether the case is the base of a study of many runs. */
   is_study: boolean;
   title: string;

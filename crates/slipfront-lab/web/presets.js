@@ -1,7 +1,6 @@
 // @ts-check
 // The list of cases to open: searchable, in groups and with small pictures, with the recorded runs of the
 // folder of results.
-import { jsonOf } from './assets.js';
 import { fromBase64 } from './base64.js';
 import { find, make, onPress } from './element.js';
 import { open } from './session.js';
@@ -17,9 +16,6 @@ const NO_CONTACT = 0;
 const NO_BLOCK = 15;
 const GROUPS = ['holes', 'grooves', 'surfaces', 'materials', 'laws', 'sliders', 'paper'];
 
-/** The small pictures by the names of the cases, in Base64. @type {Record<string, string>} */
-let pictures = {};
-
 /** Draws the texture of a case and how its static coefficients differ. @param {string} packed */
 function picture(packed) {
   const canvas = make('canvas', { width: SIZE, height: SIZE, 'aria-hidden': 'true' });
@@ -34,9 +30,8 @@ function picture(packed) {
   return canvas;
 }
 
-/** @param {string} title @param {string} hint @param {Source} source */
-function entry(title, hint, source) {
-  const packed = pictures[source.preset ?? ''];
+/** @param {string} title @param {string} hint @param {Source} source @param {string} [packed] its small picture */
+function entry(title, hint, source, packed) {
   const words = make('span', {}, [make('strong', { textContent: title }), make('span', { textContent: hint })]);
   const button = make('button', { type: 'button' }, packed ? [picture(packed), words] : [words]);
   button.addEventListener('click', () => {
@@ -54,16 +49,15 @@ function groups(wanted) {
   const matches = (/** @type {string} */ text) => words.every((word) => text.toLowerCase().includes(word));
   const ofGroup = (/** @type {string} */ group) => presets
     .filter((preset) => preset.group === group && matches(`${preset.name} ${preset.title}`))
-    .map(({ name, title }) => entry(name, title, { preset: name }));
+    .map(({ name, title, picture: packed }) => entry(name, title, { preset: name }, packed));
   return [
     ...GROUPS.map((group) => /** @type {[string, HTMLElement[]]} */ ([say(`presets_${group}`), ofGroup(group)])),
     [say('presets_folders'), folders.filter(matches).map((name) => entry(name, say('folder_hint'), { folder: name }))],
   ];
 }
 
-async function show() {
+function show() {
   if (!state.hello) return;
-  if (Object.keys(pictures).length === 0) pictures = (await jsonOf('preset_pictures.json')) ?? {};
   const found = groups(find('presets-search').value).filter(([, entries]) => entries.length > 0);
   const content = found.flatMap(([heading, entries]) => [make('h3', { textContent: heading }), make('ul', {}, entries)]);
   find('presets-list').replaceChildren(...(content.length > 0 ? content : [make('p', { textContent: say('nothing_found') })]));

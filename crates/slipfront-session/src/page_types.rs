@@ -164,6 +164,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     let presets = [PresetEntry {
         name: "circle",
         group: "holes",
+        picture: "",
         is_study: false,
         title: "A circle",
     }];

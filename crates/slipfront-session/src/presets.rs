@@ -16,6 +16,8 @@ pub struct Preset {
     pub name: String,
     /// The group of the list in which the case stands, such as `grooves` or `paper`.
     pub group: String,
+    /// The small picture of the case, which the page draws: 32 x 32 values of half a byte, in Base64.
+    pub picture: String,
     /// Whether the case is the base of a study of many runs.
     pub is_study: bool,
     /// A sentence that says what the case shows.
@@ -54,6 +56,7 @@ impl Presets {
             PresetEntry {
                 name: &preset.name,
                 group: &preset.group,
+                picture: &preset.picture,
                 is_study: preset.is_study,
                 title: &preset.title,
             }

@@ -212,6 +212,7 @@ pub(crate) struct SavingEntry<'a> {
 pub(crate) struct PresetEntry<'a> {
     pub(crate) name: &'a str,
     pub(crate) group: &'a str,
+    pub(crate) picture: &'a str,
     /// Whether the case is the base of a study of many runs.
     pub(crate) is_study: bool,
     pub(crate) title: &'a str,
