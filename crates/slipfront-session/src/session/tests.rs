@@ -305,7 +305,7 @@ fn curves_are_whole_after_any_order_of_requests() {
     let textured = |percent: u32| format!("{KEYS}[[texture]]\nshape = 'cavity'\ncoverage = {percent}\n");
     let [one, two] = [textured(10), textured(20)];
     let surface = format!("{one}[friction]\nmu_static_field = 'mu.csv'\n");
-    let rows = |mu: &str| vec![vec![mu; 6].join(","); 6].join("\n");
+    let rows = |mu: &str| vec![[mu; 6].join(","); 6].join("\n");
     let files = |mu: &str| json!({ "mu.csv": crate::base64::encode(rows(mu).as_bytes()) });
     let run = run_files(&one);
     let open = |source: Value| json!({ "do": "open", "source": source });
