@@ -194,10 +194,10 @@ test('the probe reads the block below the pointer', async (t) => {
   await lab.reads('probe-values', new RegExp(probe.mu_static.toFixed(3)));
 });
 
-test('the kymograph has a row for each instant that the server sends, and its colours go up to the largest share', async (t) => {
+test('the kymograph has a column for each instant that the server sends, and its colours go up to the largest share', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.runToEnd();
-  await until(async () => (await lab.find('#kymograph').evaluate(({ width, height }) => `${width} ${height}`)) === `${lab.last.kymograph.bins} ${lab.last.kymograph.rows}`, 'a kymograph of the size that was sent');
+  await until(async () => (await lab.find('#kymograph').evaluate(({ width, height }) => `${width} ${height}`)) === `${lab.last.kymograph.rows} ${lab.last.kymograph.bins}`, 'a kymograph of the size that was sent');
   assert.ok(lab.last.kymograph.rows > 10 && lab.last.kymograph.bins > 1);
   assert.ok(colours(await lab.find('#kymograph').screenshot()) > 4);
   // The last colour of the map, which only the largest share has.

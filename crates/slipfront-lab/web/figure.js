@@ -169,8 +169,8 @@ export function kymographFigure() {
   if (axes) {
     const from = [left, top + high];
     const [factor, letter] = prefix(Math.max(...axes.place.map(Math.abs)));
-    drawAxis(context, { from, length: wide, upright: false, range: axes.place.map((metres) => metres / factor), title: say('axis_place', { unit: `${letter}m` }) });
-    drawAxis(context, { from, length: high, upright: true, range: axes.time, title: say('axis_t') });
+    drawAxis(context, { from, length: wide, upright: false, range: axes.time, title: say('axis_t') });
+    drawAxis(context, { from, length: high, upright: true, range: axes.place.map((metres) => metres / factor), title: say('axis_place', { unit: `${letter}m` }) });
   }
   drawBar(context, { x: left, y: top + high + BELOW, width: wide, bytes: table(find('colourmap').value), low: 0, high: axes?.most ?? 100, unit: '%', title: say('kymograph_share') });
   return canvas;

@@ -1,5 +1,5 @@
 // @ts-check
-// What slides where along the drive (to the right) and when (upwards), as the command draws it.
+// What slides when (to the right) and where along the drive (upwards), as the command draws it.
 import { table } from './colours.js';
 import { atMost, find } from './element.js';
 import { LARGEST } from './frames.js';
@@ -22,23 +22,23 @@ function draw() {
   if (!newest || newest.rows === 0 || newest.bins === 0) return;
   const { rows, bins, bytes, firstStar, lastStar, edgeBlocks, binBlocks } = newest;
   const canvas = find('kymograph');
-  canvas.width = bins;
-  canvas.height = rows;
+  canvas.width = rows;
+  canvas.height = bins;
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-  const image = context.createImageData(bins, rows);
+  const image = context.createImageData(rows, bins);
   const pixels = new Uint32Array(image.data.buffer);
   const colours = new Uint32Array(table(find('colourmap').value).buffer);
   const most = largest(bytes);
   bytes.forEach((value, k) => {
-    const row = rows - 1 - Math.floor(k / bins);
-    pixels[row * bins + (k % bins)] = colours[value <= LARGEST ? Math.round((value * LARGEST) / most) : value];
+    const [instant, bin] = [Math.floor(k / bins), k % bins];
+    pixels[(bins - 1 - bin) * rows + instant] = colours[value <= LARGEST ? Math.round((value * LARGEST) / most) : value];
   });
   context.putImageData(image, 0, 0);
   const place = (/** @type {number} */ blocks) => quantity(blocks * (state.case?.block_size_m ?? 1), 'm');
-  find('kymograph-low').textContent = say('kymograph_t', { t: number(firstStar) });
-  find('kymograph-high').textContent = say('kymograph_t', { t: number(lastStar) });
-  find('kymograph-first').textContent = place(edgeBlocks);
-  find('kymograph-last').textContent = place(edgeBlocks + bins * binBlocks);
+  find('kymograph-low').textContent = place(edgeBlocks);
+  find('kymograph-high').textContent = place(edgeBlocks + bins * binBlocks);
+  find('kymograph-first').textContent = say('kymograph_t', { t: number(firstStar) });
+  find('kymograph-last').textContent = say('kymograph_t', { t: number(lastStar) });
   find('kymograph-note').textContent = say('kymograph_note', { most: number((100 * most) / LARGEST, 2) });
 }
 const refresh = atMost(draw, SPACING_MS);
