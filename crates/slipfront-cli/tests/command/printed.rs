@@ -207,17 +207,28 @@ fn jobs_show_what_is_printed() {
     assert!(workspace.exists("results/dimples/mask.dxf") && workspace.exists("effect-as-crate/effect"));
 }
 
-/// The tutorials, each in a folder of its own. Of the lecture those commands are run that need no module of the
-/// laboratory.
 #[test]
-fn tutorials_show_what_is_printed() {
+fn the_tutorial_of_a_workshop_shows_what_is_printed() {
     let workspace = with_cases();
     assert!(check_in(&workspace, "tutorials/laser-workshop.md", true) >= 6);
     assert!(workspace.exists("dimples.dxf") && workspace.exists("dimples.png"));
+}
+
+#[test]
+fn the_tutorial_of_a_tester_shows_what_is_printed() {
     assert!(check("tutorials/testers-record.md", true) >= 3);
+}
+
+#[test]
+fn the_tutorial_of_a_thesis_shows_what_is_printed() {
     let workspace = with_cases();
     assert!(check_in(&workspace, "tutorials/thesis.md", true) >= 6);
     assert!(workspace.exists("orientation-as-crate/orientation") && workspace.exists("orientation.bib"));
+}
+
+/// The laboratory as a file, whose command shows no output here, needs a module that is built from the sources.
+#[test]
+fn the_tutorial_of_a_lecture_shows_what_is_printed() {
     assert!(check("tutorials/lecture.md", false) >= 4);
 }
 
