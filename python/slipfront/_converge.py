@@ -192,7 +192,7 @@ def converge(
     >>> found.block_sizes
     ['100 um', '50 um', '25 um']
     >>> found.quantities["static_friction_star"]
-    static_friction_star: 0.853 ± 0.021, of which the mesh is 0.021 (order 2.0)
+    static_friction_star: 0.853 ± 0.021 (discretisation 0.021; order 2.0)
     """
     case = as_case(case, overrides)
     # A file that has changed would make another case than this one.

@@ -81,7 +81,7 @@ def test_every_quantity_has_its_values_errors_and_sentence(sheet: Path) -> None:
     assert abs(last) < abs(first) / 4 and friction.order == 2
     assert friction.mesh_error == max(abs(last), abs(first) / 12)
     assert repr(friction) == friction.sentence
-    assert friction.sentence.startswith("static_friction_star: 1.00") and "of which the mesh is" in friction.sentence
+    assert friction.sentence.startswith("static_friction_star: 1.00") and "(discretisation " in friction.sentence
     row = found.to_list()[1]
     assert row["quantity"] == "static_friction_star" and row["values"] == friction.values
     assert found.points.query("quantity == 'static_friction_star'")["mean"].tolist() == list(friction.values)

@@ -127,13 +127,15 @@ test('every field is shown with its name', async (t) => {
   // A run that does not end before it is stopped.
   const lab = await open(t, { toml: SMALL.replace('= 120', '= 400') });
   const fields = await lab.find('#field option').evaluateAll((options) => options.map(({ value }) => value));
-  assert.equal(fields.length, 6);
+  const { FIELDS } = await import('../../crates/slipfront-lab/web/frames.js');
+  assert.deepEqual(fields.toSorted(), FIELDS.toSorted());
   await lab.press('pause');
   await until(() => lab.last.numbers?.t_star > 2, 'some time');
   await lab.press('pause');
-  for (const [k, field] of fields.entries()) {
+  for (const [k, field] of FIELDS.entries()) {
     await lab.after(() => lab.find('#field').selectOption(field), 'picture', (picture) => picture.field === k);
-    assert.equal(await lab.find('#legend-not-yet').isVisible(), field === 'first_slip');
+    assert.equal(await lab.find('#legend-not-yet').isVisible(), ['first_slip', 'front'].includes(field));
+    assert.equal(await lab.find('#legend-sliding').isVisible(), field === 'front');
   }
   await sleep(300);
   const viridis = await lab.find('#bar').screenshot();
@@ -192,19 +194,31 @@ test('the probe reads the block below the pointer', async (t) => {
   await lab.reads('probe-values', new RegExp(probe.mu_static.toFixed(3)));
 });
 
-test('the kymograph has a column for each row that the server sends', async (t) => {
+test('the kymograph has a row for each instant that the server sends, and its colours go up to the largest share', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.runToEnd();
-  await until(async () => (await lab.find('#kymograph').evaluate(({ width, height }) => `${width} ${height}`)) === `${lab.last.kymograph.rows} ${lab.last.kymograph.bins}`, 'a kymograph of the size that was sent');
+  await until(async () => (await lab.find('#kymograph').evaluate(({ width, height }) => `${width} ${height}`)) === `${lab.last.kymograph.bins} ${lab.last.kymograph.rows}`, 'a kymograph of the size that was sent');
   assert.ok(lab.last.kymograph.rows > 10 && lab.last.kymograph.bins > 1);
   assert.ok(colours(await lab.find('#kymograph').screenshot()) > 4);
+  // The last colour of the map, which only the largest share has.
+  const { COLOURMAPS } = await import('../../crates/slipfront-lab/web/colourmaps.js');
+  const last = COLOURMAPS.viridis.slice(-6);
+  const brightest = () => lab.find('#kymograph').evaluate((canvas, wanted) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return Array.from({ length: data.length / 4 }, (_, k) => [...data.subarray(4 * k, 4 * k + 3)].map((value) => value.toString(16).padStart(2, '0')).join('')).includes(wanted);
+  }, last);
+  await until(brightest, 'a place with the last colour');
 });
 
 test('cases are found by their words and opened', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.press('open-presets');
   const entries = lab.find('#presets-list button');
+  // Each has a sentence and, but for recorded runs, a small picture of what it is.
+  await until(() => lab.find('#presets-list canvas').count(), 'pictures');
   assert.equal(await entries.count(), lab.last.hello.presets.length + lab.last.hello.folders.length);
+  assert.equal(await lab.find('#presets-list canvas').count(), lab.last.hello.presets.length);
+  assert.ok(await lab.find('#presets-list canvas').evaluateAll((all) => all.every((canvas) => canvas.getContext('2d').getImageData(0, 0, 32, 32).data.some((value) => value > 0))));
   await lab.find('#presets-search').fill('groove ACROSS');
   const found = await entries.allTextContents();
   assert.ok(found.length > 0 && found.length < lab.last.hello.presets.length);
@@ -216,6 +230,17 @@ test('cases are found by their words and opened', async (t) => {
   assert.deepEqual([opened.name, opened.why, opened.texture[0].shape], ['groove_across', 'open', 'groove']);
   await lab.reads('case-name', 'groove_across');
   assert.equal(await lab.find('#presets').isVisible(), false);
+});
+
+test('a case of the list says what it is, and a figure of many runs that it is one of them', async (t) => {
+  const lab = await open(t, {});
+  const go = (name) => lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#preset=${name}`), 'case', (shown) => shown.why === 'open');
+  const titleOf = (name) => lab.last.hello.presets.find((preset) => preset.name === name).title;
+  await go('paper/fig16');
+  await lab.notice(say('preset_study', { title: titleOf('paper/fig16') }));
+  await go('gear');
+  await lab.notice(say('preset_case', { title: titleOf('gear') }));
+  assert.equal((await lab.text('notices')).includes(titleOf('paper/fig16')), false);
 });
 
 test('the theme is chosen, and remembered', async (t) => {

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { SIZES } from './accessibility.mjs';
+import { link } from './command.mjs';
 import { open, PLAIN, say, SMALL, until, webJson } from './page.mjs';
 
 test('an arrow tells whither the drive pulls, unless it turns the slider', async (t) => {
@@ -15,6 +16,65 @@ test('an arrow tells whither the drive pulls, unless it turns the slider', async
   const turned = await open(t, { toml: `${PLAIN}\n[drive]\nmotion = "rotation"\n` });
   assert.equal(turned.last.case.drive_degrees, null);
   assert.equal(await turned.find('#drive').isVisible(), false);
+});
+
+test('a case that is opened stops at its first slip, its peak and when the front has crossed, and says so', async (t) => {
+  const lab = await open(t, { toml: SMALL, calm: false });
+  const captions = ['first_slip', 'peak', 'crossed'].map((stage) => say(`caption_${stage}`));
+  const seen = [];
+  const pauses = () => lab.sent.filter((order) => order.paused === true).length;
+  await until(async () => {
+    const text = await lab.text('story-text');
+    if (captions.includes(text) && text !== seen.at(-1)) seen.push(text);
+    return lab.last.numbers?.ended;
+  }, () => `the end of the run, after ${seen}`);
+  // One may be over before the next is reached.
+  assert.deepEqual(seen, captions.filter((caption) => seen.includes(caption)));
+  assert.ok(seen.length >= 2 && pauses() >= 2 && pauses() <= 3, `${seen}; ${pauses()} pauses`);
+  assert.equal(await lab.text('story-text'), say('story', { width: '20 \u00b5m', pull: say('story_right'), seen: say('seen_front') }));
+  // A run that begins again is not stopped, and none is once that was asked for.
+  const before = pauses();
+  await lab.after(() => lab.press('rest'), 'numbers', ({ ended }) => !ended);
+  await lab.runToEnd();
+  assert.equal(pauses(), before);
+  await lab.find('#pace').press('Home');
+  for (let k = 0; k < 12; k += 1) await lab.find('#pace').press('ArrowRight');
+  await lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#case=${link(`${SMALL}# again\n`)}`), 'case', ({ why }) => why === 'open');
+  await lab.find('#story-off').click();
+  await lab.reads('pause', say('pause'));
+  const stopped = pauses();
+  await lab.after(() => lab.page.reload(), 'case');
+  await until(() => lab.last.numbers?.crossed, 'a front that has crossed');
+  assert.equal(pauses(), stopped);
+});
+
+test('who asks for little motion is not stopped, and what the colours say follows the field', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.find('#pace').press('Home');
+  for (let k = 0; k < 18; k += 1) await lab.find('#pace').press('ArrowRight');
+  await lab.press('pause');
+  await until(() => lab.last.numbers?.crossed, 'a front that has crossed');
+  assert.deepEqual(lab.sent.filter((order) => order.do === 'view' && order.paused === true).length, 1);
+  await lab.find('#field').selectOption('traction');
+  await until(async () => (await lab.text('story-text')).endsWith(`${say('seen_traction')}.`), 'what colours of the traction say');
+});
+
+test('on a telephone the field, the number and the curve are seen at once, and a lesson leaves them in sight', async (t) => {
+  for (const viewport of [{ width: 390, height: 844 }, { width: 844, height: 390 }]) {
+    const lab = await open(t, { toml: SMALL, viewport, hasTouch: true, isMobile: true });
+    const isSeen = async (id) => {
+      const box = await lab.find(`#${id}`).boundingBox();
+      assert.ok(box.y >= 0 && box.y + box.height <= viewport.height && box.x >= 0 && box.x + box.width <= viewport.width, `${id} at ${JSON.stringify(box)} of ${JSON.stringify(viewport)}`);
+      return box;
+    };
+    for (const id of ['canvas', 'headline', 'plot-mu']) await isSeen(id);
+    assert.equal(await lab.find('#control-speed').isVisible(), false);
+    await lab.press('open-lessons');
+    await lab.find('#lessons-list button').first().click();
+    await lab.find('#lesson').waitFor();
+    const [field, curve, sheet] = [await isSeen('frame'), await isSeen('plot-mu'), await lab.find('#lesson').boundingBox()];
+    for (const box of [field, curve]) assert.ok(box.y + box.height <= sheet.y || box.x + box.width <= sheet.x, `${JSON.stringify(box)} below ${JSON.stringify(sheet)}`);
+  }
 });
 
 test('a run says what to try, and at its end what it has found and three ways on', async (t) => {
@@ -32,6 +92,31 @@ test('a run says what to try, and at its end what it has found and three ways on
   await lab.find('#pace').press('Home');
   await lab.after(() => lab.press('rest'), 'case', ({ why }) => why === 'rest');
   await until(async () => (await lab.text('pause')) !== say('ended_button'), 'a run that can be stopped');
+});
+
+test('static friction over seeds that change nothing comes with a note', async (t) => {
+  const of = async (kinetic) => {
+    const lab = await open(t, { toml: SMALL.replace('sigma_static_star = 0.02', `sigma_static_star = 0\nsigma_kinetic_star = ${kinetic}`) });
+    await lab.after(() => lab.press('repeat'), 'repeated', ({ finished }) => finished);
+    return lab.text('repeated');
+  };
+  assert.match(await of(0), /Note: every seed gives the same run/);
+  assert.match(await of(0.1), /Note: only the kinetic coefficients differ from seed to seed/);
+});
+
+test('a case opens at the pace that suits its onset, and full speed stays', async (t) => {
+  const lab = await open(t, {});
+  const go = (name) => lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#preset=${name}`), 'case', (shown) => shown.name === name);
+  const pace = () => lab.sent.filter((message) => message.pace !== undefined).at(-1).pace;
+  // The onset is expected 10/3 s after the beginning, to the tenth of a decade that the slider has.
+  for (const name of ['steel', 'fast', 'circle']) {
+    const { onset_star: onset } = await go(name);
+    await until(() => Math.abs(Math.log10((pace() * 10) / 3 / onset)) < 0.06, () => `a pace for ${name}, not ${pace()}`);
+  }
+  await lab.find('#pace').press('End');
+  await go('steel');
+  await lab.find('#pace').press('End');
+  assert.equal(pace(), 0);
 });
 
 test('a number may have its unit, and what is none is said to be none', async (t) => {
@@ -67,6 +152,11 @@ test('the page prints without what can only be pressed', async (t) => {
   await lab.page.emulateMedia({ media: 'print' });
   for (const id of ['tools', 'open-keep', 'controls', 'next', 'zoom']) assert.equal(await lab.find(`#${id}`).isVisible(), false, id);
   for (const id of ['case-name', 'canvas', 'headline', 'numbers', 'plot-mu', 'kymograph']) assert.equal(await lab.find(`#${id}`).isVisible(), true, id);
+  const { toml, values } = lab.last.case;
+  assert.equal(await lab.text('printed-case'), toml);
+  assert.ok(await lab.find('#printed-case').isVisible());
+  assert.equal(await lab.find('#printed-values dt').count(), Object.keys(values).length + 4);
+  assert.ok((await lab.text('printed-values')).includes(`${say('control_sigma')}${values.sigma.star}`));
   const pages = (await lab.page.pdf({ format: 'A4' })).toString('latin1').match(/\/Type\s*\/Page\b/g).length;
   assert.equal(pages, 1);
 });
@@ -94,19 +184,21 @@ test('the far end of the spring moves while the slider waits, and the page says 
   const lab = await open(t, { toml: SMALL });
   const place = async (id) => Number(/translate\((-?[\d.]+)/.exec(await lab.find(`#${id}`).getAttribute('transform'))[1]);
   const [end, ground] = [await place('pull-end'), await place('pull-ground')];
-  await lab.reads('pull-state', say('pull_loads'));
+  const loads = say('pull_loads', { mu: '[\\d.\u2212]+' });
+  await lab.reads('pull-state', new RegExp(loads));
   // 5 t* per s: the first block in contact slips after some 8 s.
   await lab.find('#pace').fill('10');
   await lab.press('pause');
   await until(async () => (await place('pull-end')) > end + 5, 'a spring that is longer');
   // Textured blocks, which nothing holds, slip from the start and are not meant.
-  assert.equal(await lab.text('pull-state'), say('pull_loads'));
-  await lab.runToEnd();
-  await lab.reads('pull-state', say('pull_slips'));
+  assert.match(await lab.text('pull-state'), new RegExp(loads));
+  const { mu_star: mu, peak } = await lab.runToEnd();
+  // The peak is the largest force of this run.
+  await lab.reads('pull-state', say('pull_slips', { mu: mu.toFixed(3), most: peak.mu_star.toFixed(3) }));
   assert.notEqual(await place('pull-ground'), ground);
   await lab.find('#pace').press('Home');
   await lab.press('rest');
-  await lab.reads('pull-state', say('pull_loads'));
+  await lab.reads('pull-state', new RegExp(loads));
 });
 
 test('what the page shows is explained: letters, numbers, the percentage', async (t) => {

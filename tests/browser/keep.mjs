@@ -4,8 +4,8 @@ import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { PNG } from 'pngjs';
-import { RESULTS, slipfront, startLaboratory, WORK } from './command.mjs';
-import { colours, IS_ALONE, onServer, open, say, SMALL, sleep, until } from './page.mjs';
+import { link, RESULTS, slipfront, startLaboratory, WORK } from './command.mjs';
+import { colours, IS_ALONE, Lab, onServer, open, say, SMALL, sleep, until, untilSame } from './page.mjs';
 import { image } from './texture.mjs';
 
 const permissions = ['clipboard-read', 'clipboard-write'];
@@ -13,7 +13,7 @@ const permissions = ['clipboard-read', 'clipboard-write'];
 async function copyLink(lab) {
   await lab.press('open-keep');
   await lab.press('copy-link');
-  await lab.notice(say('link_copied'));
+  await lab.notice(say(IS_ALONE ? 'link_copied' : 'link_copied_server'));
   return lab.page.evaluate(() => navigator.clipboard.readText());
 }
 
@@ -48,6 +48,22 @@ test('a link opens the same case, which runs the same way', async (t) => {
   if (IS_ALONE) return;
   const third = await open(t, { address: started.address });
   assert.equal(third.last.case.toml, lab.last.case.toml);
+});
+
+test('a copied link opens in another tab of the browser, which has no token, with the page it was copied from', onServer, async (t) => {
+  const lab = await open(t, { toml: SMALL, permissions });
+  const address = await copyLink(lab);
+  const { toml } = lab.last.case;
+  await lab.after(() => lab.find('#control-seed').fill('7').then(() => lab.find('#control-seed').press('Enter')), 'case');
+  const tab = async (hash) => {
+    const other = new Lab(await lab.page.context().newPage(), address);
+    await other.load(address.replace(/#.*/, hash));
+    await other.notice(say('opened_elsewhere'));
+    assert.deepEqual([other.faults, other.sockets], [[], 0]);
+  };
+  await lab.after(() => tab(new URL(address).hash), 'case', (shown) => shown.toml === toml);
+  await lab.after(() => tab('#case=gear'), 'case', ({ name }) => name === 'gear');
+  assert.equal(lab.sockets, 1);
 });
 
 test('a case too large for a link is downloaded instead', async (t) => {
@@ -179,11 +195,45 @@ test('the picture of the curves names them', async (t) => {
   assert.ok(both.has(run) && both.has(ghost), [...both].join(' '));
 });
 
+test('the picture of the curves is the same whatever was open before', async (t) => {
+  const other = SMALL.replace('coverage = 10', 'coverage = 20');
+  const picture = async (lab) => {
+    await lab.runToEnd();
+    await untilSame(() => lab.count.curve, 'no more points of a curve');
+    await lab.press('open-keep');
+    return (await lab.download(() => lab.press('png-curves'))).contents;
+  };
+  const lab = await open(t, { toml: SMALL });
+  await picture(lab);
+  // Both have the same slider without texture, whose run has ended by now.
+  await lab.after(() => lab.page.evaluate((hash) => (location.hash = hash), `#case=${link(other)}`), 'case', ({ why }) => why === 'open');
+  const after = await picture(lab);
+  assert.ok(after.equals(await picture(await open(t, { toml: other }))));
+});
+
+test('a clip of a run that has ended shows it again from rest', async (t) => {
+  const lab = await open(t, { toml: SMALL, calm: false });
+  await lab.runToEnd();
+  await lab.find('#pace').press('PageDown');
+  await lab.press('open-keep');
+  // It stops by itself at the end of the run.
+  const { contents } = await lab.download(() => lab.press('clip'));
+  assert.equal(contents.subarray(0, 4).toString('hex'), '1a45dfa3');
+  assert.equal(lab.last.numbers.ended, true);
+  // A run that stands still has one picture at least.
+  await lab.find('#pace').press('Home');
+  await lab.after(() => lab.press('rest'), 'numbers', ({ ended }) => !ended);
+  await lab.press('pause');
+  await lab.press('open-keep');
+  await lab.press('clip');
+  const still = await lab.download(() => lab.press('clip-running'));
+  assert.ok(still.contents.length > 1000, `${still.contents.length} bytes`);
+});
+
 test('a clip is recorded', async (t) => {
   const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[50, 50]'), calm: false });
   // Blocks that move at different speeds give the clip something to tell.
   await lab.find('#field').selectOption('speed');
-  await lab.find('#pace').press('PageUp');
   await lab.press('open-keep');
   await lab.press('clip');
   await lab.press('rest');

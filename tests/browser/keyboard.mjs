@@ -1,7 +1,7 @@
 // The page by keyboard alone: Tab, arrows, Enter and Space, from its first moment.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { open, PLAIN, until } from './page.mjs';
+import { open, PLAIN, SMALL, until } from './page.mjs';
 
 /** More than the page has places to stop at. */
 const MOST_STOPS = 120;
@@ -73,4 +73,24 @@ test('a shape is placed, moved, sized, turned and deleted by keyboard', async (t
   await press(']', () => table().coverage > coverage);
   await press(',', () => table().rotate === 5);
   await press('Delete', ({ texture }) => texture.length === 0);
+});
+
+test('the cursor begins at a block that the tool changes, and a polygon is closed by a key', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  const frame = lab.find('#frame');
+  await frame.focus();
+  // The middle of the slider is a hole, which the brush does not change.
+  await lab.page.keyboard.press('2');
+  const { texture_percent: percent } = lab.last.case;
+  await lab.after(() => lab.page.keyboard.press('Enter'), 'case', (shown) => shown.texture_percent > percent);
+  await lab.page.keyboard.press('Escape');
+  await lab.page.keyboard.press('3');
+  await lab.after(() => lab.page.keyboard.press('Enter'), 'case', (shown) => shown.texture_percent < percent);
+  await lab.page.keyboard.press('6');
+  for (const [arrow, steps] of [['ArrowLeft', 4], ['ArrowDown', 6], ['ArrowRight', 8]]) {
+    for (let k = 0; k < steps; k += 1) await lab.page.keyboard.press(arrow);
+    await lab.page.keyboard.press('Enter');
+  }
+  await lab.after(() => lab.page.keyboard.press('c'), 'case', ({ texture }) => texture.at(-1).shape === 'polygon');
+  assert.equal(lab.last.case.texture.at(-1).points.length, 3);
 });

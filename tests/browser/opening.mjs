@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { deflateRawSync } from 'node:zlib';
-import { browser, colours, IS_ALONE, Lab, onServer, open, say, until } from './page.mjs';
+import { browser, colours, IS_ALONE, Lab, laboratory, onServer, open, say, until, webJson } from './page.mjs';
 
 test('the page opens with a slider that runs, and draws it', async (t) => {
   const begin = performance.now();
@@ -55,6 +55,24 @@ test('an address opens a case of the list by its name, and says when there is no
   const address = IS_ALONE ? `${lab.address}preset=groove_along` : `${lab.address}&preset=groove_along`;
   const other = await open(t, { address });
   await other.reads('case-name', 'groove_along');
+});
+
+test('an address opens a case, a lesson and a field', async (t) => {
+  const open_ = (hash) => open(t, { address: `${laboratory.address}${IS_ALONE ? '' : '&'}${hash}` });
+  const lab = await open_('case=gear&field=first_slip');
+  await lab.reads('case-name', 'gear');
+  assert.equal(lab.last.picture.field, 5);
+  assert.equal(await lab.find('#field').inputValue(), 'first_slip');
+  await lab.after(() => lab.page.evaluate(() => (location.hash = '#field=speed')), 'picture', ({ field }) => field === 3);
+  assert.equal(lab.last.case.name, 'gear');
+  const [, { id }] = await webJson('lessons.json');
+  const { title } = (await webJson('lessons.en.json'))[id];
+  for (const wanted of ['2', id]) {
+    const lesson = await open_(`lesson=${wanted}`);
+    await lesson.reads('lesson-title', title);
+  }
+  await lab.after(() => lab.page.evaluate(() => (location.hash = '#lesson=99')), 'case', ({ name }) => name === 'circle');
+  await lab.notice(say('broken_link'));
 });
 
 test('the page has no error when a case of the address is broken, and says so', async (t) => {

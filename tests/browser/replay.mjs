@@ -1,10 +1,11 @@
 // A run folder again, beside what it recorded.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
-import { RESULTS, slipfront, WORK } from './command.mjs';
-import { onServer, open, say, SMALL, until } from './page.mjs';
+import { RESULTS, ROOT, slipfront, WORK } from './command.mjs';
+import { onServer, open, say, SMALL, until, withoutServer } from './page.mjs';
 
 test('a recorded run is shown with its curve and its snapshots', onServer, async (t) => {
   const file = path.join(WORK, 'recorded.toml');
@@ -161,7 +162,44 @@ test('folders that are odd or hostile are refused in a sentence, and the page go
   await lab.notice('The fields of sparse are left out');
 });
 
-test('a dropped file that is no image is refused in a sentence, whatever size it claims', async (t) => {
+/** Drops a file on the page. */
+const dropFile = (lab, name, bytes) => lab.page.evaluate(([named, base64]) => {
+  const event = new Event('drop', { bubbles: true, cancelable: true });
+  const file = new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], named);
+  Object.defineProperty(event, 'dataTransfer', { value: { items: [{ webkitGetAsEntry: () => ({ isDirectory: false }) }], files: [file] } });
+  document.body.dispatchEvent(event);
+}, [name, Buffer.from(bytes).toString('base64')]);
+
+test('the file of a run that the page has saved is replayed when it is dropped, and so is one that was packed anew', withoutServer, async (t) => {
+  const lab = await open(t, { toml: `${SMALL}\n[output]\nsnapshots = [20, 60]\n` });
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill('kept');
+  const { name, contents } = await lab.download(() => lab.press('save'));
+  const { times_star: times } = await lab.after(() => dropFile(lab, name, contents), 'recorded');
+  assert.deepEqual([times, lab.last.case.name], [[20, 60], 'kept']);
+  const file = path.join(WORK, name);
+  writeFileSync(file, contents);
+  const repack = 'import sys, zipfile\nwith zipfile.ZipFile(sys.argv[1]) as a, zipfile.ZipFile(sys.argv[2], "w", zipfile.ZIP_DEFLATED) as b:\n'
+    + '    for name in a.namelist(): b.writestr("folder/" + name, a.read(name))';
+  execFileSync('python3', ['-c', repack, file, `${file}.zip`]);
+  await lab.after(() => dropFile(lab, 'again.zip', readFileSync(`${file}.zip`)), 'recorded');
+  assert.equal(lab.last.case.name, 'again');
+  await until(() => lab.last.curve?.recorded_t?.length > 0, 'the recorded curve');
+});
+
+test('a case that the page has kept is opened when it is dropped', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  const png = readFileSync(path.join(ROOT, 'crates/slipfront-lab/cases/gear.png'));
+  await lab.after(() => lab.find('#image-file').setInputFiles({ name: 'gear.png', mimeType: 'image/png', buffer: png }), 'case', ({ texture }) => texture[0].shape === 'mask');
+  const { toml } = lab.last.case;
+  await lab.press('open-keep');
+  const { contents } = await lab.download(() => lab.press('download-case'));
+  await lab.after(() => dropFile(lab, 'plain.toml', Buffer.from(SMALL)), 'case', ({ name }) => name === 'plain');
+  await lab.after(() => dropFile(lab, 'masked.zip', contents), 'case', ({ name }) => name === 'masked');
+  assert.equal(lab.last.case.toml, toml);
+});
+
+test('a dropped file that can be no image, case or run is refused in a sentence, whatever size it claims', async (t) => {
   const lab = await open(t, { toml: SMALL });
   const { toml } = lab.last.case;
   const png = (width, height) => {
@@ -174,18 +212,30 @@ test('a dropped file that is no image is refused in a sentence, whatever size it
   // A header of a file of 4 GiB.
   zip.write('504b03041400000008000000000000000000', 0, 'hex');
   zip.fill(0xff, 18, 26);
+  // The list of files of an archive that claims one file of 4 GiB, packed and not.
+  const bomb = (method) => {
+    const bytes = Buffer.alloc(46 + 9 + 22);
+    bytes.write('504b0102', 0, 'hex');
+    bytes.writeUInt16LE(method, 10);
+    bytes.fill(0xff, 20, 28);
+    bytes.writeUInt16LE(9, 28);
+    bytes.write('case.toml', 46);
+    bytes.write('504b0506', 55, 'hex');
+    bytes.writeUInt16LE(1, 65);
+    bytes.writeUInt32LE(55, 67);
+    return [...bytes];
+  };
   for (const [name, bytes] of Object.entries({
     'run.zip': [...zip], 'empty.zip': [], 'wide.png': png(2 ** 31 - 1, 1), 'large.png': png(100_000, 100_000), 'none.png': png(0, 0),
-    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)], 'case.toml': [...Buffer.from(SMALL)], 'text.txt': [1, 2, 3],
+    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)], 'text.txt': [1, 2, 3],
   })) {
     await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
-    await lab.page.evaluate(([named, contents]) => {
-      const event = new Event('drop', { bubbles: true, cancelable: true });
-      const file = new File([new Uint8Array(contents)], named);
-      Object.defineProperty(event, 'dataTransfer', { value: { items: [{ webkitGetAsEntry: () => ({ isDirectory: false }) }], files: [file] } });
-      document.body.dispatchEvent(event);
-    }, [name, bytes]);
-    await lab.notice(say('image_unreadable', { name }));
+    await dropFile(lab, name, bytes);
+    await lab.notice(say(name.endsWith('.zip') ? 'file_unreadable' : 'image_unreadable', { name }));
+  }
+  for (const method of [0, 8]) {
+    await dropFile(lab, `bomb${method}.zip`, bomb(method));
+    await until(async () => /The case bomb\d has more than the [\d.]+ MiB/.test(await lab.text('notices')), 'a notice that it is too large');
   }
   assert.equal(lab.last.case.toml, toml);
   await lab.runToEnd();

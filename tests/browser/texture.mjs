@@ -73,7 +73,8 @@ for (const [tool, keys] of Object.entries(TOOLS)) {
     // Blocks have an edge of a micrometre; an offset is told from the middle of the slider.
     const place = () => (tool === 'groove' ? micrometres(table().offset) + 10 : micrometres(table().center[0]));
     await lab.press(`tool-${tool}`);
-    await lab.after(() => lab.drag([9, 11]), 'case', only);
+    // A click with the polygon is a corner.
+    await lab.after(() => lab.drag([9, 11], ...(tool === 'polygon' ? [[11, 11]] : [])), 'case', only);
     for (const [key, value] of Object.entries(keys)) assert.deepEqual(table()[key], value);
     // A pointer stands on whole pixels, and a block has some twenty of them.
     const near = (value, expected) => assert.ok(Math.abs(value - expected) < 0.1, `${value} is not ${expected}`);
@@ -98,6 +99,35 @@ for (const [tool, keys] of Object.entries(TOOLS)) {
     assert.notEqual(lab.last.case.texture[1].coverage, coverage);
   });
 }
+
+test('the corners of a polygon are clicked, and the first one closes it', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  await lab.press('tool-polygon');
+  const corners = [[4, 4], [14, 4], [9, 14]];
+  for (const corner of corners) {
+    assert.ok(await lab.find('#polygon-close').isDisabled());
+    await lab.drag(corner);
+  }
+  const closed = await lab.after(() => lab.drag(corners[0]), 'case', ({ texture }) => texture.length === 1);
+  assert.equal(closed.texture[0].shape, 'polygon');
+  const points = closed.texture[0].points.map((point) => point.map(micrometres));
+  // A pointer stands on whole pixels, and a block has some twenty of them.
+  points.flat().forEach((value, k) => assert.ok(Math.abs(value - corners.flat()[k]) < 0.1, `${points}`));
+  // Half of its box of 10 by 10 blocks of 400.
+  assert.ok(Math.abs(closed.texture_percent - 12.5) < 2.5, `${closed.texture_percent} %`);
+  // Corners are given up by Escape and by another tool.
+  const { count } = lab;
+  const before = count.case;
+  await lab.press('tool-polygon');
+  for (const corner of corners) await lab.drag([corner[0] + 3, corner[1] + 3]);
+  await lab.find('#frame').press('Escape');
+  assert.ok(await lab.find('#polygon-close').isDisabled());
+  for (const corner of corners) await lab.drag([corner[0] + 3, corner[1] + 3]);
+  await lab.press('tool-brush');
+  await lab.press('tool-polygon');
+  assert.ok(await lab.find('#polygon-close').isDisabled());
+  assert.equal(count.case, before);
+});
 
 test('blocks that are too coarse for a shape are told beside the shapes, as long as they are', async (t) => {
   const lab = await open(t, { toml: SMALL });

@@ -9,5 +9,3 @@ extern "C" void slipfront_run_emulated(const Arrays* arrays, size_t count, int t
         emulated::run(threads, stride, [&] { run_lattice(*arrays, k, memory.data(), *shared); });
     }
 }
-
-extern "C" size_t slipfront_lattice_bytes() { return sizeof(Lattice); }

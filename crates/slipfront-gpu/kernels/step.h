@@ -36,6 +36,8 @@ struct Lattice {
     u32 steps, nx, n, unused;
 };
 
+static_assert(sizeof(Lattice) == 408 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
+
 // Numbers of all lattices, one lattice after the other.
 struct Arrays {
     Lattice* lattices;

@@ -19,6 +19,9 @@ pub(crate) struct Lattice {
     unused: u32,
 }
 
+// The sizes that `kernels/step.h` has.
+const _: () = assert!(size_of::<Lattice>() == 408 && size_of::<StepRecord>() == 88);
+
 /// Numbers of a record, each of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
 

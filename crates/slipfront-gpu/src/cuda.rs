@@ -112,8 +112,7 @@ impl Gpu {
         let given = stream.clone_htod(&batch.given)?;
         let flags = stream.clone_htod(&batch.flags)?;
         let mut first_slips = stream.clone_htod(&batch.first_slips)?;
-        // SAFETY: the kernel writes every record before it is read.
-        let mut records = unsafe { stream.alloc::<u64>(batch.records.len()) }?;
+        let mut records = stream.alloc_zeros::<u64>(batch.records.len())?;
         let config = LaunchConfig {
             grid_dim: (batch.lattices.len() as u32, 1, 1),
             block_dim: (kernel.threads, 1, 1),
@@ -127,8 +126,8 @@ impl Gpu {
             .arg(&flags)
             .arg(&mut first_slips)
             .arg(&mut records);
-        // SAFETY: the arguments are those of the kernel, and the batch has checked that its arrays are as
-        // long as the kernel takes them to be.
+        // SAFETY: the arguments are those of the kernel, and as long as it takes them to be, as the batch has
+        // checked.
         unsafe { launch.launch(config) }?;
         stream.memcpy_dtoh(&lattices, &mut batch.lattices)?;
         stream.memcpy_dtoh(&state, &mut batch.state)?;

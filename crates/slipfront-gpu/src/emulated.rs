@@ -27,11 +27,10 @@ struct Arrays {
     records: *mut u64,
 }
 
+// SAFETY: this is the declaration of the function of `kernels/emulated.cpp`, which keeps none of the pointers.
 unsafe extern "C" {
     /// Takes `count` lattices through their steps on groups of `threads` emulated threads.
     fn slipfront_run_emulated(arrays: *const Arrays, count: usize, threads: i32, stride: i32);
-    /// Size of the struct `Lattice` in C++.
-    fn slipfront_lattice_bytes() -> usize;
 }
 
 impl Device for Emulated {
@@ -41,8 +40,6 @@ impl Device for Emulated {
             threads.is_power_of_two() && (32..=1024).contains(&threads) && !stride.is_multiple_of(2),
             "no group of {threads} threads goes on in strides of {stride}"
         );
-        // SAFETY: the function has no arguments and no state.
-        assert_eq!(unsafe { slipfront_lattice_bytes() }, size_of::<Lattice>());
         let mut batch = Batch::new(lattices, steps)?;
         let arrays = Arrays {
             lattices: batch.lattices.as_mut_ptr(),
@@ -52,8 +49,8 @@ impl Device for Emulated {
             first_slips: batch.first_slips.as_mut_ptr(),
             records: batch.records.as_mut_ptr(),
         };
-        // SAFETY: the pointers are to arrays of the batch, which lives longer than the call and has checked
-        // that they are as long as the kernels take them to be. Nothing else refers to them meanwhile.
+        // SAFETY: the pointers are to arrays of the batch, as long as the kernels take them to be, as the batch
+        // has checked. Nothing else refers to them meanwhile.
         unsafe {
             slipfront_run_emulated(
                 &raw const arrays,

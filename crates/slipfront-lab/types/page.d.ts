@@ -103,10 +103,12 @@ export interface Elements {
   theme: HTMLButtonElement;
   'open-help': HTMLButtonElement;
   more: HTMLButtonElement;
+  'story-off': HTMLButtonElement;
   'tool-image': HTMLButtonElement;
   'image-file': HTMLInputElement;
   'brush-size': HTMLInputElement;
   'option-w': HTMLInputElement;
+  'polygon-close': HTMLButtonElement;
   'option-s': HTMLInputElement;
   'option-sharp': HTMLInputElement;
   'option-orientation': HTMLSelectElement;
@@ -129,10 +131,12 @@ export interface Elements {
   'repeat-progress': HTMLProgressElement;
   summary: HTMLDetailsElement;
   kymograph: HTMLCanvasElement;
+  mesh: HTMLDetailsElement;
   'lesson-close': HTMLButtonElement;
   'lesson-answer': HTMLDetailsElement;
   'lesson-previous': HTMLButtonElement;
   'lesson-next': HTMLButtonElement;
+  'controls-fold': HTMLDetailsElement;
   'after-rest': HTMLInputElement;
   'after-go-on': HTMLInputElement;
   find: HTMLButtonElement;

@@ -41,7 +41,7 @@ export interface Texture {
 }
 
 /** A field of all blocks. */
-export type Field = 'contact_stress' | 'traction' | 'displacement' | 'speed' | 'sliding' | 'first_slip';
+export type Field = 'contact_stress' | 'traction' | 'displacement' | 'speed' | 'sliding' | 'first_slip' | 'front';
 
 /** How the run goes on after the case was changed. */
 export type AfterChange = 'rest' | 'go_on';
@@ -177,6 +177,10 @@ export interface HelloReply {
 export interface PresetEntry {
   name: string;
   group: string;
+  /** Its small picture, 32 x 32 values of half a byte, in Base64. */
+  picture: string;
+  /** Whether the case is the base of a study of many runs. */
+  is_study: boolean;
   title: string;
 }
 
@@ -218,6 +222,8 @@ export interface CaseReply {
   duration_star: number;
   /** Null before the peak that it is counted from. */
   kinetic_from_star: number | null;
+  /** Time t* at which the onset is expected first, or that of the end of the run, if that comes before. */
+  onset_star: number;
   /** Direction of the drive, degrees from x towards y; null if it turns the slider. */
   drive_degrees: number | null;
   /** Rise of mu* in one t* of the drive as long as no block slides; null if it turns the slider. */
@@ -235,6 +241,8 @@ export interface CaseReply {
   warnings: string[];
   /** The one of the warnings that blocks are too coarse for the outlines of the texture. */
   too_coarse: string | null;
+  /** Note on what other seeds change, if it is less than static friction. */
+  seeds: string | null;
   search: SearchLimits;
 }
 
@@ -287,6 +295,8 @@ export interface NumbersReply {
   change_percent: number | null;
   kinetic: number | null;
   instants: Record<string, number>;
+  /** Whether every block in contact has slipped since rest. */
+  crossed: boolean;
   steps_per_second: number;
   ended: boolean;
   summary: Summary | null;

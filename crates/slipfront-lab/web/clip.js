@@ -1,13 +1,16 @@
 // @ts-check
-// A clip of the field with its colour bar and time, as a WebM file.
+// A clip of the field with its colour bar and time, as a WebM file. A run that has ended begins again for it.
+import { send } from './connection.js';
 import { download, find, onPress } from './element.js';
-import { watchField } from './field.js';
+import { drawNow, watchField } from './field.js';
 import { fieldFigure } from './figure.js';
 import { notice } from './notices.js';
-import { state } from './store.js';
+import { on, state } from './store.js';
 import { say } from './text.js';
 
 const LONGEST_MS = 60_000;
+/** Before it a recorder may not have one picture yet; the last one is shown for so long, too. */
+const SHORTEST_MS = 1000;
 const PICTURES_PER_SECOND = 30;
 const BITS_PER_SECOND = 8_000_000;
 
@@ -31,20 +34,34 @@ function begin() {
     download(new Blob(parts, { type: 'video/webm' }), `${state.case?.name ?? 'slipfront'}.webm`);
   };
   made.start(1000);
+  if (state.numbers?.ended) send({ do: 'rest' });
+  // What stands still is drawn no more.
+  drawNow();
   find('clip').textContent = say('keep_clip_stop');
   find('clip-running').hidden = false;
   return made;
 }
 
+/** Ends the clip that is being recorded, if there is one. */
+function finish() {
+  const ending = recorder;
+  setTimeout(() => ending?.state === 'recording' && ending.stop(), SHORTEST_MS);
+}
+
 function toggle() {
   find('keep').close();
-  if (recorder) recorder.stop();
+  if (recorder) finish();
   else if (typeof MediaRecorder === 'undefined' || !MediaRecorder.isTypeSupported('video/webm')) notice(say('no_clip'));
   else recorder = begin();
 }
 
 /** Prepares the buttons. */
 export function startClip() {
+  let ended = false;
+  on('numbers', (numbers) => {
+    if (numbers.ended && !ended) finish();
+    ended = numbers.ended;
+  });
   onPress('clip', toggle);
   onPress('clip-running', toggle);
 }

@@ -1,23 +1,29 @@
 // @ts-check
 // The colour of every byte of a picture, and the colour bar that says what they mean.
 import { COLOURMAPS } from './colourmaps.js';
-import { LARGEST, NO_BLOCK, NOT_YET, TEXTURED } from './frames.js';
+import { LARGEST, NO_BLOCK, NOT_YET, SLIDES, TEXTURED } from './frames.js';
 import { number, prefix, ticks } from './quantity.js';
 import { colour } from './theme.js';
 
 /** Red, green, blue of a colour as the browser computes it, `rgb(1, 2, 3)`. @param {string} text */
 const rgb = (text) => (text.match(/\d+/g) ?? []).slice(0, 3).map(Number);
 
-/** The colours of the bytes 0 to 255, four bytes each. @param {string} name of the colour map */
-export function table(name) {
+/** By how much blocks that hold are darker than their colour, so that those that slide are the brightest. */
+const SHADE = 0.5;
+
+/** @import { Field } from '../types/protocol' */
+
+/** The colours of the bytes 0 to 255, four bytes each. @param {string} name of the colour map @param {Field} [field] */
+export function table(name, field) {
+  const isFront = field === 'front';
   const digits = COLOURMAPS[/** @type {keyof typeof COLOURMAPS} */ (name)];
   const bytes = new Uint8Array(4 * 256);
   for (let value = 0; value < 256; value++) {
     const at = 6 * Math.round((Math.min(value, LARGEST) / LARGEST) * 255);
-    bytes.set([0, 2, 4].map((k) => parseInt(digits.slice(at + k, at + k + 2), 16)), 4 * value);
+    bytes.set([0, 2, 4].map((k) => parseInt(digits.slice(at + k, at + k + 2), 16) * (isFront ? SHADE : 1)), 4 * value);
     bytes[4 * value + 3] = 255;
   }
-  for (const [value, what] of /** @type {Array<[number, string]>} */ ([[NOT_YET, 'not-yet'], [NO_BLOCK, 'background'], [TEXTURED, 'textured']])) {
+  for (const [value, what] of /** @type {Array<[number, string]>} */ ([[SLIDES, 'sliding'], [NOT_YET, isFront ? 'holds' : 'not-yet'], [NO_BLOCK, 'background'], [TEXTURED, 'textured']])) {
     bytes.set(rgb(colour(what)), 4 * value);
   }
   return bytes;

@@ -100,8 +100,9 @@ function show() {
   }
 }
 
-/** Makes the sliders when the server has said which there are. */
+/** Makes the sliders when the server has said which there are. Where the page has one column they are folded at first. */
 export function startControls() {
+  find('controls-fold').open = !matchMedia('(max-width: 899px)').matches;
   on('hello', ({ controls }) => {
     rows = controls.map(row);
     find('controls').replaceChildren(...rows.map((made) => made.element));

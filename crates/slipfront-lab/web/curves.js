@@ -18,6 +18,8 @@ const SPACING_MS = 200;
 const SMALL = 11;
 const LABEL = 12;
 const LETTER = 10;
+/** Whether the page has one column, in which the plots do not stand one below the other. */
+const oneColumn = matchMedia('(max-width: 899px)');
 /** With more points than this every second one is left out: no screen shows more. */
 const MOST = 20_000;
 
@@ -146,7 +148,7 @@ function plotsIn([above, below], [first, second], scale) {
     series('recorded', () => colour('recorded'), scale, [2, 3]),
   ];
   return [
-    plotIn(above, first, scale, { label: say('axis_mu'), lines, numbered: false, range: { range: (_, low, high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
+    plotIn(above, first, scale, { label: say('axis_mu'), lines, numbered: oneColumn.matches, range: { range: (_, low, high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
     plotIn(below, second, scale, { label: say('axis_sliding'), lines: [curve], numbered: true, range: { range: [0, 100] } }),
   ];
 }
@@ -219,11 +221,11 @@ function make() {
 export function startCurves() {
   make();
   on('curve', take);
-  on('case', ({ why, twin: compared }) => {
+  on('case', ({ why }) => {
     if (why === 'open') clear(recorded);
-    if (why === 'open' || !compared) clear(twin);
     refresh();
   });
   new ResizeObserver(fit).observe(find('plot-mu'));
+  oneColumn.addEventListener('change', make);
   onTheme(() => plots.forEach((plot) => plot.redraw(false, true)));
 }

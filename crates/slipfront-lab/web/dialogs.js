@@ -3,7 +3,7 @@
 import { find, make, onPress } from './element.js';
 import { say } from './text.js';
 
-const SHORTCUTS = ['space', 'n', 'r', 'undo', 'redo', 'tools', 'arrows', 'enter', 'zoom', 'move', 'size', 'turn', 'delete', 'escape', 'pan', 'help'];
+const SHORTCUTS = ['space', 'n', 'r', 'undo', 'redo', 'tools', 'arrows', 'enter', 'zoom', 'move', 'size', 'turn', 'delete', 'close', 'escape', 'pan', 'help'];
 
 const MEANINGS = ['headline', 'percent', 'static', 'onset', 'kinetic', 'sliding', 'letters', 'front'];
 

@@ -4,7 +4,6 @@
 import { Camera } from './camera.js';
 import { drawBar, table } from './colours.js';
 import { atMost, find, make, onPress } from './element.js';
-import { FIELDS } from './frames.js';
 import { drawOverlay } from './overlay.js';
 import { Picture } from './picture.js';
 import { on, put, state } from './store.js';
@@ -15,13 +14,15 @@ import { setView } from './view.js';
 /** @import { FieldPicture } from '../types/page' */
 /** @import { CaseReply, Field } from '../types/protocol' */
 
+/** The fields in the order of the choice: what slides comes first, and what few ask for last. @type {Field[]} */
+const CHOICE = ['front', 'sliding', 'first_slip', 'traction', 'contact_stress', 'displacement', 'speed'];
 const BAR_SPACING_MS = 250;
 const BAR_HEIGHT = 46;
 
 export const camera = new Camera();
 
-/** What follows the pointer and the keyboard. @type {import('./overlay.js').Pointers} */
-export const pointers = { ring: null, cursor: null };
+/** What follows the pointer and the keyboard, and the corners of an outline that is not closed. @type {import('./overlay.js').Pointers} */
+export const pointers = { ring: null, cursor: null, corners: [] };
 
 /** @type {Picture} */
 let picture;
@@ -33,6 +34,8 @@ let waiting = 0;
 let above = true;
 /** @type {Uint8Array} */
 let colours = new Uint8Array(1024);
+/** The field that they are for. @type {Field|null} */
+let coloured = null;
 /** @type {Array<(canvas: HTMLCanvasElement) => void>} */
 const watchers = [];
 
@@ -71,7 +74,7 @@ export function drawNow() {
 export function barInto(context, x, y, width, scale) {
   if (!newest) return;
   const { low, high, unit, field } = newest;
-  drawBar(context, { x, y, width, bytes: colours, low, high, unit, title: say(`field_${field}`), scale });
+  drawBar(context, { x, y, width, bytes: colours, low, high, unit, title: say(`field_${field === 'front' ? 'first_slip' : field}`), scale });
 }
 
 function drawBarOfPage() {
@@ -86,10 +89,12 @@ function drawBarOfPage() {
 const refreshBar = atMost(drawBarOfPage, BAR_SPACING_MS);
 
 function recolour() {
-  colours = table(find('colourmap').value);
+  coloured = state.view.field;
+  colours = table(find('colourmap').value, coloured);
   picture.colour(colours);
-  find('legend-textured').style.background = colour('textured');
-  find('legend-not-yet').style.background = colour('not-yet');
+  for (const [id, name] of [['textured', 'textured'], ['sliding', 'sliding'], ['not-yet', coloured === 'front' ? 'holds' : 'not-yet']]) {
+    find(`legend-${id}`).style.background = colour(name);
+  }
   refreshBar();
   redraw();
 }
@@ -118,8 +123,10 @@ function showCase({ blocks }) {
 }
 
 function showLegend() {
-  const notYet = /** @type {HTMLElement} */ (find('legend-not-yet').parentElement);
-  notYet.hidden = state.view.field !== 'first_slip';
+  const entry = (/** @type {string} */ id) => /** @type {HTMLElement} */ (find(id).parentElement);
+  entry('legend-sliding').hidden = state.view.field !== 'front';
+  entry('legend-not-yet').hidden = !['first_slip', 'front'].includes(state.view.field);
+  if (coloured !== state.view.field) recolour();
   if (find('field').value !== state.view.field) find('field').value = state.view.field;
 }
 
@@ -133,7 +140,7 @@ export function startField() {
     taken = false;
     recolour();
   });
-  find('field').append(...FIELDS.map((field) => make('option', { value: field, textContent: say(`field_${field}`) })));
+  find('field').append(...CHOICE.map((field) => make('option', { value: field, textContent: say(`field_${field}`) })));
   find('colourmap').append(...['viridis', 'cividis'].map((name) => make('option', { value: name, textContent: say(`colourmap_${name}`) })));
   find('field').addEventListener('change', () => setView({ field: /** @type {Field} */ (find('field').value) }));
   find('colourmap').addEventListener('change', recolour);
@@ -152,7 +159,6 @@ export function startField() {
   on('case', showCase);
   on('selected', redraw);
   on('view', showLegend);
-  showLegend();
   onTheme(recolour);
-  recolour();
+  showLegend();
 }

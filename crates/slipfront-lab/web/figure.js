@@ -13,6 +13,9 @@ import { colour } from './theme.js';
 const MARGIN = 12;
 const TITLE = 24;
 const BAR = 40;
+/** Room for the numbers and the title of an axis beside and below a panel. */
+const SIDE = 56;
+const BELOW = 44;
 /** Size of the picture of the curves, and pixels of a picture for each of its units. */
 const CURVES = [800, 500];
 const SCALE = 2;
@@ -38,10 +41,42 @@ function begin(context, width, height, title) {
   context.fillText(title, MARGIN, MARGIN - 2, width - 2 * MARGIN);
 }
 
+/** The axes of the part of the slider that is seen in a frame whose upper left corner is given. @param {CanvasRenderingContext2D} context @param {number[]} corner */
+function drawPlaces(context, corner) {
+  const size = state.case?.block_size_m ?? 1;
+  const [factor, letter] = prefix(Math.max(...camera.blocks) * size);
+  const ends = [camera.toPixels([0, 0]), camera.toPixels(camera.blocks)];
+  const seen = [0, 1].map((axis) => ends.map((end) => Math.min(Math.max(end[axis], 0), camera.pixels[axis])));
+  const from = [corner[0] + seen[0][0], corner[1] + seen[1][0]];
+  const [lowest, highest] = [0, 1].map((k) => camera.toBlocks([seen[0][k], seen[1][k]]).map((blocks) => (blocks * size) / factor));
+  ['x', 'y'].forEach((name, axis) => {
+    const length = Math.abs(seen[axis][1] - seen[axis][0]);
+    drawAxis(context, { from, length, upright: axis === 1, range: [lowest[axis], highest[axis]], title: say('axis_place_of', { name, unit: `${letter}m` }) });
+  });
+}
+
+/** What the colours beside the bar mean, as the legend of the page has it, up to a corner on the right. @param {CanvasRenderingContext2D} context @param {number[]} corner */
+function drawEntries(context, [right, y]) {
+  context.textBaseline = 'top';
+  context.textAlign = 'right';
+  let x = right;
+  for (const swatch of [...find('legend').querySelectorAll('span:not([hidden]) > i')].reverse()) {
+    const name = swatch.nextElementSibling?.textContent ?? '';
+    context.fillStyle = colour('text');
+    context.fillText(name, x, y);
+    x -= context.measureText(name).width + 16;
+    context.fillStyle = /** @type {HTMLElement} */ (swatch).style.background;
+    context.fillRect(x, y, 11, 11);
+    context.strokeRect(x, y, 11, 11);
+    x -= 14;
+  }
+}
+
 /** A canvas for the field, and what draws the field as it is into it. @param {number} scale @returns {[HTMLCanvasElement, (field: HTMLCanvasElement) => void]} */
 export function fieldFigure(scale) {
   const [wide, high] = camera.pixels;
-  const [width, height] = [wide + 2 * MARGIN, high + 2 * MARGIN + TITLE + BAR];
+  const [x, y] = [MARGIN + SIDE, MARGIN + TITLE];
+  const [width, height] = [x + wide + MARGIN, y + high + BELOW + BAR + MARGIN];
   const [canvas, context] = blank(width, height, scale);
   const draw = (/** @type {HTMLCanvasElement} */ field) => {
     const { numbers } = state;
@@ -50,13 +85,15 @@ export function fieldFigure(scale) {
     const [left, top] = camera.toPixels([0, camera.blocks[1]]);
     context.save();
     context.beginPath();
-    context.rect(MARGIN, MARGIN + TITLE, wide, high);
+    context.rect(x, y, wide, high);
     context.clip();
-    context.drawImage(field, MARGIN + left, MARGIN + TITLE + top, camera.blocks[0] * camera.scale, camera.blocks[1] * camera.scale);
+    context.drawImage(field, x + left, y + top, camera.blocks[0] * camera.scale, camera.blocks[1] * camera.scale);
     context.restore();
     const above = find('overlay');
-    if (!above.hidden) context.drawImage(above, MARGIN + above.offsetLeft, MARGIN + TITLE + above.offsetTop, above.offsetWidth, above.offsetHeight);
-    barInto(context, MARGIN, MARGIN + TITLE + high + 6, wide);
+    if (!above.hidden) context.drawImage(above, x + above.offsetLeft, y + above.offsetTop, above.offsetWidth, above.offsetHeight);
+    drawPlaces(context, [x, y]);
+    barInto(context, x, y + high + BELOW, wide);
+    drawEntries(context, [x + wide, y + high + BELOW + BAR - 10]);
   };
   return [canvas, draw];
 }
@@ -113,7 +150,7 @@ function drawAxis(context, { from: [x, y], length, upright, range: [low, high], 
   }
   context.textAlign = 'center';
   context.textBaseline = 'top';
-  context.translate(...(upright ? /** @type {[number, number]} */ ([MARGIN, y - length / 2]) : /** @type {[number, number]} */ ([x + length / 2, y + 20])));
+  context.translate(...(upright ? /** @type {[number, number]} */ ([x - SIDE, y - length / 2]) : /** @type {[number, number]} */ ([x + length / 2, y + 20])));
   if (upright) context.rotate(-Math.PI / 2);
   context.fillText(title, 0, 0);
   context.restore();
@@ -121,19 +158,20 @@ function drawAxis(context, { from: [x, y], length, upright, range: [low, high], 
 
 /** The kymograph with its axes and its colour bar. */
 export function kymographFigure() {
-  const [wide, high, side] = [640, 260, 56];
-  const [width, height] = [wide + side + 3 * MARGIN, high + 3 * MARGIN + TITLE + 2 * BAR];
+  const [wide, high] = [640, 320];
+  const [left, top] = [MARGIN + SIDE, MARGIN + TITLE];
+  const [width, height] = [left + wide + MARGIN, top + high + BELOW + BAR + MARGIN];
   const [canvas, context] = blank(width, height, SCALE);
   begin(context, width, height, say('figure_kymograph', { name: state.case?.name ?? '' }));
-  const [left, top] = [MARGIN + side, MARGIN + TITLE];
   context.imageSmoothingEnabled = false;
   context.drawImage(find('kymograph'), left, top, wide, high);
   const axes = kymographAxes();
   if (axes) {
+    const from = [left, top + high];
     const [factor, letter] = prefix(Math.max(...axes.place.map(Math.abs)));
-    drawAxis(context, { from: [left, top + high], length: wide, upright: false, range: axes.time, title: say('axis_t') });
-    drawAxis(context, { from: [left, top + high], length: high, upright: true, range: axes.place.map((metres) => metres / factor), title: say('axis_place', { unit: `${letter}m` }) });
+    drawAxis(context, { from, length: wide, upright: false, range: axes.place.map((metres) => metres / factor), title: say('axis_place', { unit: `${letter}m` }) });
+    drawAxis(context, { from, length: high, upright: true, range: axes.time, title: say('axis_t') });
   }
-  drawBar(context, { x: left, y: top + high + BAR + MARGIN, width: wide, bytes: table(find('colourmap').value), low: 0, high: 100, unit: '%', title: say('kymograph_share') });
+  drawBar(context, { x: left, y: top + high + BELOW, width: wide, bytes: table(find('colourmap').value), low: 0, high: axes?.most ?? 100, unit: '%', title: say('kymograph_share') });
   return canvas;
 }

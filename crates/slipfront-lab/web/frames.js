@@ -5,9 +5,10 @@
 /** @import { Field } from '../types/protocol' */
 
 /** The fields in the order of their numbers. @type {Field[]} */
-export const FIELDS = ['contact_stress', 'traction', 'displacement', 'speed', 'sliding', 'first_slip'];
-export const UNITS = ['Pa', 'Pa', 'm', 'm/s', '', 't*'];
+export const FIELDS = ['contact_stress', 'traction', 'displacement', 'speed', 'sliding', 'first_slip', 'front'];
+export const UNITS = ['Pa', 'Pa', 'm', 'm/s', '', 't*', 't*'];
 /** Bytes of a picture that are no value. */
+export const SLIDES = 252;
 export const NOT_YET = 253;
 export const NO_BLOCK = 254;
 export const TEXTURED = 255;

@@ -1,5 +1,6 @@
 // @ts-check
 // What is kept of a run: a link, the case, a run folder, pictures.
+import { isAlone } from './assets.js';
 import { fromBase64 } from './base64.js';
 import { send } from './connection.js';
 import { download, find, make, onPress } from './element.js';
@@ -23,7 +24,7 @@ async function copyLink() {
   history.replaceState(null, '', `#case=${link}`);
   try {
     await navigator.clipboard.writeText(address);
-    notice(say('link_copied'));
+    notice(say(isAlone ? 'link_copied' : 'link_copied_server'));
   } catch {
     notice(say('link_in_address'));
   }

@@ -4,16 +4,24 @@ import { send } from './connection.js';
 import { find } from './element.js';
 import { camera, pointers, redraw } from './field.js';
 import { on, presentCase, put, state } from './store.js';
-import { chooseTool, moveSelected, press, probeAt, removeSelected, sizeSelected, TOOLS, turnSelected } from './tools.js';
+import { chooseTool, closeOutline, dropCorners, isTextured, moveSelected, press, probeAt, removeSelected, sizeSelected, TOOLS, turnSelected } from './tools.js';
 import { setView } from './view.js';
 
 const ARROWS = /** @type {Record<string, number[]>} */ ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] });
 const FAR = 5;
 
+/** Where the cursor begins: at the middle of the slider, or beside it at the next block that the tool changes. */
+function start() {
+  const { blocks } = presentCase();
+  const [x, y] = blocks.map((count) => Math.floor(count / 2) + 0.5);
+  const row = Array.from({ length: Math.ceil(blocks[0] - x) }, (_, k) => [x + k, y]);
+  return row.find((point) => isTextured(point) === (state.tool === 'eraser')) ?? [x, y];
+}
+
 /** @param {number[]} by */
 function moveCursor([dx, dy]) {
   const { blocks } = presentCase();
-  const [x, y] = pointers.cursor ?? blocks.map((count) => Math.floor(count / 2) + 0.5);
+  const [x, y] = pointers.cursor ?? start();
   pointers.cursor = [Math.min(Math.max(x + dx, 0.5), blocks[0] - 0.5), Math.min(Math.max(y + dy, 0.5), blocks[1] - 0.5)];
   probeAt(pointers.cursor);
   redraw();
@@ -38,7 +46,9 @@ function fieldKey(event) {
   else if (key === ',') turnSelected(5);
   else if (key === '.') turnSelected(-5);
   else if (key === 'Delete' || key === 'Backspace') removeSelected();
+  else if (key === 'c') closeOutline();
   else if (key === 'Escape') {
+    dropCorners();
     put('selected', null);
     pointers.cursor = null;
     setView({ probe: null });

@@ -1,12 +1,13 @@
 // @ts-check
 // Lessons: a text beside the running simulation, with buttons that change it. Their structure stands in
 // lessons.json, their words in lessons.en.json, every number of a text in lesson_numbers.json.
+import { inAddress } from './address.js';
 import { jsonOf, textOf } from './assets.js';
 import { change } from './edit.js';
 import { find, make, onPress } from './element.js';
 import { notice } from './notices.js';
 import { open } from './session.js';
-import { on, put, state } from './store.js';
+import { next, on, put, state } from './store.js';
 import { say } from './text.js';
 import { setView, startsPaused } from './view.js';
 
@@ -113,7 +114,7 @@ function turnPage(by) {
 function list() {
   const entries = lessons.map(({ id }) => {
     const { title, minutes, summary } = words[id];
-    const button = make('button', { type: 'button' }, [make('strong', { textContent: told(title) }), make('span', { textContent: say('lesson_summary', { minutes, summary: told(summary) }) })]);
+    const button = make('button', { type: 'button' }, [make('span', {}, [make('strong', { textContent: told(title) }), make('span', { textContent: say('lesson_summary', { minutes, summary: told(summary) }) })])]);
     button.addEventListener('click', () => {
       find('lessons').close();
       put('lesson', { lesson: id, step: 0 });
@@ -121,6 +122,16 @@ function list() {
     return make('li', {}, [button]);
   });
   find('lessons-list').replaceChildren(...entries);
+}
+
+/** Begins the lesson that the address names, by its number or its id. */
+function ofAddress() {
+  const wanted = inAddress('lesson');
+  if (!wanted) return;
+  const lesson = lessons[Number(wanted) - 1] ?? lessons.find(({ id }) => id === wanted);
+  if (lesson) return put('lesson', { lesson: lesson.id, step: 0 });
+  put('problem', { key: 'broken_link' });
+  open({});
 }
 
 /** Loads the lessons and prepares their list; the page does without them if they are not there. */
@@ -136,4 +147,7 @@ export async function startLessons() {
   } catch {
     find('open-lessons').hidden = true;
   }
+  if (!state.hello) await next('hello');
+  ofAddress();
+  window.addEventListener('hashchange', ofAddress);
 }

@@ -110,7 +110,8 @@ function showRepeated({ done, of, finished, change_percent: change, with: textur
   const text = change
     ? say('repeated_change', { change: estimate(change, 1), with: estimate(textured), without: estimate(without), done })
     : textured ? say('repeated_plain', { with: estimate(textured), done }) : say('repeated_none', { done, of });
-  find('repeated').textContent = creeping ? `${text} ${say('repeated_creeping', { creeping })}` : text;
+  const note = state.case?.seeds ? say('repeated_note', { sentence: state.case.seeds }) : '';
+  find('repeated').textContent = [text, creeping ? say('repeated_creeping', { creeping }) : '', finished ? note : ''].filter(Boolean).join(' ');
   if (finished) announce(text);
 }
 
@@ -122,10 +123,7 @@ export function startNumbers() {
   on('hello', () => showRepeating(false));
   onPress('repeat', () => send({ do: 'repeat', seeds: find('repeat').dataset.busy ? 0 : find('repeat-seeds').valueAsNumber }));
   on('case', ({ why, mesh }) => {
-    // One line, with the reason behind it.
-    const sentence = mesh.replaceAll('`', '').replace(/(\d) um\b/g, '$1 \u00b5m');
-    find('mesh').textContent = say('mesh', { sentence: sentence.split(':')[0] });
-    find('mesh').title = sentence;
+    find('mesh-sentence').textContent = say('mesh_sentence', { sentence: mesh.replaceAll('`', '').replace(/(\d) um\b/g, '$1 \u00b5m') });
     if (why !== 'rest') find('repeated').textContent = '';
   });
 }

@@ -5,7 +5,7 @@ import { handles } from './shapes.js';
 import { presentCase, state } from './store.js';
 import { colour } from './theme.js';
 
-/** @typedef {{ring: {point: number[], radius: number}|null, cursor: number[]|null}} Pointers */
+/** @typedef {{ring: {point: number[], radius: number}|null, cursor: number[]|null, corners: number[][]}} Pointers */
 
 /** Pixels around what is drawn: half a cursor and the width of lines. */
 const MARGIN = 12;
@@ -79,6 +79,15 @@ function drawCursor(context, camera, point) {
   strokeTwice(context, 1.5);
 }
 
+/** An outline that is not closed. @param {CanvasRenderingContext2D} context @param {import('./camera.js').Camera} camera @param {number[][]} corners */
+function drawCorners(context, camera, corners) {
+  if (corners.length === 0) return;
+  context.beginPath();
+  for (const [x, y] of corners.map((corner) => camera.toPixels(corner))) context.lineTo(x, y);
+  strokeTwice(context, 2);
+  drawHandles(context, camera, corners);
+}
+
 /** The best texture of a search that is under way. @param {CanvasRenderingContext2D} context @param {import('./camera.js').Camera} camera */
 function drawFinding(context, camera) {
   context.fillStyle = colour('finding');
@@ -91,9 +100,10 @@ function drawFinding(context, camera) {
 }
 
 /** The part of the frame that is drawn on, [left, top, right, bottom] in pixels. @param {import('./camera.js').Camera} camera @param {Pointers} pointers */
-function extent(camera, { ring, cursor }) {
+function extent(camera, { ring, cursor, corners }) {
   const points = (state.case?.shapes ?? []).flatMap((shape) => shape.outlines.flat()).map((point) => camera.toPixels(point));
   points.push(...(state.finding?.best_texture ?? []).flatMap(([row, from, to]) => [camera.toPixels([from, row]), camera.toPixels([to, row + 1])]));
+  points.push(...corners.map((corner) => camera.toPixels(corner)));
   if (cursor) points.push(camera.toPixels(cursor));
   if (ring) {
     const [x, y] = camera.toPixels(ring.point);
@@ -125,6 +135,7 @@ export function drawOverlay(canvas, camera, ratio, pointers) {
   context.setTransform(ratio, 0, 0, ratio, -left * ratio, -top * ratio);
   drawFinding(context, camera);
   drawShapes(context, camera);
+  drawCorners(context, camera, pointers.corners);
   if (pointers.ring) drawRing(context, camera, pointers.ring);
   if (pointers.cursor) drawCursor(context, camera, pointers.cursor);
 }

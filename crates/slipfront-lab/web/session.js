@@ -1,9 +1,12 @@
 // @ts-check
 // Which case is open: that of the address, of the command line, or after a lost connection the one that was
 // shown.
+import { inAddress } from './address.js';
 import { send } from './connection.js';
 import { readLink } from './link.js';
+import { notice, withdraw } from './notices.js';
 import { next, on, put, state } from './store.js';
+import { say } from './text.js';
 import { sendView } from './view.js';
 
 /** @import { CaseReply, Source } from '../types/protocol' */
@@ -16,8 +19,11 @@ let quiet = 0;
 /** @type {Record<string, string>} */
 let files = {};
 
-/** Opens another case. @param {Source} source */
+/** Opens another case; of one of the list it says what it is. @param {Source} source */
 export function open(source) {
+  withdraw('preset');
+  const listed = state.hello?.presets.find(({ name }) => name === source.preset);
+  if (listed) notice(say(listed.is_study ? 'preset_study' : 'preset_case', { title: listed.title }), { topic: 'preset' });
   put('recorded', null);
   put('selected', null);
   send({ do: 'open', source });
@@ -32,16 +38,17 @@ export function exported() {
 
 /** The case that the address names or holds; throws if there is none. @returns {Promise<Source>} */
 async function ofAddress() {
-  const parts = new URLSearchParams(location.hash.slice(1));
-  const [preset, link] = [parts.get('preset'), parts.get('case')];
-  if (preset) {
-    if (!state.hello?.presets.some(({ name }) => name === preset)) throw new RangeError('no such case');
-    return { preset };
-  }
-  return link ? readLink(link) : {};
+  const [preset, named] = [inAddress('preset'), inAddress('case')];
+  const listed = state.hello?.presets.find(({ name }) => name === (preset ?? named));
+  if (listed) return { preset: listed.name };
+  if (preset) throw new RangeError('no such case');
+  return named ? readLink(named) : {};
 }
 
 async function first() {
+  // The lesson of the address opens its own case.
+  if (inAddress('lesson')) return;
+  put('lesson', null);
   try {
     open(await ofAddress());
   } catch {
@@ -68,5 +75,8 @@ function holdFiles(shown) {
 export function startSession() {
   on('hello', begin);
   on('case', holdFiles);
-  window.addEventListener('hashchange', first);
+  window.addEventListener('hashchange', () => {
+    const isView = inAddress('field') && !inAddress('case') && !inAddress('preset');
+    if (!isView) first();
+  });
 }

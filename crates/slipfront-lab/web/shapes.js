@@ -64,6 +64,9 @@ export function create(tool, options, point, radius, slider) {
   return table;
 }
 
+/** A shape with these corners, in blocks. @param {number[][]} corners @param {Slider} slider @returns {Texture} */
+export const outline = (corners, { blockSize }) => ({ shape: 'polygon', points: corners.map((corner) => pair(corner.map((value) => value * blockSize))) });
+
 /** The shape moved by (dx, dy) blocks. @param {Texture} table @param {number[]} by @param {Slider} slider @returns {Texture} */
 export function move(table, by, slider) {
   const [dx, dy] = by.map((value) => value * slider.blockSize);

@@ -1,8 +1,11 @@
 // @ts-check
 // The WebSocket to the server. It connects again by itself; what was shown is opened again by session.js.
+import { notice } from './notices.js';
+import { handOver, takeOver } from './other_tab.js';
 import { forget, hasToken, proofs, takeToken } from './proof.js';
 import { receive } from './receive.js';
 import { put } from './store.js';
+import { say } from './text.js';
 
 const SHORTEST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 5000;
@@ -64,6 +67,8 @@ async function once() {
 export async function connect() {
   window.addEventListener('hashchange', () => hasToken() && location.reload());
   if (hasToken() && !(await takeToken())) put('problem', { key: 'broken_token' });
+  takeOver();
+  if (!(await proofs()) && (await handOver())) return notice(say('opened_elsewhere'), { serious: true });
   for (let waitMs = SHORTEST_WAIT_MS; ; waitMs = Math.min(2 * waitMs, LONGEST_WAIT_MS)) {
     const { proved, ended, reason } = await once();
     put('connected', { yes: false, ended, reason });

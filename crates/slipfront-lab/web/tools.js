@@ -3,9 +3,10 @@
 // keyboard.
 import { send } from './connection.js';
 import { change, gradual, newGesture } from './edit.js';
-import { atMost, find, make } from './element.js';
+import { atMost, find, make, onPress } from './element.js';
 import { camera, pointers, redraw } from './field.js';
-import { box, create, enlarge, handles, inside, move, sliderOf, turn } from './shapes.js';
+import { TEXTURED } from './frames.js';
+import { box, create, enlarge, handles, inside, move, outline, sliderOf, turn } from './shapes.js';
 import { on, presentCase, put, state } from './store.js';
 import { say } from './text.js';
 import { setView } from './view.js';
@@ -21,6 +22,7 @@ const PROBE_SPACING_MS = 50;
 const GRIP_PIXELS = 12;
 /** A drag of less than this many pixels is a click. */
 const CLICK_PIXELS = 4;
+const FEWEST_CORNERS = 3;
 
 const slider = () => sliderOf(presentCase());
 
@@ -43,6 +45,13 @@ function options() {
 /** Replaces one texture. @param {Texture[]} texture @param {number} index @param {Texture} table */
 const replaced = (texture, index, table) => texture.map((old, k) => (k === index ? table : old));
 
+/** Whether a shape or paint covers the block at a point. @param {number[]} point */
+export function isTextured(point) {
+  const { picture } = state;
+  const [x, y] = point.map(Math.floor);
+  return shapeAt(point) !== null || picture?.bytes[y * picture.nx + x] === TEXTURED;
+}
+
 /** The shape below a point, the last one if there are several. @param {number[]} point */
 function shapeAt(point) {
   const hit = (state.case?.shapes ?? []).filter((shape) => inside(shape.outlines, point));
@@ -52,15 +61,17 @@ function shapeAt(point) {
 /** The selected shape with its outlines. */
 const selectedShape = () => (state.case?.shapes ?? []).find((shape) => shape.index === state.selected);
 
+/** Whether a pointer at one point means the other one. @param {number[]} point @param {number[]} other */
+function isNear(point, other) {
+  const [[x, y], [toX, toY]] = [camera.toPixels(point), camera.toPixels(other)];
+  return Math.hypot(toX - x, toY - y) <= GRIP_PIXELS;
+}
+
 /** Whether the point grips a handle of the selected shape. @param {number[]} point */
 function gripped(point) {
   const shape = selectedShape();
   if (!shape || shape.outlines.length === 0) return false;
-  const pixel = camera.toPixels(point);
-  return handles(presentCase().texture[shape.index], shape.outlines[0]).some((handle) => {
-    const at = camera.toPixels(handle);
-    return Math.hypot(at[0] - pixel[0], at[1] - pixel[1]) <= GRIP_PIXELS;
-  });
+  return handles(presentCase().texture[shape.index], shape.outlines[0]).some((handle) => isNear(point, handle));
 }
 
 /** A drag that changes the selected shape: `alter` makes the new table of the old one and the present point. @param {(table: Texture, point: number[]) => Texture} alter */
@@ -122,8 +133,37 @@ function select(index) {
   chooseTool('probe');
 }
 
-/** Adds a shape of ordinary size around a point. @param {number[]} point */
+/** Gives up the corners of an outline that is not closed. */
+export function dropCorners() {
+  pointers.corners = [];
+  showCorners();
+}
+
+/** Makes the corners that were clicked an outline. */
+export function closeOutline() {
+  if (pointers.corners.length < FEWEST_CORNERS) return;
+  const { texture } = presentCase();
+  change({ texture: [...texture, outline(pointers.corners, slider())] });
+  dropCorners();
+  select(texture.length);
+}
+
+/** Adds a corner to the outline; the first one closes it. @param {number[]} point */
+function addCorner(point) {
+  const { corners } = pointers;
+  if (corners.length >= FEWEST_CORNERS && isNear(point, corners[0])) return closeOutline();
+  pointers.corners = [...corners, point];
+  showCorners();
+}
+
+function showCorners() {
+  find('polygon-close').disabled = pointers.corners.length < FEWEST_CORNERS;
+  redraw();
+}
+
+/** Adds a shape of ordinary size around a point, or a corner to an outline. @param {number[]} point */
 function place(point) {
+  if (state.tool === 'polygon') return addCorner(point);
   const { texture } = presentCase();
   change({ texture: [...texture, create(state.tool, options(), point, 0, slider())] });
   select(texture.length);
@@ -261,7 +301,7 @@ function showTool() {
   find('tool-hint').textContent = say(`hint_${tool}`);
   find('frame').classList.toggle('draws', tool !== 'probe');
   pointers.ring = null;
-  redraw();
+  dropCorners();
 }
 
 /** Makes the buttons of the tools. */
@@ -272,6 +312,8 @@ export function startTools() {
     return button;
   });
   find('tools').prepend(...buttons);
+  onPress('polygon-close', closeOutline);
   on('tool', showTool);
+  on('case', ({ why }) => why === 'open' && dropCorners());
   chooseTool('probe');
 }

@@ -12,7 +12,14 @@ import { notice } from './notices.js';
 
 /** Places of the pace slider are steps of a tenth of a decade from this; the last one is as fast as possible. */
 const SLOWEST = 0.5;
-const LAST = 34;
+const LAST = 47;
+/** Seconds after which the onset is expected at the pace with which a case opens. */
+const ONSET_S = 10 / 3;
+
+/** Whether the reader has asked for full speed, which then holds for every case. */
+let fastest = false;
+/** The case that was opened last. */
+let opened = '';
 
 /** @param {number} place */
 const paceOf = (place) => (place >= LAST ? 0 : Number((SLOWEST * 10 ** (place / 10)).toPrecision(2)));
@@ -46,8 +53,16 @@ function showEnd(ended) {
   showView();
 }
 
+/** Gives a case that is opened the pace that suits it; a lesson sets its own. @param {CaseReply} shown */
+function suitPace({ why, toml, onset_star: onset }) {
+  if (why !== 'open' || toml === opened) return;
+  opened = toml;
+  if (!fastest && !state.lesson) setView({ pace: paceOf(Math.min(Math.max(placeOf(onset / ONSET_S), 0), LAST - 1)) });
+}
+
 /** @param {CaseReply} shown */
 function showCase(shown) {
+  suitPace(shown);
   find('undo').disabled = !shown.can_undo;
   find('redo').disabled = !shown.can_redo;
   find('case-name').textContent = shown.name;
@@ -62,7 +77,11 @@ export function startTransport() {
   onPress('rest', () => send({ do: 'rest' }));
   onPress('undo', () => send({ do: 'undo' }));
   onPress('redo', () => send({ do: 'redo' }));
-  find('pace').addEventListener('input', () => setView({ pace: paceOf(find('pace').valueAsNumber) }));
+  find('pace').addEventListener('input', () => {
+    const pace = paceOf(find('pace').valueAsNumber);
+    fastest = pace === 0;
+    setView({ pace });
+  });
   find('after-rest').addEventListener('change', () => setView({ after_change: 'rest' }));
   find('after-go-on').addEventListener('change', () => setView({ after_change: 'go_on' }));
   document.addEventListener('visibilitychange', () => setView({ visible: !document.hidden }));

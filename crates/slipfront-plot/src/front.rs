@@ -1,5 +1,5 @@
 //! The spread of slip: the time at which every block has first slipped, and the share of sliding blocks along
-//! the drive against time.
+//! the drive against time, which runs to the right.
 
 use crate::axis::{DrawnAxis, range};
 use crate::canvas::Canvas;
@@ -34,7 +34,7 @@ const MIN_BESIDE: f64 = 1650.0;
 /// Least height of a map above the other panel, over its length.
 const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
 /// Height of the other panel below a map.
-const HEIGHT_BELOW: f64 = 340.0;
+const HEIGHT_BELOW: f64 = 400.0;
 /// Height of the other panel in a picture of its own.
 const HEIGHT_ALONE: f64 = 900.0;
 /// Largest number of steps between contours.
@@ -135,7 +135,7 @@ pub fn kymograph(space_time: &SpaceTime, size: PictureSize) -> Result<Picture, P
     canvas.widened(size).finish()
 }
 
-/// The axes of places and times, and the title of the first.
+/// The axes of times and places, and the title of the places.
 fn space_time_axes(space_time: &SpaceTime) -> ([DrawnAxis; 2], String) {
     let [from, to] = space_time.places;
     let (unit, factor) = unit_of(from.abs().max(to.abs()));
@@ -143,7 +143,7 @@ fn space_time_axes(space_time: &SpaceTime) -> ([DrawnAxis; 2], String) {
         let (lo, hi) = range([from, to].into_iter());
         DrawnAxis::linear(lo, hi)
     };
-    let axes = [around([from * factor, to * factor]), around(space_time.times)];
+    let axes = [around(space_time.times), around([from * factor, to * factor])];
     (axes, format!("{} ({unit})", space_time.place))
 }
 
@@ -390,16 +390,18 @@ fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, panel: &FrontPan
     let rows = space_time.shares.len() / space_time.columns;
     let means = CellMeans::of(space_time.columns, rows, space_time.shares.iter().copied());
     let [columns, _] = CellMeans::cells(space_time.columns, rows);
-    // The image's first row is the uppermost, the latest.
-    let cells = means.chunks_exact(columns).rev().flatten();
+    let instants = means.len() / columns;
+    // The image's first row is the uppermost, the farthest place.
+    let places = (0..columns).rev();
+    let cells = places.flat_map(|place| (0..instants).map(move |instant| instant * columns + place));
     canvas.images.push(Image {
         area: panel.area,
-        columns,
+        columns: instants,
         levels: cells
-            .map(|&share| level(f64::from(share), panel.bar.range))
+            .map(|cell| level(f64::from(means[cell]), panel.bar.range))
             .collect(),
     });
-    panel.draw_axes(canvas, [place, "t*"]);
+    panel.draw_axes(canvas, ["time t*", place]);
 }
 
 #[cfg(test)]
@@ -423,7 +425,7 @@ mod tests {
 
     fn space_time(columns: usize, rows: usize) -> SpaceTime {
         SpaceTime {
-            place: "place along the drive".to_owned(),
+            place: "position along drive".to_owned(),
             places: [0.0, columns as f64 * 1e-6],
             times: [12.5, 260.0],
             columns,
@@ -508,7 +510,7 @@ mod tests {
         shares.shares.fill(0.0);
         assert_eq!(share_bar(&shares, 100.0).range, [0.0, 1.0]);
         let svg = kymograph(&shares, PictureSize::default()).unwrap().svg;
-        assert!(svg.contains("place along the drive") && svg.matches("<image").count() == 2);
+        assert!(svg.contains("position along drive") && svg.matches("<image").count() == 2);
         shares.shares.clear();
         assert_eq!(
             kymograph(&shares, PictureSize::default())

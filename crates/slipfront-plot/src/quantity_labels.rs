@@ -6,7 +6,7 @@ use crate::text::Text;
 /// Title of the time of first slip.
 pub const FIRST_SLIP: &str = "first slip t*";
 /// Title of the share of the blocks in contact that slide.
-pub const SLIDING_SHARE: &str = "share that slides";
+pub const SLIDING_SHARE: &str = "sliding fraction";
 
 /// The names of a quantity.
 #[derive(Clone, Copy, Debug, Default)]

@@ -87,15 +87,15 @@ pub(crate) fn after_run(
                 .to_owned(),
         ),
         Some(Err(NoUncertainty::TooShort { needed_time_star })) => warnings.push(format!(
-            "mu_k* has no uncertainty: it takes a time.duration_star of {:.0} or more",
+            "no uncertainty could be estimated for mu_k*: set time.duration_star to {:.0} or more",
             needed_time_star.ceil()
         )),
         Some(Err(NoUncertainty::SpeedChanges)) => {
-            warnings.push("mu_k* has no uncertainty, since the drive changes its speed".to_owned());
+            warnings.push("no uncertainty can be estimated for mu_k*, since the drive changes its speed".to_owned());
         }
         Some(Err(NoUncertainty::Drift { needed_time_star })) => warnings.push(format!(
-            "mu_k* has no uncertainty, since mu* still drifts: run to time.duration_star = {needed_time_star:.0}, or begin \
-             later by time.kinetic_from_star"
+            "no uncertainty could be estimated for mu_k*, since mu* still drifts: set time.duration_star to {needed_time_star:.0}, \
+             or begin the mean later by time.kinetic_from_star"
         )),
         Some(Ok(_)) => {}
     }

@@ -156,6 +156,11 @@ impl Document {
         twin
     }
 
+    /// Whether both are one case, whatever they are called.
+    pub(crate) fn is_same_case(&self, other: &Self) -> bool {
+        self.keys == other.keys && self.files == other.files
+    }
+
     /// The slider without texture with which this case is compared, of the same body.
     ///
     /// # Errors
@@ -163,7 +168,9 @@ impl Document {
     pub(crate) fn twin(&self) -> Result<Self, String> {
         let file = CaseFile::parse(&self.toml(), &self.name, &[]).map_err(|error| error.to_string())?;
         let body = key_of_body(&file).map(|(key, value)| (key.to_owned(), Some(Value::from(value))));
-        self.without_texture().with(body)
+        let mut twin = self.without_texture().with(body)?;
+        twin.drop_unnamed_files().map_err(|error| error.to_string())?;
+        Ok(twin)
     }
 
     /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as

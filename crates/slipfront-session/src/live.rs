@@ -20,6 +20,8 @@ pub(crate) struct LiveRun {
     origin: Option<Vec<[f32; 2]>>,
     /// Number of points of the curve of the present leg that the page has been sent.
     n_sent: usize,
+    /// Whether every block in contact has slipped since rest; never in a later leg.
+    pub(crate) crossed: bool,
     /// Why the run ended, if it did.
     pub(crate) ended: Option<StopReason>,
 }
@@ -51,6 +53,7 @@ impl LiveRun {
             before: Elapsed::default(),
             origin: None,
             n_sent: 0,
+            crossed: false,
             ended: None,
         }
     }
@@ -81,6 +84,7 @@ impl LiveRun {
         self.running = leg.running;
         self.leg += 1;
         self.n_sent = 0;
+        self.crossed = false;
         self.ended = None;
         Ok(())
     }
@@ -116,6 +120,21 @@ impl LiveRun {
             self.ended = self.running.advance(steps).map_err(|error| error.to_string())?;
         }
         Ok(())
+    }
+
+    /// How much of a transition from rest has been seen: the first slip, the first peak, the slip of every
+    /// block in contact. It looks at every block.
+    pub(crate) fn look_for_stages(&mut self) -> usize {
+        if self.leg == 0 && !self.crossed && self.has_slipped() {
+            let first_slips = self.running.snapshot().first_slip_time_star();
+            let slipped = first_slips.iter().filter(|time| !time.is_nan()).count();
+            self.crossed = slipped == self.case().model.surface.n_contact();
+        }
+        let has_peak = self.peak().is_some_and(|peak| peak.certain);
+        [self.leg == 0 && self.has_slipped(), has_peak, self.crossed]
+            .into_iter()
+            .filter(|is_seen| *is_seen)
+            .count()
     }
 
     /// Steps since rest.
@@ -158,11 +177,6 @@ impl LiveRun {
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
         }
-    }
-
-    /// Lets all points of this leg be sent again.
-    pub(crate) fn resend_points(&mut self) {
-        self.n_sent = 0;
     }
 
     /// The first peak of mu* since rest; none of a later leg, which does not begin at rest.

@@ -23,7 +23,7 @@ use crate::shapes;
 
 /// Requests as the page may send them: every key with every kind of value, and every key that may be absent
 /// so.
-const REQUESTS: [&str; 30] = [
+const REQUESTS: [&str; 31] = [
     r#"{"do":"open","source":{}}"#,
     r#"{"do":"open","source":{"preset":"circle"}}"#,
     r#"{"do":"open","source":{"folder":"run"}}"#,
@@ -42,6 +42,7 @@ const REQUESTS: [&str; 30] = [
     r#"{"do":"view","field":"speed","loading_pace":0}"#,
     r#"{"do":"view","field":"sliding","twin":true}"#,
     r#"{"do":"view","field":"first_slip","kymograph":true}"#,
+    r#"{"do":"view","field":"front"}"#,
     r#"{"do":"view","frames_per_second":60}"#,
     r#"{"do":"view","probe":[1,1]}"#,
     r#"{"do":"view","probe":null}"#,
@@ -162,7 +163,9 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     let case = document.case(&mut |_| true).unwrap();
     let presets = [PresetEntry {
         name: "circle",
-        group: "cases",
+        group: "holes",
+        picture: "",
+        is_study: false,
         title: "A circle",
     }];
     for results in [None, Some("results")] {
@@ -206,6 +209,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             dt_star: 0.1,
             duration_star: 400.0,
             kinetic_from_star,
+            onset_star: 80.0,
             drive_degrees: too_coarse.is_none().then_some(30.0),
             loading_rate: too_coarse.is_none().then_some(0.01),
             steady_level: 0.5,
@@ -218,6 +222,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             has_memory: false,
             mesh: "the block decides".to_owned(),
             warnings: vec!["a warning".to_owned()],
+            seeds: too_coarse.is_none().then_some("a note"),
             too_coarse,
             search: SearchLimits {
                 width_blocks: 4,
@@ -278,6 +283,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
             change_percent: present.then_some(0.5),
             kinetic: present.then_some(0.5),
             instants: BTreeMap::from([('A', 0.5)]),
+            crossed: false,
             steps_per_second: 0.5,
             ended: true,
             summary: summary.cloned(),

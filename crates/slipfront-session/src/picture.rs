@@ -15,14 +15,27 @@ pub(crate) enum DisplayedField {
     Speed,
     Sliding,
     FirstSlip,
+    /// First slips of the blocks that hold, and the blocks that slide.
+    Front,
+}
+
+impl DisplayedField {
+    /// Whether colours stand for times of first slips, which some blocks may not have yet.
+    fn shows_first_slips(self) -> bool {
+        matches!(self, Self::FirstSlip | Self::Front)
+    }
 }
 
 /// Byte of the largest value.
 const MAX_BYTE: f32 = 250.0;
 /// Bytes of blocks without a value.
+const SLIDES: u8 = 252;
 const NOT_YET: u8 = 253;
 const NO_BLOCK: u8 = 254;
 const TEXTURED: u8 = 255;
+
+/// Value of a block that slides, where the others have times.
+pub(crate) const SLIDING_NOW: f32 = f32::INFINITY;
 
 /// Kinds of binary messages.
 const PICTURE: u8 = 1;
@@ -77,11 +90,15 @@ impl Painter {
             DisplayedField::ContactStress => read_scaled(now, Field::ContactStress, stress, values),
             DisplayedField::Traction => read_scaled(now, Field::Traction, stress, values),
             DisplayedField::Sliding => now.read_field(Field::Sliding, values),
-            DisplayedField::FirstSlip => {
+            DisplayedField::FirstSlip | DisplayedField::Front => {
                 self.times.resize(n_blocks, 0.0);
                 now.read_first_slips(&mut self.times);
-                for (value, time) in values.iter_mut().zip(&self.times) {
-                    *value = *time as f32;
+                if shown == DisplayedField::Front {
+                    now.read_field(Field::Sliding, other);
+                }
+                for ((value, time), slides) in values.iter_mut().zip(&self.times).zip(other) {
+                    let slides = shown == DisplayedField::Front && *slides > 0.0;
+                    *value = if slides { SLIDING_NOW } else { *time as f32 };
                 }
             }
             DisplayedField::Displacement => {
@@ -148,7 +165,7 @@ impl Painter {
             bytes.extend((count as u16).to_le_bytes());
         }
         let factor = if high > low { MAX_BYTE / (high - low) } else { 0.0 };
-        let missing = if shown == DisplayedField::FirstSlip {
+        let missing = if shown.shows_first_slips() {
             NOT_YET
         } else {
             NO_BLOCK
@@ -156,6 +173,8 @@ impl Painter {
         let byte = |value: &f32| {
             if value.is_nan() {
                 missing
+            } else if *value == SLIDING_NOW {
+                SLIDES
             } else {
                 ((value - low) * factor + 0.5).clamp(0.0, MAX_BYTE) as u8
             }
@@ -184,9 +203,10 @@ impl Painter {
         if shown == DisplayedField::Sliding {
             return [0.0, 1.0];
         }
-        let largest = values.iter().copied().fold(0.0, f32::max);
-        if shown == DisplayedField::FirstSlip {
-            let earliest = values.iter().copied().fold(f32::INFINITY, f32::min);
+        let finite = || values.iter().copied().filter(|value| *value != SLIDING_NOW);
+        let largest = finite().fold(0.0, f32::max);
+        if shown.shows_first_slips() {
+            let earliest = finite().fold(f32::INFINITY, f32::min);
             return [earliest.min(largest), largest];
         }
         // It shrinks when most of it is not used, so that colours do not flicker.
@@ -213,10 +233,10 @@ pub(crate) fn lengths(x: &mut [f32], y: &[f32]) {
     }
 }
 
-/// The next of 1, 1.5, 2, 3, 5, 7 and 10 times a power of ten.
+/// The next of 1, 1.5, 2, 3, 5, 7 and 10 times a power of ten; 1 where nothing is above 0.
 fn round_up(value: f32) -> f32 {
     if value <= 0.0 || !value.is_finite() {
-        return 1e-30;
+        return 1.0;
     }
     let power = libm::powf(10.0, libm::log10f(value).floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];

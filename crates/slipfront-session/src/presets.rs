@@ -14,8 +14,12 @@ use crate::protocol::PresetEntry;
 pub struct Preset {
     /// The name by which the case is chosen.
     pub name: String,
-    /// The group of the list in which the case stands: `cases` or `paper`.
+    /// The group of the list in which the case stands, such as `grooves` or `paper`.
     pub group: String,
+    /// The small picture of the case, which the page draws: 32 x 32 values of half a byte, in Base64.
+    pub picture: String,
+    /// Whether the case is the base of a study of many runs.
+    pub is_study: bool,
     /// A sentence that says what the case shows.
     pub title: String,
     /// The case as a text.
@@ -52,6 +56,8 @@ impl Presets {
             PresetEntry {
                 name: &preset.name,
                 group: &preset.group,
+                picture: &preset.picture,
+                is_study: preset.is_study,
                 title: &preset.title,
             }
         }

@@ -212,6 +212,9 @@ pub(crate) struct SavingEntry<'a> {
 pub(crate) struct PresetEntry<'a> {
     pub(crate) name: &'a str,
     pub(crate) group: &'a str,
+    pub(crate) picture: &'a str,
+    /// Whether the case is the base of a study of many runs.
+    pub(crate) is_study: bool,
     pub(crate) title: &'a str,
 }
 
@@ -233,6 +236,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) dt_star: f64,
     pub(crate) duration_star: f64,
     pub(crate) kinetic_from_star: f64,
+    /// Time t* at which the onset is expected first, or that of the end of the run, if that comes before.
+    pub(crate) onset_star: f64,
     /// Direction of the drive, degrees from x towards y; none if it turns the slider.
     pub(crate) drive_degrees: Option<f64>,
     /// Rise of mu* in one t* of the drive as long as no block slides; none of a drive that turns the slider.
@@ -250,6 +255,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) warnings: Vec<String>,
     /// The one of the warnings that blocks are too coarse for the outlines of the texture.
     pub(crate) too_coarse: Option<String>,
+    /// Note on what other seeds change, if it is less than static friction.
+    pub(crate) seeds: Option<&'static str>,
     pub(crate) search: SearchLimits,
 }
 
@@ -301,6 +308,8 @@ pub(crate) struct NumbersReply {
     pub(crate) change_percent: Option<f64>,
     pub(crate) kinetic: Option<f64>,
     pub(crate) instants: BTreeMap<char, f64>,
+    /// Whether every block in contact has slipped since rest.
+    pub(crate) crossed: bool,
     pub(crate) steps_per_second: f64,
     pub(crate) ended: bool,
     pub(crate) summary: Option<Value>,

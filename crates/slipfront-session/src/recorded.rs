@@ -3,7 +3,7 @@
 use slipfront::observe::Field;
 use slipfront_run::fields::FieldsData;
 
-use crate::picture::{DisplayedField, lengths};
+use crate::picture::{DisplayedField, SLIDING_NOW, lengths};
 
 /// A run that was recorded before.
 pub struct RecordedRun {
@@ -46,6 +46,21 @@ impl RecordedRun {
             DisplayedField::Speed => length(Field::VelocityX, Field::VelocityY),
             DisplayedField::FirstSlip => {
                 Some(of.first_slip_time_star.iter().map(|time| *time as f32).collect())
+            }
+            DisplayedField::Front => {
+                let sliding = recorded(Field::Sliding).unwrap_or_default();
+                let slides = sliding
+                    .iter()
+                    .map(|slides| *slides > 0.0)
+                    .chain(std::iter::repeat(false));
+                let times = of.first_slip_time_star.iter().zip(slides);
+                let value = |(time, slides): (&f64, bool)| match slides {
+                    true => SLIDING_NOW,
+                    // Later slips are not known at this instant.
+                    false if *time > frame.time_star => f32::NAN,
+                    false => *time as f32,
+                };
+                Some(times.map(value).collect())
             }
         }
     }

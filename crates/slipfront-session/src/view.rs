@@ -62,7 +62,7 @@ pub(crate) struct View {
 impl Default for View {
     fn default() -> Self {
         Self {
-            field: DisplayedField::Traction,
+            field: DisplayedField::Front,
             visible: true,
             paused: false,
             pace: 25.0,

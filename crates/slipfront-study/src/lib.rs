@@ -68,7 +68,7 @@ pub use meshed::MeshedCoverage;
 pub use picture_plan::{quantities_without_pictures, why_no_pictures};
 pub use pictures_again::{PicturesOf, pictures_of};
 pub use plan::{Plan, Point, Role, RunKey};
-pub use plan_warnings::Warning;
+pub use plan_warnings::{Warning, note_on_seeds};
 pub use project_file::Base;
 pub use run_journal::RunJournal;
 pub use shard::Shard;

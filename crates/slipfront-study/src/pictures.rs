@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::anisotropy::FRICTION;
 use crate::axis::{Axis, Spacing};
+use crate::converge::on_meshes::{OnMeshes, is_over_meshes};
 use crate::error::StudyError;
 use crate::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title, titled};
 use crate::levels::{Levels, combinations};
@@ -20,6 +21,22 @@ use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, PictureLook, PictureSize, Polar,
     Response, Responses,
 };
+
+/// Name of the curve of a study over meshes.
+const MEANS_ON_MESHES: &str = "mean on each mesh";
+
+/// The value on the finest mesh with its error. The axis begins at blocks of no size, to which the meshes
+/// converge.
+fn result_on_meshes(finest: f64, value: f64, error: f64) -> Response {
+    Response {
+        label: "finest mesh, with its error".to_owned(),
+        x: vec![0.0, finest],
+        mean: vec![f64::NAN, value],
+        low: vec![f64::NAN, value - error],
+        high: vec![f64::NAN, value + error],
+        ..Response::default()
+    }
+}
 
 /// Note that coverages are meshed ones, for which a legend of several axes has no room.
 const AS_MESHED: &str = "A* as meshed";
@@ -42,8 +59,12 @@ pub(crate) fn draw(
             )?;
         }
     }
+    let on_meshes = is_over_meshes(&plan.axes)
+        .then(|| OnMeshes::of(plan, results))
+        .transpose()?;
     for quantity in measured_quantities(plan, results) {
-        let measured = PlottedQuantity::of(plan, results, quantity);
+        let mut measured = PlottedQuantity::of(plan, results, quantity);
+        measured.on_finest_mesh = on_meshes.as_ref().and_then(|found| found.result_of(quantity));
         let mut asked = planned(&plan.axes, quantity);
         asked.retain(|picture| look.draws(&picture.name));
         for some in asked.chunks(PICTURES_AT_ONCE) {
@@ -79,6 +100,8 @@ struct PlottedQuantity<'a> {
     without_transition: usize,
     /// Meshed coverages of an axis, at which values are drawn.
     meshed: Option<MeshedCoverage>,
+    /// Value on the finest of several meshes and its error, for a study over the size of the blocks.
+    on_finest_mesh: Option<[f64; 2]>,
 }
 
 impl<'a> PlottedQuantity<'a> {
@@ -114,6 +137,7 @@ impl<'a> PlottedQuantity<'a> {
             crossed: crossed.map(|(_, point)| plan.levels(point)).collect(),
             without_transition,
             meshed: MeshedCoverage::of(plan),
+            on_finest_mesh: None,
         }
     }
 
@@ -183,9 +207,14 @@ impl<'a> PlottedQuantity<'a> {
 
     fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Responses {
         let curves = combinations(self.axes, varied).into_iter();
-        let curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
+        let mut curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
         // What covers no block has no place on a logarithmic scale.
         let has_place = curves.iter().flat_map(|curve| &curve.x).all(|&x| x > 0.0);
+        if let (Some([value, error]), [curve]) = (self.on_finest_mesh, &mut curves[..]) {
+            MEANS_ON_MESHES.clone_into(&mut curve.label);
+            let finest = curve.x.iter().copied().fold(f64::INFINITY, f64::min);
+            curves.push(result_on_meshes(finest, value, error));
+        }
         Responses {
             x_title: self.axis_title(x),
             log_x: self.axes[x].spacing == Spacing::Logarithmic && has_place,

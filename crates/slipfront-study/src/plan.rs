@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::axis::{self, Axis};
 use crate::error::StudyError;
 use crate::identity::{Prepared, physics};
-use crate::plan_warnings::{Warning, Warnings, note_on_replicates};
+use crate::plan_warnings::{Warning, Warnings, note_on_seeds};
 use crate::project_file::Base;
 use crate::shard::Shard;
 use crate::study_file::{RetainRuns, Settings, StudyFile};
@@ -344,7 +344,7 @@ impl Plan {
         };
         let mut warnings = case.warnings();
         if role == Role::Point && self.settings.max_replicates() > 1 {
-            warnings.extend(note_on_replicates(&case).map(str::to_owned));
+            warnings.extend(note_on_seeds(&case).map(str::to_owned));
         }
         Ok((spec, warnings))
     }

@@ -49,17 +49,18 @@ impl Warnings {
     }
 }
 
-/// Note on the effect of the seed, which alone differs between replicates, for the intervals over them.
-pub(crate) fn note_on_replicates(case: &Case) -> Option<&'static str> {
+/// Note on what the seed changes in runs of a case, for intervals over seeds; none where static coefficients
+/// are random.
+pub fn note_on_seeds(case: &Case) -> Option<&'static str> {
     let (friction, groups) = (&case.file.friction, &case.groups);
     if friction.mu_static_field.is_none() && groups.sigma_static_star > 0.0 {
         None
     } else if friction.mu_kinetic_field.is_none() && groups.sigma_kinetic_star * groups.r_star > 0.0 {
         Some(
-            "replicates differ in their kinetic coefficients alone, and intervals show no more than that: the static ones \
+            "only the kinetic coefficients differ from seed to seed, and intervals show no more than that: the static ones \
              are the same for every seed",
         )
     } else {
-        Some("all replicates are the same run: no coefficient is random, and one replicate says all")
+        Some("every seed gives the same run: no coefficient is random, so that one seed is enough")
     }
 }

@@ -55,9 +55,13 @@ impl Sample {
     }
 }
 
-/// The mean of values.
+/// The mean of values, which rounding does not take beyond them: that of equal values is their value, so that
+/// their deviation is 0.
 pub fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    mean.max(lowest).min(highest)
 }
 
 /// Two-sided quantile of Student's t.
@@ -84,6 +88,20 @@ mod tests {
                 (student(degrees, confidence) - expected).abs() < 5e-5,
                 "{degrees} {confidence}"
             );
+        }
+    }
+
+    /// The sum of seven times 0.1 over 7 is not 0.1.
+    #[test]
+    fn equal_values_do_not_scatter() {
+        for value in [0.1, 0.8907, 1e-9, -3.3] {
+            for n in 2..20 {
+                let sample = Sample::of(&vec![value; n], 0.95).unwrap();
+                assert_eq!(
+                    (sample.mean, sample.deviation, sample.half_width),
+                    (value, Some(0.0), Some(0.0))
+                );
+            }
         }
     }
 

@@ -184,7 +184,7 @@ impl Settings {
         }
         if !known().contains(key) {
             let sentence = format!(
-                "`{key}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
+                "`{key}` is not a number of the summary: take one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
             );
             return refuse("until.key", sentence);
         }

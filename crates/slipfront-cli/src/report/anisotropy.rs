@@ -42,8 +42,8 @@ pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
         0 => String::new(),
         _ => format!(
             "friction over the directions, in degrees from x towards y: anisotropy is (largest -\n\
-             smallest)/mean, from the largest to the smallest; p is how probable axes that stand out\n\
-             as much are if friction has none; principal is the axis of larger friction, lateral the\n\
+             smallest)/mean, from the largest to the smallest; p: probability of an anisotropy at least\n\
+             this large if friction is isotropic; principal: axis of the larger friction; lateral:\n\
              largest friction across the drive\n\n{}{more}\n",
             table(&header, &rows[..shown])
         ),

@@ -77,12 +77,12 @@ fn onset(case: &Case) -> String {
     text += &if from < to {
         let factor = case.model.surface.load_factor();
         let load = if factor > 1.0 {
-            format!("bear {} times the load", four_digits(factor))
+            format!("each carry {} times the load", four_digits(factor))
         } else {
             "are pulled by the others too".to_owned()
         };
         format!(
-            "onset expected    {} to {}: the {} % of the blocks that touch {load}; the earlier, the more scattered they are{}\n",
+            "onset expected    {} to {}: the {} % of blocks in contact {load}; earlier, the more scattered they are{}\n",
             at(from),
             at(to),
             four_digits(100.0 - case.texture.meshed_percent),

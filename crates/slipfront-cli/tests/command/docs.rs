@@ -318,6 +318,12 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
         "three places",
         "four places",
         "five places",
+        "six places",
+        "seven places",
+        "eight places",
+        "nine places",
+        "ten places",
+        "eleven places",
     ];
     assert!(
         number.starts_with(words[found.len()]),

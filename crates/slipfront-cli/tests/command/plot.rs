@@ -82,7 +82,7 @@ fn plot_draws_maps_of_a_field_that_was_kept() {
     };
     assert!(title("traction").contains(">traction \u{3c4}</text>"));
     assert!(title("displacement_y").contains(">displacement along y from rest (pm)</text>"));
-    assert!(title("sliding").contains(">share that slides</text>"));
+    assert!(title("sliding").contains(">sliding fraction</text>"));
     let said = workspace.fail("plot a --field velocity_x", 2);
     assert!(
         said.contains("has no maps of velocity_x: name it in `output.fields`"),
@@ -370,7 +370,7 @@ fn the_kymograph_is_a_field() {
     workspace.succeed("plot a --field kymograph -o picture");
     let svg = workspace.read_text("picture/kymograph.svg");
     assert!(
-        svg.contains("place along the drive") && svg.contains("share that slides"),
+        svg.contains("position along drive") && svg.contains("sliding fraction"),
         "{svg}"
     );
     assert!(workspace.exists("picture/kymograph.png"));

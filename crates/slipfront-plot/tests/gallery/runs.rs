@@ -247,7 +247,7 @@ pub(crate) fn front_of(
         }
     };
     let space_time = SpaceTime {
-        place: "place along the drive".to_owned(),
+        place: "position along drive".to_owned(),
         places: [0.0, nx as f64 * block_size],
         times: [72.0, 90.0],
         columns,

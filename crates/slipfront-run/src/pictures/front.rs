@@ -81,7 +81,7 @@ fn space_time(kymograph: &KymographData, rows: Range<usize>, summary: &Summary) 
 pub fn title_of_place(motion: Option<Motion>) -> &'static str {
     match motion {
         Some(Motion::Rotation) => "distance from the axis",
-        _ => "place along the drive",
+        _ => "position along drive",
     }
 }
 

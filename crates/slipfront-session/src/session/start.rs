@@ -28,6 +28,10 @@ impl Session {
         why: &'static str,
         from_rest: bool,
     ) -> Result<(), String> {
+        if !from_rest {
+            // A leg keeps only its own points.
+            self.send_curve();
+        }
         let went_on = match &mut self.live {
             // A run that cannot go on under this case begins again.
             Some(live) if !from_rest => live.change(case).is_ok(),
@@ -50,14 +54,13 @@ impl Session {
     pub(super) fn start_twin(&mut self, from_rest: bool) -> Result<(), String> {
         let document = self.document()?;
         if !self.view.twin || !document.has_texture() {
-            self.twin = None;
+            self.end_twin();
             return Ok(());
         }
         let document = document.twin()?;
-        let toml = document.toml();
         // What it depends on has not changed: it stays as far as it is.
         if let Some(twin) = &self.twin
-            && twin.toml == toml
+            && twin.document.is_same_case(&document)
             && (!from_rest || twin.live.leg == 0)
         {
             return Ok(());
@@ -65,16 +68,21 @@ impl Session {
         let case = self.case_of(&document)?;
         let went_on = match &mut self.twin {
             Some(twin) if !from_rest => {
-                twin.toml.clone_from(&toml);
+                twin.document.clone_from(&document);
                 twin.live.change(&case).is_ok()
             }
             _ => false,
         };
         if !went_on {
             let live = LiveRun::from_rest(&case, self.host.threads());
-            self.twin = Some(Twin { live, toml });
+            self.twin = Some(Twin { live, document });
             self.pending.twin_reset = true;
         }
         Ok(())
+    }
+
+    /// Ends the run of the slider without texture, if there is one.
+    pub(super) fn end_twin(&mut self) {
+        self.pending.twin_reset |= self.twin.take().is_some();
     }
 }

@@ -15,10 +15,10 @@ use crate::picture::Painter;
 use crate::recorded::RecordedRun;
 use crate::view::View;
 
-/// The run of the slider without texture, and the text of its case.
+/// The run of the slider without texture, and its case.
 pub(super) struct Twin {
     pub(super) live: LiveRun,
-    pub(super) toml: String,
+    pub(super) document: Document,
 }
 
 /// An edit of the case that is not run yet.
@@ -80,6 +80,8 @@ pub(super) struct PendingUpdates {
     pub(super) recorded: bool,
     /// How many ends of the run and its twin have been sent.
     pub(super) ends_sent: usize,
+    /// How many stages of the transition have been sent.
+    pub(super) stages_sent: usize,
 }
 
 impl Session {

@@ -20,7 +20,8 @@ impl Session {
         }
         if let Err(sentence) = self.take_steps(now) {
             self.host.reply(Reply::Failed { sentence }.json());
-            (self.live, self.twin) = (None, None);
+            self.live = None;
+            self.end_twin();
             self.is_stepping = false;
             return;
         }
@@ -78,6 +79,11 @@ impl Session {
             self.clock.begin_slice(taken, now);
             self.clock.count_steps(taken);
             self.clock.due -= taken as f64;
+            if self.view.pace > 0.0 && live.look_for_stages() > self.pending.stages_sent {
+                // A page that can follow is told at once, so that it can stop there.
+                self.pending.redraw = true;
+                self.is_stepping = false;
+            }
         } else {
             self.is_stepping = false;
         }

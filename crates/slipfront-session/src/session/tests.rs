@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::live::LiveRun;
 use crate::testing::Tried;
 
 const PLAIN: &str = "slider.blocks = [20, 20]\ndrive.v_star = 0.1\n";
@@ -164,6 +165,53 @@ fn changes_between_two_pictures_are_run_once() {
     assert_eq!(live.case().groups.r_star, 0.5);
 }
 
+/// Each stage of the transition is told in the step in which it is seen, and the field of the front then has
+/// blocks that slide, blocks that have slipped and blocks that have not.
+#[test]
+fn the_stages_of_a_transition_are_told_at_once() {
+    let mut tried = Tried::new();
+    tried.ask(json!({ "do": "view", "pace": 25, "field": "front" }));
+    let toml = "slider.blocks = [20, 20]\nfriction.sigma_static_star = 0.1\ndrive.v_star = 0.03\n";
+    tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
+    let (mut stages, mut kinds) = (0, [false; 3]);
+    while stages < 3 {
+        let before = tried.session.live.as_mut().unwrap().look_for_stages();
+        assert_eq!(before, stages, "a stage was not told");
+        tried.now = tried.advance().unwrap().max(tried.now + Duration::from_millis(1));
+        let told = tried.replies();
+        for numbers in told.iter().filter(|reply| reply["is"] == "numbers") {
+            let seen = [
+                !numbers["instants"]["B"].is_null(),
+                numbers["peak"]["certain"] == true,
+                numbers["crossed"] == true,
+            ];
+            stages = seen.into_iter().filter(|is_seen| *is_seen).count();
+        }
+        for picture in tried.host.pictures.take() {
+            let values = &picture[36..];
+            kinds[0] |= values.contains(&252);
+            kinds[1] |= values.contains(&253);
+            kinds[2] |= values.iter().any(|value| *value <= 250);
+        }
+    }
+    assert_eq!(kinds, [true; 3]);
+}
+
+/// At rest nothing is above 0, and the scale has the unit itself rather than a power of ten of its own.
+#[test]
+fn the_scale_of_a_slider_at_rest_goes_to_1() {
+    let mut tried = Tried::with(PLAIN);
+    for field in ["traction", "displacement", "speed"] {
+        tried.ask(json!({ "do": "view", "field": field }));
+        let picture = tried.host.pictures.borrow_mut().pop().unwrap();
+        assert_eq!(
+            picture[24..32],
+            [0.0_f32, 1.0].map(f32::to_le_bytes).concat(),
+            "{field}"
+        );
+    }
+}
+
 /// The end of the run and of its twin is told once each, and then nothing is due.
 #[test]
 fn a_run_and_its_twin_go_to_their_ends() {
@@ -185,6 +233,143 @@ fn a_run_and_its_twin_go_to_their_ends() {
     assert_eq!(last["ended"], true);
     assert!(!last["summary"].is_null());
     assert!(number(&last["change_percent"]) < 0.0, "{last}");
+}
+
+/// The curves that a page has drawn of what it was told.
+#[derive(Default)]
+struct DrawnCurves {
+    run: Vec<[f64; 2]>,
+    twin: Vec<[f64; 2]>,
+    recorded: usize,
+}
+
+impl DrawnCurves {
+    fn take(&mut self, replies: &[Value]) {
+        for reply in replies {
+            if reply["is"] == "case" && reply["why"] == "open" {
+                self.recorded = 0;
+            }
+            if reply["is"] != "curve" {
+                continue;
+            }
+            if reply["from_rest"] == true {
+                self.run.clear();
+            }
+            if reply["twin_reset"] == true {
+                self.twin.clear();
+            }
+            let points = |t: &str, mu: &str| {
+                let of = |key: &str| {
+                    reply[key]
+                        .as_array()
+                        .unwrap()
+                        .iter()
+                        .map(number)
+                        .collect::<Vec<_>>()
+                };
+                std::iter::zip(of(t), of(mu))
+                    .map(|(t, mu)| [t, mu])
+                    .collect::<Vec<_>>()
+            };
+            self.run.extend(points("t", "mu"));
+            self.twin.extend(points("twin_t", "twin_mu"));
+            self.recorded += reply["recorded_t"].as_array().map_or(0, Vec::len);
+        }
+    }
+}
+
+/// Holds a curve to the rows of its run: those of the present leg are all there, and no row is missing where
+/// a leg before has ended.
+fn assert_whole(curve: &[[f64; 2]], live: &LiveRun) {
+    let before = live.drive_time_before_star();
+    let rows = live.running().rows().iter();
+    let rows: Vec<[f64; 2]> = rows
+        .map(|row| [before + row.drive_time_star, row.point.mu_star])
+        .collect();
+    assert!(curve.ends_with(&rows));
+    assert!(live.leg > 0 || curve.len() == rows.len());
+    let spacing = rows[1][0] - rows[0][0];
+    assert!(curve[0][0] <= spacing);
+    for pair in curve.windows(2) {
+        let gap = pair[1][0] - pair[0][0];
+        // Times are sums of the times of some ten legs, each of which is rounded.
+        assert!((0.0..spacing * (1.0 + 1e-9)).contains(&gap), "{gap} {spacing}");
+    }
+}
+
+/// Whatever is opened, changed, undone and replayed in whichever order, the page has the whole curve of the
+/// slider without texture, and of the run.
+#[test]
+fn curves_are_whole_after_any_order_of_requests() {
+    const KEYS: &str = "slider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.duration_star = 20\n";
+    let textured = |percent: u32| format!("{KEYS}[[texture]]\nshape = 'cavity'\ncoverage = {percent}\n");
+    let [one, two] = [textured(10), textured(20)];
+    let surface = format!("{one}[friction]\nmu_static_field = 'mu.csv'\n");
+    let rows = |mu: &str| vec![[mu; 6].join(","); 6].join("\n");
+    let files = |mu: &str| json!({ "mu.csv": crate::base64::encode(rows(mu).as_bytes()) });
+    let run = run_files(&one);
+    let open = |source: Value| json!({ "do": "open", "source": source });
+    let requests = [
+        open(json!({ "toml": one })),
+        open(json!({ "toml": two })),
+        open(json!({ "toml": KEYS })),
+        open(json!({ "toml": surface, "files": files("0.5") })),
+        open(json!({ "toml": surface, "files": files("0.6") })),
+        open(json!({ "name": "kept", "run": run })),
+        open(json!({ "toml": "slider.blocks = [0, 6]" })),
+        json!({ "do": "set", "keys": { "friction.r_star": 0.5 }, "gesture": 1 }),
+        json!({ "do": "set", "keys": { "friction.r_star": 0.7 }, "gesture": 4 }),
+        json!({ "do": "set", "keys": { "texture": [{ "shape": "cavity", "coverage": 15 }] }, "gesture": 2 }),
+        json!({ "do": "paint", "points": [[2.5, 2.5]], "radius": 0.3, "textured": true, "gesture": 3 }),
+        json!({ "do": "undo" }),
+        json!({ "do": "redo" }),
+        json!({ "do": "rest" }),
+        json!({ "do": "view", "twin": false }),
+        json!({ "do": "view", "twin": true }),
+        json!({ "do": "view", "after_change": "go_on" }),
+        json!({ "do": "view", "after_change": "rest" }),
+        json!({ "do": "view", "paused": true }),
+        json!({ "do": "view", "paused": false }),
+    ];
+    let mut random: u32 = 1;
+    let mut below = |bound: u32| {
+        // A generator of 32 bits, of which the upper half has no short period.
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 16) % bound
+    };
+    let (mut ends_with_twin, mut ends_with_legs) = (0, 0);
+    for _ in 0..200 {
+        let mut tried = Tried::new();
+        let mut drawn = DrawnCurves::default();
+        drawn.take(&tried.ask(open(json!({ "toml": one }))));
+        for _ in 0..12 {
+            let request = &requests[below(requests.len() as u32) as usize];
+            drawn.take(&tried.ask(request.clone()));
+            let end = tried.now + Duration::from_millis(u64::from(below(600)));
+            tried.advance_until(end, Duration::from_millis(2));
+            drawn.take(&tried.replies());
+        }
+        drawn.take(&tried.ask(json!({ "do": "view", "paused": false, "pace": 0 })));
+        tried.advance_until(tried.now + Duration::from_secs(600), Duration::from_millis(2));
+        drawn.take(&tried.replies());
+        let session = &tried.session;
+        assert_whole(&drawn.run, session.live.as_ref().unwrap());
+        match &session.twin {
+            Some(twin) => assert_whole(&drawn.twin, &twin.live),
+            None => assert!(drawn.twin.is_empty()),
+        }
+        let recorded = session.recorded.as_ref();
+        assert_eq!(
+            drawn.recorded,
+            recorded.map_or(0, |recorded| recorded.time_star.len())
+        );
+        ends_with_twin += usize::from(session.twin.is_some());
+        ends_with_legs += usize::from(session.twin.as_ref().is_some_and(|twin| twin.live.leg > 0));
+    }
+    assert!(
+        ends_with_twin > 50 && ends_with_legs > 5,
+        "{ends_with_twin} {ends_with_legs}"
+    );
 }
 
 #[test]

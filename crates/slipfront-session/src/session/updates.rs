@@ -7,6 +7,7 @@ use slipfront::lattice::K_DRIVE;
 use slipfront_base::ordered::map_of;
 use slipfront_case::case_file::Motion;
 use slipfront_run::summary::summary_json;
+use slipfront_study::note_on_seeds;
 
 use super::clock::is_due;
 use super::state::{PendingUpdates, Session};
@@ -55,6 +56,7 @@ impl Session {
                     .kinetic
                     .time_star(&peak, case.model.loading_speed())
             },
+            onset_star: case.expected.onset_star[0].min(case.time_plan.end_star()),
             drive_degrees: is_pulled.then_some(case.file.drive.direction),
             loading_rate: is_pulled.then(|| case.model.loading_speed() * K_DRIVE),
             steady_level: case.expected.steady_level,
@@ -68,57 +70,67 @@ impl Session {
             mesh: case.deciding_length(),
             warnings: case.warnings(),
             too_coarse: case.too_coarse(),
+            seeds: note_on_seeds(case),
             search: search::limits(case),
         };
         self.host.reply(Reply::Case(Box::new(reply)).json());
     }
 
-    /// Sends new points of the curve, the picture and the numbers.
-    pub(super) fn send_updates(&mut self, now: Duration) {
-        let ends = self.count_ended();
+    /// Sends the points of the curves that the page has not been sent yet.
+    pub(super) fn send_curve(&mut self) {
         let Some(live) = &mut self.live else { return };
-        let ended_now = ends != self.pending.ends_sent;
         let points = live.take_unsent_points();
-        let twin = self.twin.as_mut().map_or_else(CurvePoints::default, |twin| {
-            if self.pending.twin_reset {
-                twin.live.resend_points();
-            }
-            twin.live.take_unsent_points()
-        });
-        let recorded = self.recorded.as_ref().filter(|_| self.pending.recorded);
-        if self.pending.from_rest
-            || self.pending.twin_reset
-            || !points.time_star.is_empty()
-            || !twin.time_star.is_empty()
-        {
-            let curve = Reply::Curve(CurveReply {
-                leg: live.leg,
-                from_rest: self.pending.from_rest,
-                t: points.time_star,
-                mu: points.mu_star,
-                sliding: points.sliding_percent,
-                twin_reset: self.pending.twin_reset,
-                twin_t: twin.time_star,
-                twin_mu: twin.mu_star,
-                recorded_t: recorded.map(|recorded| &*recorded.time_star),
-                recorded_mu: recorded.map(|recorded| &*recorded.mu_star),
-            });
-            self.host.reply(curve.json());
+        let twin = self
+            .twin
+            .as_mut()
+            .map_or_else(CurvePoints::default, |twin| twin.live.take_unsent_points());
+        let from_rest = std::mem::take(&mut self.pending.from_rest);
+        let twin_reset = std::mem::take(&mut self.pending.twin_reset);
+        let is_recorded_new = std::mem::take(&mut self.pending.recorded);
+        if !from_rest && !twin_reset && points.time_star.is_empty() && twin.time_star.is_empty() {
+            return;
         }
+        let recorded = self.recorded.as_ref().filter(|_| is_recorded_new);
+        let curve = Reply::Curve(CurveReply {
+            leg: live.leg,
+            from_rest,
+            t: points.time_star,
+            mu: points.mu_star,
+            sliding: points.sliding_percent,
+            twin_reset,
+            twin_t: twin.time_star,
+            twin_mu: twin.mu_star,
+            recorded_t: recorded.map(|recorded| &*recorded.time_star),
+            recorded_mu: recorded.map(|recorded| &*recorded.mu_star),
+        });
+        self.host.reply(curve.json());
+    }
+
+    /// Sends new points of the curves, the picture and the numbers.
+    pub(super) fn send_updates(&mut self, now: Duration) {
+        self.send_curve();
+        let ends = self.count_ended();
+        let stages = match &mut self.live {
+            // At full speed nothing waits for them.
+            Some(live) if self.view.pace > 0.0 || ends > 0 => live.look_for_stages(),
+            _ => self.pending.stages_sent,
+        };
+        let is_new = ends != self.pending.ends_sent || stages != self.pending.stages_sent;
         let redraw = self.pending.redraw;
         self.pending = PendingUpdates {
             ends_sent: ends,
+            stages_sent: stages,
             ..PendingUpdates::default()
         };
         self.send_picture();
-        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL, now) {
+        if redraw | is_new | is_due(&mut self.clock.numbers, NUMBERS_INTERVAL, now) {
             self.send_numbers(now);
         }
-        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE_INTERVAL, now) {
+        if redraw | is_new | is_due(&mut self.clock.probe, PROBE_INTERVAL, now) {
             self.send_probe();
         }
         if self.view.kymograph
-            && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL, now))
+            && (redraw | is_new | is_due(&mut self.clock.kymograph, KYMOGRAPH_INTERVAL, now))
         {
             self.send_kymograph();
         }
@@ -191,6 +203,7 @@ impl Session {
             change_percent,
             kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
             instants: map_of(instants),
+            crossed: live.crossed,
             steps_per_second: self.clock.steps_per_second(at),
             ended: live.ended.is_some(),
             summary,

@@ -6,14 +6,12 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
 use toml::{Table, Value};
 
-use super::on_meshes::meshes;
+use super::on_meshes::{MIN_LEVELS, meshes};
 use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::project_file::portable_text;
 use crate::study_file::StudyFile;
 
-/// Smallest number of meshes: differences of two meshes show no order.
-pub const MIN_LEVELS: u8 = 3;
 /// Largest number of meshes: the finest has 64 times as many blocks along a side as the coarsest.
 pub const MAX_LEVELS: u8 = 7;
 

@@ -13,7 +13,7 @@
 //! `|e| >= |d|`.
 
 mod mesh_study;
-mod on_meshes;
+pub(crate) mod on_meshes;
 mod text;
 
 use std::io::Write as _;
@@ -23,24 +23,17 @@ use std::sync::atomic::AtomicBool;
 use slipfront_base::text::COLUMNS;
 use slipfront_run::names::CONVERGENCE;
 
-pub use mesh_study::{MAX_LEVELS, MIN_LEVELS, MeshStudy};
-pub use on_meshes::{Convergence, Mesh, OnMeshes, Verdict};
+pub use mesh_study::{MAX_LEVELS, MeshStudy};
+pub use on_meshes::{Convergence, MIN_LEVELS, Mesh, OnMeshes, Verdict};
 pub use text::text;
 
-use self::on_meshes::KEYS_OF_MESHES;
+use self::on_meshes::is_over_meshes;
 use crate::axis::Axis;
 use crate::error::StudyError;
 use crate::folder::{self, StudyFolder};
 use crate::plan::Plan;
 use crate::project_folder::{Batch, Others};
 use crate::study_results::StudyResults;
-
-/// Whether the only axis of a study is the size of the blocks, on enough meshes.
-fn is_over_meshes(axes: &[Axis]) -> bool {
-    let [axis] = axes else { return false };
-    let has_column = |key: &&str| axis.columns.iter().any(|column| column == key);
-    KEYS_OF_MESHES.iter().all(has_column) && axis.levels.len() >= usize::from(MIN_LEVELS)
-}
 
 /// Whether the folder of a study with these axes holds the results of its meshes.
 pub fn is_written(folder: &Path, axes: &[Axis]) -> bool {

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use slipfront_case::case_file::CaseError;
 
+use crate::axis::Axis;
 use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::statistics::Sample;
@@ -19,11 +20,21 @@ const QUANTITIES: [&str; 4] = [
     FRONT_SPEED,
 ];
 
+/// Smallest number of meshes: differences of two meshes show no order.
+pub const MIN_LEVELS: u8 = 3;
+
 /// The mean speed of the front, m/s.
 const FRONT_SPEED: &str = "front_speed_m_s";
 
 /// The keys in which meshes differ.
-pub(super) const KEYS_OF_MESHES: [&str; 2] = ["slider.block_size", "slider.blocks"];
+const KEYS_OF_MESHES: [&str; 2] = ["slider.block_size", "slider.blocks"];
+
+/// Whether the only axis of a study is the size of the blocks, on enough meshes.
+pub(crate) fn is_over_meshes(axes: &[Axis]) -> bool {
+    let [axis] = axes else { return false };
+    let has_column = |key: &&str| axis.columns.iter().any(|column| column == key);
+    KEYS_OF_MESHES.iter().all(has_column) && axis.levels.len() >= usize::from(MIN_LEVELS)
+}
 
 /// A mesh, with the textured area on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -126,6 +137,19 @@ fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
     QUANTITIES.iter().filter_map(of).collect()
 }
 
+impl Convergence {
+    /// The mean on the finest mesh and the error that is claimed for it, of the mesh and of the scatter over
+    /// surfaces together; none if no limit is claimed.
+    pub(crate) fn result(&self) -> Option<[f64; 2]> {
+        let (mean, half) = (*self.means.last()?, self.half_widths.last()?.unwrap_or(0.0));
+        match self.verdict {
+            Verdict::Converges { mesh_error, .. } => Some([mean, mesh_error + half]),
+            Verdict::Open { spread } if spread <= half => Some([mean, spread + half]),
+            Verdict::Equal | Verdict::Open { .. } => None,
+        }
+    }
+}
+
 /// Comparison of several meshes of one slider.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OnMeshes {
@@ -150,6 +174,12 @@ impl OnMeshes {
             quantities: convergences(plan, results),
             lengths_of_a_block: of_a_block.iter().map(ToString::to_string).collect(),
         })
+    }
+
+    /// The value of a quantity on the finest mesh and its error; none if no limit is claimed.
+    pub(crate) fn result_of(&self, quantity: &str) -> Option<[f64; 2]> {
+        let found = self.quantities.iter().find(|found| found.quantity == quantity);
+        found.filter(|_| self.lengths_of_a_block.is_empty())?.result()
     }
 
     /// Refuses a comparison in the folder of a study in which no quantity has a value on every mesh.

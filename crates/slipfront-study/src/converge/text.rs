@@ -71,11 +71,11 @@ fn sentence(one: &Convergence) -> String {
     let (name, value, scatter) = (&one.quantity, one.means[last], one.half_widths[last]);
     let half = scatter.unwrap_or(0.0);
     let of_surfaces = scatter.map_or(String::new(), |half| {
-        format!(" and the scatter over surfaces {}", two_digits(half))
+        format!(", scatter over surfaces {}", two_digits(half))
     });
     match one.verdict {
         Verdict::Converges { order, mesh_error } => format!(
-            "{name}: {}, of which the mesh is {}{of_surfaces} (order {order:.1})",
+            "{name}: {} (discretisation {}{of_surfaces}; order {order:.1})",
             with_error(value, mesh_error + half),
             two_digits(mesh_error)
         ),

@@ -115,7 +115,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (
             study("until = { key = 'mu_s', half_width = 0.1, max = 9 }"),
-            "`mu_s` is no number of a summary",
+            "`mu_s` is not a number of the summary",
         ),
         (
             study("until = { key = 'static_friction_star', half_width = 0.1, mim = 2, max = 9 }"),
