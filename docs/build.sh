@@ -54,7 +54,8 @@ files_of() {
 rm -rf "$book" "$source"
 mkdir -p "$pages"
 cp -r docs/site/. "$source"
-cp -r --parents README.md ARCHITECTURE.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE-APACHE LICENSE-MIT SECURITY.md deny.toml \
+cp -r --parents README.md ARCHITECTURE.md CHANGELOG.md CITATION.cff CODE_OF_CONDUCT.md CONTRIBUTING.md LICENSE-APACHE LICENSE-MIT \
+    ROADMAP.md SECURITY.md deny.toml \
     benches/instructions.txt benches/peers cases challenge/README.md challenge/RESULTS.md \
     crates/slipfront-cli/THIRD-PARTY-NOTICES.txt crates/slipfront-paper/cases/claims.toml \
     crates/slipfront/src/friction/needs.rs docs python/examples "$pages"

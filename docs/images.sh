@@ -50,6 +50,20 @@ slipfront study cases/studies/size_and_speed.toml --quiet
 image results/size_and_speed/static_reduction_percent.png size_and_speed.png
 image results/size_and_speed/static_reduction_percent_map.png size_and_speed_map.png
 
+# The files of a tutorial, which its page contains.
+file_of() { awk -v first="^# $2[: ]?" '/^```/ { inside = 0 } $0 ~ first { inside = 1 } inside' "$root/docs/guide/tutorials/$1.md" > "$2"; }
+for file in pad.toml dimples.toml; do file_of laser-workshop "$file"; done
+slipfront study dimples.toml --quiet
+image results/dimples/static_friction_star.png tutorial-dimples.png
+file_of testers-record rig.toml
+slipfront calibrate rig.toml cases/calibrations/tribometer.csv --quiet
+slipfront plot results/rig --picture band-1 --width 80 --height 42 --format png -o band
+image band/band-1.png tutorial-record.png
+for file in film.toml orientation.toml; do file_of thesis "$file"; done
+slipfront study orientation.toml --quiet
+slipfront plot results/orientation --picture static_reduction_percent --width 89 --font-size 8 --format png -o figures
+image figures/static_reduction_percent.png tutorial-thesis.png
+
 if [ "${2:-}" = large ]; then
   slipfront run "$root/benches/large/square_centimetre.toml" --quiet
   image results/square_centimetre/stress.png square-centimetre.png
