@@ -27,7 +27,7 @@ struct Arrays {
     records: *mut u64,
 }
 
-// SAFETY: this is the declaration of the function of `kernels/emulated.cpp`, which keeps none of the pointers.
+// SAFETY: `kernels/emulated.cpp` has a function of this name and type, which keeps none of the pointers.
 unsafe extern "C" {
     /// Takes `count` lattices through their steps on groups of `threads` emulated threads.
     fn slipfront_run_emulated(arrays: *const Arrays, count: usize, threads: i32, stride: i32);
@@ -49,8 +49,8 @@ impl Device for Emulated {
             first_slips: batch.first_slips.as_mut_ptr(),
             records: batch.records.as_mut_ptr(),
         };
-        // SAFETY: the pointers are to arrays of the batch, as long as the kernels take them to be, as the batch
-        // has checked. Nothing else refers to them meanwhile.
+        // SAFETY: the pointers are to arrays of the batch, as long as the kernels take them to be, as the
+        // batch has checked. Nothing else refers to them meanwhile.
         unsafe {
             slipfront_run_emulated(
                 &raw const arrays,

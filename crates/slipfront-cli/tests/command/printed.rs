@@ -226,7 +226,8 @@ fn the_tutorial_of_a_thesis_shows_what_is_printed() {
     assert!(workspace.exists("orientation-as-crate/orientation") && workspace.exists("orientation.bib"));
 }
 
-/// The laboratory as a file, whose command shows no output here, needs a module that is built from the sources.
+/// The command that makes one file of the laboratory is not run: it needs a module that is built from the
+/// sources.
 #[test]
 fn the_tutorial_of_a_lecture_shows_what_is_printed() {
     assert!(check("tutorials/lecture.md", false) >= 4);
