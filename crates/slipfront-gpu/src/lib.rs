@@ -2,7 +2,7 @@
 //!
 //! The kernels (`kernels/`) are one source in CUDA C++. The feature `cuda` runs them on a GPU of NVIDIA; the
 //! feature `emulated` compiles them for the CPU, thread by thread and warp by warp, for tests where there is
-//! no GPU. Both are a [`Device`](slipfront::device::Device). Without these features the crate is empty.
+//! no GPU. Both implement `slipfront::device::Device`. Without these features the crate is empty.
 //!
 //! Sums have the bits of the fused kernel since they are sums of integers. Terms have them since each is
 //! found by the operations of that kernel in their order, none of which is contracted with another.
