@@ -614,7 +614,7 @@ mod tests {
         };
         assert!(notes("").is_empty());
         assert!(notes("sigma_kinetic_star = 0").is_empty());
-        assert!(notes("sigma_static_star = 0")[0].contains("kinetic coefficients alone"));
+        assert!(notes("sigma_static_star = 0")[0].contains("only the kinetic coefficients differ"));
         // The drag of a slider without kinetic friction has a note of its own.
         assert!(notes("sigma_static_star = 0, r_star = 0")[1].contains("the same run"));
         assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));

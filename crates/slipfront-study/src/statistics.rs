@@ -61,7 +61,14 @@ pub fn mean(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    mean.max(lowest).min(highest)
+    // NaN stays NaN.
+    if mean < lowest {
+        lowest
+    } else if mean > highest {
+        highest
+    } else {
+        mean
+    }
 }
 
 /// Two-sided quantile of Student's t.
@@ -103,6 +110,7 @@ mod tests {
                 );
             }
         }
+        assert!(mean(&[1.0, f64::NAN, 2.0]).is_nan());
     }
 
     #[test]

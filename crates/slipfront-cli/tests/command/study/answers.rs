@@ -748,7 +748,10 @@ fn intervals_are_rounded_and_say_what_varies() {
     };
     assert!(mean.parse::<f64>().is_ok(), "{said}");
     assert!(mean.chars().filter(char::is_ascii_digit).count() <= 3, "{said}");
-    assert!(unwrapped(&said).contains("kinetic coefficients alone"), "{said}");
+    assert!(
+        unwrapped(&said).contains("only the kinetic coefficients differ from seed to seed"),
+        "{said}"
+    );
 }
 
 /// Few values are soon close together, and none never: neither is an interval that is narrow enough.
