@@ -12,6 +12,7 @@ mod anisotropy;
 mod answer;
 pub mod axis;
 pub mod converge;
+#[cfg(not(target_family = "wasm"))]
 mod device_runs;
 pub mod draws;
 mod error;
@@ -53,6 +54,7 @@ mod write;
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use answer::answer;
 pub use axis::{Axis, AxisKeys, Level, Spacing};
+#[cfg(not(target_family = "wasm"))]
 pub use device_runs::execute_on_device;
 pub use error::{StudyError, TrainingError};
 pub use estimate_cost::{CostLimits, estimated_time};
