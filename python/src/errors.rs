@@ -132,6 +132,7 @@ pub(crate) fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {
     match error {
         StudyError::File(source) => case_error(py, source),
         StudyError::Point { .. }
+        | StudyError::ReferencePoint { .. }
         | StudyError::Levels { .. }
         | StudyError::Bare { .. }
         | StudyError::NoDesign

@@ -27,6 +27,8 @@ pub enum StudyError {
     Device(#[from] DeviceError),
     #[error("the point {point} is not a valid case: {source}")]
     Point { point: String, source: CaseError },
+    #[error("the reference of the point {point} is not a valid case: {source}")]
+    ReferencePoint { point: String, source: CaseError },
     #[error("the study has {runs} runs, more than {limit}: give --yes if that is meant")]
     Large { runs: u64, limit: u64 },
     #[error("the axes of the study multiply to more than {limit} points: take fewer levels")]

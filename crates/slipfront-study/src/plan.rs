@@ -72,8 +72,8 @@ struct RunSpec {
 /// fit into memory.
 const LARGE: u64 = 250_000;
 
-/// Data of a run, and the warnings about it.
-type Spec = Result<(RunSpec, Vec<String>), CaseError>;
+/// Data of a run and the warnings about it, or what its case breaks.
+type Spec = Result<(RunSpec, Vec<String>), (Role, CaseError)>;
 
 /// Result of making the cases of points in a row.
 enum MadeRow {
@@ -152,12 +152,15 @@ impl Plan {
 
     /// Makes the cases of all points, and collects the data of their runs.
     fn make_specs(&mut self) -> Result<(), StudyError> {
-        let invalid = |point: Option<&Point>, source| {
+        let invalid = |point: Option<&Point>, (role, source)| {
             let point = point.map_or_else(String::new, |point| self.describe(point));
-            StudyError::Point { point, source }
+            match role {
+                Role::Point => StudyError::Point { point, source },
+                Role::Reference => StudyError::ReferencePoint { point, source },
+            }
         };
         let base = self.base.parse();
-        let base = base.map_err(|error| invalid(self.points.first(), error))?;
+        let base = base.map_err(|error| invalid(self.points.first(), (Role::Point, error)))?;
         let (slow, length) = self.slow_axes();
         let roles = self.roles().count();
         let mut specs = Vec::with_capacity(self.points.len() * roles);
@@ -205,9 +208,10 @@ impl Plan {
     fn make_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> MadeRow {
         let bases = self.roles().map(|role| {
             let overrides = self.overrides(&row[0], role, 0..slow);
-            Ok((role, Prepared::new(base.prepared(&overrides)?)?))
+            let prepared = base.prepared(&overrides).and_then(Prepared::new);
+            prepared.map(|base| (role, base)).map_err(|error| (role, error))
         });
-        let bases = match bases.collect::<Result<Vec<_>, CaseError>>() {
+        let bases = match bases.collect::<Result<Vec<_>, _>>() {
             Ok(bases) => bases,
             // It is that of the first of them.
             Err(error) => return MadeRow::Made(vec![Err(error)]),
@@ -221,7 +225,8 @@ impl Plan {
                 if file.as_ref().is_ok_and(|file| n_blocks(file) > most) {
                     return MadeRow::TooLarge;
                 }
-                specs.push(file.and_then(|file| self.spec(base, file, *role)));
+                let spec = file.and_then(|file| self.spec(base, file, *role));
+                specs.push(spec.map_err(|error| (*role, error)));
             }
         }
         MadeRow::Made(specs)
@@ -327,7 +332,7 @@ impl Plan {
     }
 
     /// Makes the case of a point; returns the data of its runs, and the warnings about it.
-    fn spec(&self, base: &Prepared, file: CaseFile, role: Role) -> Spec {
+    fn spec(&self, base: &Prepared, file: CaseFile, role: Role) -> Result<(RunSpec, Vec<String>), CaseError> {
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
         let spec = RunSpec {

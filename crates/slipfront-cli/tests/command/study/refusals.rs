@@ -85,6 +85,17 @@ fn bad_studies_are_refused_with_a_sentence() {
             "the point drive.v_star = -1 is not a valid case",
         ),
         (
+            format!(
+                "study.reference = {{ friction.r_star = -1 }}\n{}",
+                axis("key = 'drive.v_star'\nlist = [0.1]")
+            ),
+            "the reference of the point drive.v_star = 0.1 is not a valid case",
+        ),
+        (
+            "base.slider.blocks = [4, 4]\nstudy.reference = { friction.r_star = -1 }".to_owned(),
+            "the reference of the point of the base case is not a valid case",
+        ),
+        (
             axis("zip = { 'texture.0.coverage' = [5], texture = [[{ shape = 'groove', coverage = 30 }]] }"),
             "of which one leaves nothing of the other",
         ),
