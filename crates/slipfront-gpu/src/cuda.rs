@@ -156,16 +156,20 @@ impl Gpu {
 }
 
 impl Device for Gpu {
+    fn most_blocks(&self) -> usize {
+        let of_kernels = self.kernels.iter().map(|kernel| kernel.most_blocks);
+        of_kernels.max().unwrap_or(0)
+    }
+
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
         let blocks = |lattice: &&mut DeviceLattice| lattice.blocks[0] * lattice.blocks[1];
         let Some(most) = lattices.iter().map(blocks).max() else {
             return Ok(());
         };
         let Some(kernel) = self.kernels.iter().find(|kernel| most <= kernel.most_blocks) else {
-            let largest = self.kernels.iter().map(|kernel| kernel.most_blocks).max();
             return Err(DeviceError(format!(
                 "a lattice of {most} blocks is larger than the {} that the GPU takes: the CPU gives the same results",
-                largest.unwrap_or(0)
+                self.most_blocks()
             )));
         };
         let count = self.lattices_at_once(most, steps)?;

@@ -34,6 +34,11 @@ unsafe extern "C" {
 }
 
 impl Device for Emulated {
+    /// As many as the sums of a warp may have terms, for each warp.
+    fn most_blocks(&self) -> usize {
+        (1 << 11) * self.threads as usize / 32
+    }
+
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
         let Self { threads, stride } = *self;
         assert!(

@@ -24,17 +24,18 @@ const MEMORY: usize = 1 << 30;
 const BYTES_PER_BLOCK: usize = 128;
 
 /// Reason for which a device does not compute a case; none if it does.
-pub fn refusal(case: &Case) -> Option<String> {
+pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     if case.file.output.events {
         return Some("the catalogue of events (`output.events`) is made on the CPU alone".to_owned());
     }
-    let begun = DeviceLattice::new(
-        Arc::clone(&case.model),
-        case.time_plan.dt_star,
-        None,
-        energies(case),
-    );
-    begun.err().map(|reason| reason.to_string())
+    let (blocks, most) = (case.model.lattice.n_blocks(), device.most_blocks());
+    if blocks > most {
+        return Some(format!(
+            "lattices of more than {most} blocks are computed on the CPU alone"
+        ));
+    }
+    let plain = DeviceLattice::check(&case.model);
+    plain.err().map(|reason| reason.to_string())
 }
 
 /// Runs cases up to the ends that their `time.stop` set, and returns the numbers of their `summary.json` in
@@ -247,14 +248,17 @@ mod tests {
                 "constant coefficients",
             ),
         ] {
-            let refused = refusal(&case(text)).unwrap();
+            let refused = refusal(&case(text), &FusedDevice).unwrap();
             assert!(
                 refused.contains(reason) && refused.ends_with("CPU alone"),
                 "{refused}"
             );
         }
         assert_eq!(
-            refusal(&case("texture = [{ shape = 'groove', coverage = 10 }]")),
+            refusal(
+                &case("texture = [{ shape = 'groove', coverage = 10 }]"),
+                &FusedDevice
+            ),
             None
         );
     }

@@ -92,13 +92,12 @@ impl DeviceRuns<'_> {
 
     /// Makes some runs at once.
     fn make_at_once(&self, tasks: Vec<Task>) -> Vec<TaskResult> {
-        let began = Instant::now();
         let made = tasks.into_par_iter().map(|task| (self.case(&task), task));
         let (mut cases, mut on_device, mut results) = (Vec::new(), Vec::new(), Vec::new());
         let mut on_cpu = Vec::new();
         for (case, task) in made.collect::<Vec<_>>() {
             match case {
-                Ok(Some(case)) if refusal(&case).is_none() => {
+                Ok(Some(case)) if refusal(&case, self.device).is_none() => {
                     cases.push(case);
                     on_device.push(task);
                 }
@@ -107,10 +106,23 @@ impl DeviceRuns<'_> {
                 Err(error) => results.push(Err(error)),
             }
         }
-        results.par_extend(on_cpu.into_par_iter().map(|task| self.make_on_cpu(task)));
-        match device_summaries(&cases, self.device, self.is_stopped) {
+        let (made_on_cpu, (summaries, seconds)) = rayon::join(
+            || -> Vec<TaskResult> {
+                on_cpu
+                    .into_par_iter()
+                    .map(|task| self.make_on_cpu(task))
+                    .collect()
+            },
+            || {
+                let began = Instant::now();
+                let summaries = device_summaries(&cases, self.device, self.is_stopped);
+                (summaries, began.elapsed().as_secs_f64())
+            },
+        );
+        results.extend(made_on_cpu);
+        match summaries {
             Ok(summaries) => {
-                let wall_time_s = began.elapsed().as_secs_f64() / cases.len().max(1) as f64;
+                let wall_time_s = seconds / cases.len().max(1) as f64;
                 results.extend(
                     on_device
                         .into_iter()
@@ -191,6 +203,26 @@ mod tests {
         assert_eq!(on_cpu.runs.len(), 2 * 4 * 3);
     }
 
+    /// A device that takes no lattice of the study.
+    #[derive(Debug)]
+    struct Small;
+
+    impl Device for Small {
+        fn most_blocks(&self) -> usize {
+            119
+        }
+
+        fn run(&self, _: &mut [&mut DeviceLattice], _: u32) -> Result<(), DeviceError> {
+            panic!("a lattice is larger than the device takes")
+        }
+    }
+
+    #[test]
+    fn lattices_too_large_for_the_device_run_on_the_cpu() {
+        let on_device = executed(STUDY, Some(&Small)).unwrap();
+        assert_eq!(on_device.runs, executed(STUDY, None).unwrap().runs);
+    }
+
     /// A device that fails, or that has a fault.
     #[derive(Debug)]
     struct Broken {
@@ -198,6 +230,10 @@ mod tests {
     }
 
     impl Device for Broken {
+        fn most_blocks(&self) -> usize {
+            usize::MAX
+        }
+
         fn run(&self, _: &mut [&mut DeviceLattice], _: u32) -> Result<(), DeviceError> {
             assert!(!self.panics, "out of bounds");
             Err(DeviceError("the GPU failed: it is too hot".to_owned()))

@@ -21,6 +21,9 @@ pub const NEVER: u32 = u32::MAX;
 
 /// Computes the steps of lattices.
 pub trait Device: fmt::Debug + Send + Sync {
+    /// Most blocks of a lattice that the device takes.
+    fn most_blocks(&self) -> usize;
+
     /// Takes each of the lattices through `steps` steps, whose records it adds to those of the lattice.
     ///
     /// # Errors

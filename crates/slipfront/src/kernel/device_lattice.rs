@@ -12,6 +12,34 @@ use crate::model::Model;
 use crate::state::State;
 
 impl DeviceLattice {
+    /// Checks that a model has nothing that the equations of a device lack.
+    ///
+    /// # Errors
+    /// [`CpuOnly`] for a model that is not plain.
+    pub fn check(model: &Model) -> Result<(), CpuOnly> {
+        let needs = model.friction.needs();
+        let is_common_law = needs.is_fused && !needs.varies && needs.columns == 0;
+        let reasons = [
+            (!model.sheets.is_empty(), "a stack of sheets is"),
+            (model.friction.interface().is_some(), "an upright sheet is"),
+            (
+                !is_common_law,
+                "friction other than Coulomb's with constant coefficients is",
+            ),
+            (model.slider.is_viscous(), "internal viscosity is"),
+            (model.drive.rotation.is_some(), "a drive that rotates is"),
+            (model.drive.is_held(), "a drive that is held is"),
+            (
+                blocks_differ(model, &LargestFactors::of(model, &Alone)),
+                "sliders whose blocks, drive springs or dead loads differ are",
+            ),
+        ];
+        match reasons.into_iter().find(|(is_true, _)| *is_true) {
+            Some((_, what)) => Err(CpuOnly(what)),
+            None => Ok(()),
+        }
+    }
+
     /// A lattice at t = 0 in a given state, or at rest.
     ///
     /// # Errors
@@ -28,7 +56,7 @@ impl DeviceLattice {
         let model = model.into();
         let lattice = &model.lattice;
         assert_eq!(model.rows, 0..lattice.ny, "a device takes whole lattices");
-        is_plain(&model)?;
+        Self::check(&model)?;
         let (surface, slider, n) = (&model.surface, &model.slider, lattice.n_blocks());
         let integrator = Integrator::new(model.damping, dt_star);
         let series = SeriesNumbers::new(model.epsilon, model.springs);
@@ -68,31 +96,6 @@ impl DeviceLattice {
             velocity_at_start: velocity_after,
             model,
         })
-    }
-}
-
-/// Checks that a model has nothing that the equations of a [`DeviceLattice`] lack.
-fn is_plain(model: &Model) -> Result<(), CpuOnly> {
-    let needs = model.friction.needs();
-    let is_common_law = needs.is_fused && !needs.varies && needs.columns == 0;
-    let reasons = [
-        (!model.sheets.is_empty(), "a stack of sheets is"),
-        (model.friction.interface().is_some(), "an upright sheet is"),
-        (
-            !is_common_law,
-            "friction other than Coulomb's with constant coefficients is",
-        ),
-        (model.slider.is_viscous(), "internal viscosity is"),
-        (model.drive.rotation.is_some(), "a drive that rotates is"),
-        (model.drive.is_held(), "a drive that is held is"),
-        (
-            blocks_differ(model, &LargestFactors::of(model, &Alone)),
-            "sliders whose blocks, drive springs or dead loads differ are",
-        ),
-    ];
-    match reasons.into_iter().find(|(is_true, _)| *is_true) {
-        Some((_, what)) => Err(CpuOnly(what)),
-        None => Ok(()),
     }
 }
 

@@ -31,8 +31,7 @@ pub(crate) struct Replay {
 }
 
 impl Replay {
-    /// The steps from t = 0 on of a lattice that a device has taken through some of them, and that began with
-    /// this sum of velocities.
+    /// The steps from t = 0 on of a lattice that a device has taken through some of them.
     pub(crate) fn new(lattice: DeviceLattice) -> Self {
         Self {
             clock: Clock::start(lattice.equations.dt_star),

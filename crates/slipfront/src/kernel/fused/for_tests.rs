@@ -107,6 +107,10 @@ impl FusedKernel {
 pub struct FusedDevice;
 
 impl Device for FusedDevice {
+    fn most_blocks(&self) -> usize {
+        usize::MAX
+    }
+
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
         for lattice in lattices {
             run_on_fused(lattice, steps);
