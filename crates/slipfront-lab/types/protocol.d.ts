@@ -64,6 +64,11 @@ export interface Requests {
   save_stop: SaveRequest;
   export: NoKeys;
   frames_of: FramesOfRequest;
+  read_record: ReadRecordRequest;
+  calibrate: CalibrateRequest;
+  calibrate_stop: NoKeys;
+  sensitivity: SensitivityRequest;
+  drawing: DrawingRequest;
 }
 
 /** A request without keys of its own. */
@@ -145,6 +150,49 @@ export interface FramesOfRequest {
   index: number | null;
 }
 
+/** The file of a measured record, and the columns of its table. */
+export interface RecordFile {
+  name: string;
+  /** The file, in Base64. */
+  bytes: string;
+  /** Names of the columns, or their numbers from 1; columns are chosen by their units where they are missing. */
+  x?: string;
+  y?: string;
+  /** Units of the columns, where the table has none or other ones are meant. */
+  x_unit?: string;
+  y_unit?: string;
+}
+
+export interface ReadRecordRequest {
+  record: RecordFile;
+}
+
+/** Estimates unknown keys of the case from a record. */
+export interface CalibrateRequest {
+  record: RecordFile;
+  /** Added to times or displacements, s or m, so that the drive begins at 0. */
+  shift: number;
+  /** The part that is compared, after the shift, s or m. */
+  from?: number;
+  to?: number;
+  /** Standard deviation of the noise, as a share of the mean friction. */
+  noise: number;
+  /** Number of training runs. */
+  runs: number;
+  /** Ranges of the unknown keys, as calibration files have them. */
+  unknowns: Record<string, CaseValue>;
+}
+
+/** Change of static friction with the quantity of a slider, by the name of that quantity. */
+export interface SensitivityRequest {
+  control: string;
+}
+
+/** The texture as outlines for a laser or a drawing program. */
+export interface DrawingRequest {
+  format: 'dxf' | 'svg';
+}
+
 /** What the server tells, by its name under the key `is`. */
 export interface Replies {
   hello: HelloReply;
@@ -159,6 +207,11 @@ export interface Replies {
   saved: SavedReply;
   exported: ExportedReply;
   recorded: RecordedReply;
+  record: RecordReply;
+  calibrating: CalibratingReply;
+  calibrated: CalibratedReply;
+  sensitivity: SensitivityReply;
+  drawing: DrawingReply;
   refused: RefusedReply;
   failed: FailedReply;
 }
@@ -267,6 +320,10 @@ export interface Units {
   displacement_m: number;
   speed_m_s: number;
   stress_pa: number;
+  /** Friction force where mu* is 1, N; null if the drive turns the slider. */
+  friction_n: number | null;
+  /** Friction coefficient mu where mu* is 1. */
+  friction_coefficient: number;
 }
 
 /** New points of the curves. */
@@ -413,6 +470,93 @@ export interface ExportedReply {
 /** Snapshots of the run folder that is shown. */
 export interface RecordedReply {
   times_star: number[];
+}
+
+/** A measured record. */
+export interface RecordReply {
+  name: string;
+  columns: RecordColumn[];
+  /** The record; null if the table could not be read with these columns. */
+  curve: RecordCurve | null;
+  /** Why there is no curve, which other columns or units may mend. */
+  problem: string | null;
+  /** How the table was read, and what is doubtful about it. */
+  notes: string[];
+}
+
+/** A column of a table. */
+export interface RecordColumn {
+  name: string;
+  unit: string | null;
+}
+
+/** Two columns of a table, in SI units. */
+export interface RecordCurve {
+  /** Places of the columns in the table, from 0. */
+  columns: number[];
+  along: 'time' | 'displacement';
+  of: 'force' | 'coefficient';
+  /** Number of values of the record; longer ones are thinned out below. */
+  values: number;
+  x: number[];
+  y: number[];
+  /** Noise by the scatter of values about their neighbours, % of the mean friction. */
+  noise_percent: number;
+}
+
+/** How far a calibration is. */
+export interface CalibratingReply {
+  stage: 'training' | 'closest' | 'prediction' | 'other_step';
+  runs: number;
+  of: number;
+}
+
+/** The end of a calibration. */
+export interface CalibratedReply {
+  outcome: 'done' | 'stopped' | 'given_up' | 'failed';
+  /** Why it has failed. */
+  sentence: string | null;
+  results: CalibrationResults | null;
+}
+
+export interface CalibrationResults {
+  unknowns: UnknownReply[];
+  /** Whether the model cannot have made the record. */
+  is_refused: boolean;
+  /** The report, as `slipfront calibrate` prints it. */
+  report: string;
+  /** The calibration file, with which `slipfront calibrate` finds the same. */
+  toml: string;
+  /** The median of every unknown, as keys of the case. */
+  set: Record<string, CaseValue>;
+}
+
+/** An unknown key, as it was estimated. */
+export interface UnknownReply {
+  key: string;
+  unit: string | null;
+  median: number;
+  /** The interval that holds the unknown with 90 %. */
+  interval: number[];
+  range: number[];
+  /** Whether the record determines the unknown. */
+  is_determined: boolean;
+}
+
+/** Static friction at two values of the quantity of a slider. */
+export interface SensitivityReply {
+  control: string;
+  /** The two values, as the slider has them. */
+  values: number[];
+  /** Change of static friction mu_s* from the first value to the second, %; null without a transition. */
+  percent: number | null;
+}
+
+/** The texture as a drawing. */
+export interface DrawingReply {
+  format: 'dxf' | 'svg';
+  text: string;
+  notes: string[];
 }
 
 /** A request that was refused; nothing changed. */
