@@ -1,5 +1,7 @@
 // Types of the page beside those of the protocol. Browsers are not given this file.
-import { CaseKeys, Field, FindingReply, RecordedReply, Replies, Requests, ViewChange } from './protocol';
+import {
+  CalibratingReply, CaseKeys, Field, FindingReply, RecordCurve, RecordedReply, RecordFile, Replies, Requests, ViewChange,
+} from './protocol';
 
 /** A request as it is sent. */
 export type Request = { [Name in keyof Requests]: { do: Name } & Requests[Name] }[keyof Requests];
@@ -46,11 +48,23 @@ export interface LessonPlace {
 /** Values of a sentence by their names in en.json. */
 export type Words = Record<string, string | number>;
 
+/** A measured record beside the curve. */
+export interface Measured {
+  file: RecordFile;
+  /** Its values, in the order of their times or displacements. */
+  curve: RecordCurve;
+  /** Added to times or displacements, s or m. */
+  shift: number;
+}
+
 /** What the store holds: what the server tells, and what the page decides itself. */
-export interface Topics extends Omit<Replies, 'recorded' | 'finding'> {
+export interface Topics extends Omit<Replies, 'recorded' | 'finding' | 'calibrating'> {
   recorded: RecordedReply | null;
   /** The search that is under way. */
   finding: FindingReply | null;
+  /** The calibration that is under way. */
+  calibrating: CalibratingReply | null;
+  measured: Measured | null;
   picture: FieldPicture;
   kymograph: KymographPicture;
   connected: { yes: boolean; ended?: boolean; reason?: string };
@@ -76,6 +90,8 @@ export interface Lesson {
 export interface LessonStep {
   id: string;
   case: string;
+  /** A measured record that the reader can load. */
+  record?: string;
   view: ViewChange;
   set?: { id: string; keys?: CaseKeys; view?: ViewChange }[];
 }
@@ -130,6 +146,13 @@ export interface Elements {
   'repeat-seeds': HTMLInputElement;
   'repeat-progress': HTMLProgressElement;
   summary: HTMLDetailsElement;
+  'open-measure': HTMLButtonElement;
+  shift: HTMLInputElement;
+  'fit-shift': HTMLButtonElement;
+  'open-calibrate': HTMLButtonElement;
+  'calibrating-progress': HTMLProgressElement;
+  'calibrating-stop': HTMLButtonElement;
+  'show-calibrated': HTMLButtonElement;
   kymograph: HTMLCanvasElement;
   mesh: HTMLDetailsElement;
   'lesson-close': HTMLButtonElement;
@@ -152,9 +175,31 @@ export interface Elements {
   'save-form': HTMLFormElement;
   'save-name': HTMLInputElement;
   save: HTMLButtonElement;
+  'drawing-dxf': HTMLButtonElement;
+  'drawing-svg': HTMLButtonElement;
   'png-field': HTMLButtonElement;
   'png-curves': HTMLButtonElement;
   'png-kymograph': HTMLButtonElement;
   clip: HTMLButtonElement;
+  measure: HTMLDialogElement;
+  'choose-record': HTMLButtonElement;
+  'remove-record': HTMLButtonElement;
+  'record-file': HTMLInputElement;
+  'measure-columns': HTMLFormElement;
+  'record-x': HTMLSelectElement;
+  'record-x-unit': HTMLInputElement;
+  'record-y': HTMLSelectElement;
+  'record-y-unit': HTMLInputElement;
+  'read-again': HTMLButtonElement;
+  calibrate: HTMLDialogElement;
+  'calibrate-form': HTMLFormElement;
+  'calibrate-noise': HTMLInputElement;
+  'calibrate-runs': HTMLInputElement;
+  'calibrate-start': HTMLButtonElement;
+  calibrated: HTMLDialogElement;
+  'use-numbers': HTMLButtonElement;
+  'use-and-find': HTMLButtonElement;
+  'download-calibration': HTMLButtonElement;
+  'calibration-more': HTMLDetailsElement;
   help: HTMLDialogElement;
 }

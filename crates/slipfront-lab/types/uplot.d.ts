@@ -26,7 +26,9 @@ export interface Series {
   dash?: number[];
   width?: number;
   spanGaps?: boolean;
-  points?: { show: boolean };
+  /** Nothing in place of a line. */
+  paths?: () => null;
+  points?: { show: boolean; size?: number; width?: number; fill?: () => string };
 }
 
 export class uPlot {

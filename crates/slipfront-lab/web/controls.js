@@ -42,13 +42,15 @@ function forms(control, { star, si }) {
 function row(control) {
   const id = `control-${control.id}`;
   const name = say(`control_${control.id}`);
-  const slider = make('input', { type: 'range', id: `${id}-slider`, min: '0', max: String(PLACES), step: '1', 'aria-label': name, 'aria-describedby': 'effect' });
+  const slider = make('input', { type: 'range', id: `${id}-slider`, min: '0', max: String(PLACES), step: '1', 'aria-label': name, 'aria-describedby': `effect ${id}-sensitivity` });
   const field = make('input', { type: 'text', inputMode: 'decimal', id, 'aria-describedby': 'effect', autocomplete: 'off', size: 7 });
   const other = make('span', { className: 'other', id: `${id}-other` });
   const label = make('label', { for: id, textContent: name });
   label.title = say(`control_${control.id}_hint`);
   const unit = dimensional(control) ? [make('span', { textContent: control.unit })] : [];
-  const element = make('div', { className: 'control' }, [make('div', { className: 'control-line' }, [label, field, ...unit, other]), slider]);
+  const sensitivity = make('p', { className: 'sensitivity', id: `${id}-sensitivity`, hidden: true });
+  const element = make('div', { className: 'control' }, [make('div', { className: 'control-line' }, [label, field, ...unit, other]), slider, sensitivity]);
+  element.dataset.control = control.id;
   return { control, element, slider, field, other };
 }
 

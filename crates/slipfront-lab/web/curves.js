@@ -1,9 +1,10 @@
 // @ts-check
-// The curves mu*(t*) and N*(t*), with the instants, the beginnings of legs, the slider without texture and a
-// recorded curve.
+// The curves mu*(t*) and N*(t*), with the instants, the beginnings of legs, the slider without texture, a
+// recorded curve and a measured record.
 import vendored from './vendor/uPlot.esm.js';
 import { atMost, find } from './element.js';
 import { rowsOf } from './letters.js';
+import { inStars } from './record.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
 import { colour, enlargement, onTheme } from './theme.js';
@@ -18,6 +19,8 @@ const SPACING_MS = 200;
 const SMALL = 11;
 const LABEL = 12;
 const LETTER = 10;
+/** Diameter of the points of a measured record. */
+const DOT = 2.6;
 /** Whether the page has one column, in which the plots do not stand one below the other. */
 const oneColumn = matchMedia('(max-width: 899px)');
 /** With more points than this every second one is left out: no screen shows more. */
@@ -30,6 +33,8 @@ const run = { t: [], mu: [], sliding: [] };
 const twin = { t: [], mu: [], sliding: [] };
 /** @type {Run} */
 const recorded = { t: [], mu: [], sliding: [] };
+/** The measured record as it is drawn; nothing if there is none, or it cannot be compared. */
+const measured = () => (state.measured && state.case && inStars(state.measured.curve, state.measured.shift, state.case)) || { t: [], mu: [] };
 /** Where legs begin, t* since rest. @type {number[]} */
 const legs = [];
 /** @type {uPlot[]} */
@@ -139,6 +144,9 @@ function plotIn(place, [width, height], scale, { range, label, lines, numbered }
   }, [[], ...lines.map(() => [])], place);
 }
 
+/** Points without a line between them. @param {string} name @param {() => string} stroke @param {number} scale @returns {Series} */
+const dots = (name, stroke, scale) => ({ label: name, stroke, width: 0, paths: () => null, points: { show: true, size: DOT * scale, width: 0, fill: stroke } });
+
 /** Both plots, of friction and of sliding. @param {[HTMLElement, HTMLElement]} places @param {[number, number][]} sizes @param {number} scale */
 function plotsIn([above, below], [first, second], scale) {
   const curve = series('run', () => colour('curve'), scale);
@@ -146,6 +154,7 @@ function plotsIn([above, below], [first, second], scale) {
     curve,
     series('twin', () => colour('ghost'), scale, [6, 3]),
     series('recorded', () => colour('recorded'), scale, [2, 3]),
+    dots('measured', () => colour('measured'), scale),
   ];
   return [
     plotIn(above, first, scale, { label: say('axis_mu'), lines, numbered: oneColumn.matches, range: { range: (_, low, high) => [Math.min(0, low ?? 0), 1.08 * Math.max(high ?? 0, 0.1)] } }),
@@ -153,18 +162,28 @@ function plotsIn([above, below], [first, second], scale) {
   ];
 }
 
+/** The place nearest to another one where a list has a value. @param {(number|null|undefined)[]} list @param {number} place */
+function nearest(list, place) {
+  const has = (/** @type {number} */ k) => list[k] !== null && list[k] !== undefined;
+  const distance = list.findIndex((_, k) => has(place - k) || has(place + k));
+  return has(place - distance) ? place - distance : place + distance;
+}
+
 /** Tells the values under the cursor. @param {uPlot} plot */
 function showCursor(plot) {
   const { idx } = plot.cursor;
   if (plot !== plots[0]) return;
-  const [t, mu] = idx === null || idx === undefined ? [] : [plot.data[0][idx], plot.data[1][idx]];
+  // Between two points of the run lie those of other curves.
+  const at = idx === null || idx === undefined ? -1 : nearest(plot.data[1], idx);
+  const [t, mu] = [plot.data[0][at], plot.data[1][at]];
   find('curve-cursor').textContent = t === null || t === undefined || mu === null || mu === undefined ? '' : say('curve_cursor', { t: t.toFixed(1), mu: mu.toFixed(3) });
 }
 
 /** @param {uPlot[]} of */
 function fill([above, below]) {
   // Both plots have all times, so that one stands below the other.
-  const [t, mu, sliding, ...others] = Plot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu]]);
+  const record = measured();
+  const [t, mu, sliding, ...others] = Plot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu], [record.t, record.mu]]);
   above.setData([t, mu, ...others]);
   below.setData([t, sliding]);
 }
@@ -174,6 +193,7 @@ function draw() {
   fill(plots);
   find('curve-twin').hidden = twin.t.length === 0;
   find('curve-recorded').hidden = recorded.t.length === 0;
+  find('curve-measured').hidden = measured().t.length === 0;
   find('curve-letters').hidden = Object.keys(state.numbers?.instants ?? {}).length === 0;
 }
 const refresh = atMost(draw, SPACING_MS);
@@ -188,7 +208,7 @@ function fit() {
 
 /** The curves that there are: their names, colours and dashes. @returns {{name: string, stroke: string, dash: number[]}[]} */
 export function curveLines() {
-  const all = /** @type {Array<[Run, string, string, number[]]>} */ ([[run, 'run', 'curve', []], [twin, 'twin', 'ghost', [6, 3]], [recorded, 'recorded', 'recorded', [2, 3]]]);
+  const all = /** @type {Array<[{t: number[]}, string, string, number[]]>} */ ([[run, 'run', 'curve', []], [twin, 'twin', 'ghost', [6, 3]], [recorded, 'recorded', 'recorded', [2, 3]], [measured(), 'measured', 'measured', [2, 2]]]);
   return all.filter(([{ t }]) => t.length > 0).map(([, name, stroke, dash]) => ({ name: say(`curve_${name}`), stroke: colour(stroke), dash }));
 }
 
@@ -221,6 +241,7 @@ function make() {
 export function startCurves() {
   make();
   on('curve', take);
+  on('measured', refresh);
   on('case', ({ why }) => {
     if (why === 'open') clear(recorded);
     refresh();

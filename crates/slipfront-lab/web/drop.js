@@ -1,6 +1,8 @@
 // @ts-check
-// What is dropped on the page: an image as texture, a file with a case or a run, or the folder of a run.
+// What is dropped on the page: an image as texture, a file with a case or a run, a measured record, or the
+// folder of a run.
 import { takeImage } from './image.js';
+import { openRecord } from './measurement.js';
 import { filesOf, openFile, replayWhenRead } from './run_folder.js';
 
 /** Begins to listen. */
@@ -11,6 +13,6 @@ export function startDrop() {
     const entry = event.dataTransfer?.items[0]?.webkitGetAsEntry();
     const file = event.dataTransfer?.files[0];
     if (entry?.isDirectory) replayWhenRead(entry.name, filesOf(/** @type {FileSystemDirectoryEntry} */ (entry)));
-    else if (file && !openFile(file)) takeImage(file);
+    else if (file && !openFile(file) && !openRecord(file)) takeImage(file);
   });
 }

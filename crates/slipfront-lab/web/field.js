@@ -18,6 +18,9 @@ import { setView } from './view.js';
 const CHOICE = ['front', 'sliding', 'first_slip', 'traction', 'contact_stress', 'displacement', 'speed'];
 const BAR_SPACING_MS = 250;
 const BAR_HEIGHT = 46;
+/** Pages on which the buttons of the zoom stand beside the field, and the room about them. */
+const narrow = matchMedia('(max-width: 399px)');
+const MARGIN = 8;
 
 export const camera = new Camera();
 
@@ -101,7 +104,9 @@ function recolour() {
 
 function fitCanvas() {
   const frame = find('frame');
-  camera.pixels = [frame.clientWidth, frame.clientHeight];
+  // Beside buttons that would cover a good part of a narrow field.
+  const beside = narrow.matches ? find('zoom').offsetWidth : 0;
+  camera.pixels = [frame.clientWidth - (beside > 0 ? beside + MARGIN : 0), frame.clientHeight];
   refreshBar();
   redraw();
 }

@@ -5,6 +5,7 @@ import { inAddress } from './address.js';
 import { jsonOf, textOf } from './assets.js';
 import { change } from './edit.js';
 import { find, make, onPress } from './element.js';
+import { readRecord } from './measurement.js';
 import { notice } from './notices.js';
 import { open } from './session.js';
 import { next, on, put, state } from './store.js';
@@ -41,9 +42,19 @@ function paragraph(text) {
   return make('p', {}, parts.map((part, k) => (k % 2 === 1 ? make('em', { textContent: part }) : part)));
 }
 
+/** Reads the measured record of a step. @param {string} file */
+async function loadRecord(file) {
+  const text = await textOf(file);
+  if (text === null) return notice(say('lesson_missing', { file }));
+  readRecord(file.replace(/^.*\//, ''), new TextEncoder().encode(text));
+}
+
 /** @param {LessonStep} step @param {Record<string, string>} labels */
 function buttons(step, labels) {
-  return (step.set ?? []).map((button) => {
+  const { record } = step;
+  const ofRecord = record === undefined ? [] : [make('button', { type: 'button', textContent: say('lesson_record') })];
+  ofRecord.forEach((button) => button.addEventListener('click', () => loadRecord(record ?? '')));
+  const ofCase = (step.set ?? []).map((button) => {
     const element = make('button', { type: 'button', textContent: told(labels[button.id]) });
     element.addEventListener('click', () => {
       if (button.view) setView(button.view);
@@ -51,6 +62,7 @@ function buttons(step, labels) {
     });
     return element;
   });
+  return [...ofRecord, ...ofCase];
 }
 
 /** Loads the case of a step and sets the view. @param {LessonStep} step */

@@ -46,7 +46,10 @@ function showConnection({ yes, ended, reason }) {
 export function startNotices() {
   on('connected', showConnection);
   // Below its first line a sentence about a case shows a line of a file that the reader does not see.
-  on('refused', ({ sentence }) => notice(sentence.split('\n')[0], { topic: 'refused' }));
+  on('refused', ({ of, sentence }) => {
+    // Who points at a slider has asked for nothing: what stands below it says enough.
+    if (of !== 'sensitivity') notice(sentence.split('\n')[0], { topic: 'refused' });
+  });
   on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
   on('problem', ({ key, values }) => notice(say(key, values)));
   on('case', ({ warnings, too_coarse: tooCoarse, why }) => {

@@ -11,7 +11,7 @@ import { say } from './text.js';
 import { filesOfZip } from './zip.js';
 
 /** The server takes messages of 8 MiB, of which Base64 takes a quarter; a Worker has several copies of them in its memory. */
-const MOST_BYTES = (isAlone ? 32 : 5.5) * 2 ** 20;
+export const MOST_BYTES = (isAlone ? 32 : 5.5) * 2 ** 20;
 const FIELDS = 'fields.nc';
 const CASE = 'case.toml';
 const SUMMARY = 'summary.json';

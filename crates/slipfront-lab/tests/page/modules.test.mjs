@@ -8,11 +8,14 @@ import { fileURLToPath } from 'node:url';
 import { fromBase64, toBase64 } from '../../web/base64.js';
 import { Camera } from '../../web/camera.js';
 import { COLOURMAPS } from '../../web/colourmaps.js';
+import { fittedShift } from '../../web/fit_shift.js';
 import { parse } from '../../web/frames.js';
 import { rowsOf } from '../../web/letters.js';
 import { makeLink, readLink } from '../../web/link.js';
 import { fixed, length, metres, number, quantity, ticks, typed } from '../../web/quantity.js';
+import { alongUnit, inStars, roundedUp, sorted } from '../../web/record.js';
 import { center, coverageOf, create, enlarge, handles, inside, kind, move, turn } from '../../web/shapes.js';
+import { endText, rangeOf, unknownsOf } from '../../web/unknowns.js';
 
 const WEB = fileURLToPath(new URL('../../web', import.meta.url));
 const SLIDER = { blocks: [50, 40], blockSize: 1e-6, count: 2000 };
@@ -194,4 +197,77 @@ test('what is inside follows from the even-odd rule, and handles are on the box'
 test('letters that would lie on each other stand in rows', () => {
   assert.deepEqual(rowsOf([0, 50, 100, 105, 108, 140], 10), [0, 0, 0, 1, 2, 0]);
   assert.deepEqual(rowsOf([], 10), []);
+});
+
+/** A curve that rises, peaks and swings, at so many times. */
+function swinging(first, last, count) {
+  const t = Array.from({ length: count }, (_, k) => first + ((last - first) * k) / (count - 1));
+  return { t, mu: t.map((time) => (time < 30 ? time / 30 : 0.5 + 0.5 * Math.exp((30 - time) / 20) * Math.cos(time - 30))) };
+}
+
+test('the shift of a record that is a piece of the curve is found, whichever it is', () => {
+  const curve = swinging(0, 100, 1001);
+  for (const shift of [0, 7.25, -40.123456, 1000]) {
+    const { t, mu } = curve;
+    const piece = { t: t.slice(100, 900).map((time) => time - shift), mu: mu.slice(100, 900) };
+    const found = fittedShift(piece, curve);
+    // The golden section leaves 1e-12 of its interval; near its least value, a square, the distance is that of
+    // its sums, so that the place is known to about 1e-9 of the spacing of the points and better.
+    assert.ok(Math.abs(found - shift) < 1e-7, `${found} is not ${shift}`);
+  }
+});
+
+test('a shift is fitted through noise, and by half of a record at least', () => {
+  const curve = swinging(0, 100, 1001);
+  // Noise of 2 % by a generator of 32 bits.
+  let random = 1;
+  const noise = () => ((random = (Math.imul(random, 1664525) + 1013904223) >>> 0) / 2 ** 32 - 0.5) * 0.04;
+  const { t, mu } = swinging(0, 100, 3001);
+  const found = fittedShift({ t: t.map((time) => time + 12), mu: mu.map((value) => value + noise()) }, curve);
+  // Some 500 values of a scatter of 0.012 on slopes of about 0.3 in t*: 0.012/0.3/sqrt(500) is 0.002.
+  assert.ok(Math.abs(found + 12) < 0.01, String(found));
+  // The curve is shorter than half of the record, or none.
+  assert.equal(fittedShift({ t, mu }, swinging(0, 45, 400)), null);
+  assert.ok(Math.abs(fittedShift({ t, mu }, swinging(0, 60, 601))) < 1e-6);
+  assert.equal(fittedShift({ t, mu }, { t: [], mu: [] }), null);
+  assert.equal(fittedShift({ t: [1], mu: [1] }, curve), null);
+});
+
+test('records stand in t* and mu* of the case, with their shift', () => {
+  const shown = { units: { time_s: 0.5, displacement_m: 1e-3, friction_n: 4, friction_coefficient: 0.25 }, values: { speed: { star: 0.1, si: 1 } } };
+  const record = { along: 'time', of: 'force', x: [0, 1], y: [2, 4] };
+  assert.deepEqual(inStars(record, 1, shown), { t: [2, 4], mu: [0.5, 1] });
+  const path = { ...record, along: 'displacement', of: 'coefficient' };
+  const { t, mu } = inStars(path, 0, shown);
+  t.forEach((value, k) => near(value, [0, 1e4][k]));
+  assert.deepEqual(mu, [8, 16]);
+  near(alongUnit(path, shown), 1e-4);
+  // A slider that is turned has a torque, and a drive that stands no time for a path.
+  const turned = { ...shown, units: { ...shown.units, friction_n: null } };
+  assert.equal(inStars(record, 0, turned), null);
+  assert.ok(inStars({ ...record, of: 'coefficient' }, 0, turned) !== null);
+  assert.equal(inStars(path, 0, { ...shown, values: {} }), null);
+  assert.deepEqual(sorted({ along: 'time', of: 'force', x: [2, 1], y: [3, 4] }), { along: 'time', of: 'force', x: [1, 2], y: [4, 3] });
+});
+
+test('noise is rounded up to two digits, and is never none', () => {
+  assert.deepEqual([0, 0.1, 0.1001, 1.234, 9.91, 12.01].map(roundedUp), [0.1, 0.1, 0.11, 1.3, 10, 13]);
+});
+
+test('ranges of unknowns lie around what the case has, and are written as a calibration file has them', () => {
+  const shown = {
+    loading_rate: 0.01,
+    units: { time_s: 1e-6, friction_n: 2, friction_coefficient: 0.4 },
+    values: { speed: { star: 0.03, si: 0.02 }, load: { star: 1e-6, si: 1.5e5 }, r_star: { star: 0.5, si: null }, omega_star: { star: 0.1, si: 2e5 }, sigma: { star: 0, si: null } },
+  };
+  const offered = unknownsOf(shown);
+  const ends = Object.fromEntries(offered.map(({ id, from, to }) => [id, [from, to]]));
+  // The spring takes 0.01 of 2 N in a microsecond at 0.02 m/s: 1e6 N/m.
+  assert.deepEqual(ends, { mu_static: [0.24, 0.68], r_star: [0.2, 0.8], damping_rate: [5e4, 8e5], total_stiffness: [5e5, 2e6], pressure: [75, 300], sigma: [0.01, 0.15] });
+  const of = (wanted) => offered.find(({ id }) => id === wanted);
+  assert.deepEqual(rangeOf(of('mu_static'), 0.2, 0.6), [0.2, 0.6]);
+  assert.deepEqual(rangeOf(of('pressure'), 75, 300), { from: '75 kPa', to: '300 kPa', scale: 'log' });
+  assert.deepEqual(rangeOf(of('damping_rate'), 1, 10), { from: '1 1/s', to: '10 1/s', scale: 'log' });
+  assert.equal(unknownsOf({ ...shown, loading_rate: null }).find(({ id }) => id === 'total_stiffness').from, null);
+  assert.deepEqual([null, 0.24, 75, 6.8e7].map(endText), ['', '0.24', '75', '6.8e7']);
 });
