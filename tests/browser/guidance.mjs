@@ -150,7 +150,7 @@ test('the page prints without what can only be pressed', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.runToEnd();
   await lab.page.emulateMedia({ media: 'print' });
-  for (const id of ['tools', 'open-keep', 'controls', 'next', 'zoom']) assert.equal(await lab.find(`#${id}`).isVisible(), false, id);
+  for (const id of ['tools', 'open-keep', 'open-measure', 'controls', 'next', 'zoom']) assert.equal(await lab.find(`#${id}`).isVisible(), false, id);
   for (const id of ['case-name', 'canvas', 'headline', 'numbers', 'plot-mu', 'kymograph']) assert.equal(await lab.find(`#${id}`).isVisible(), true, id);
   const { toml, values } = lab.last.case;
   assert.equal(await lab.text('printed-case'), toml);

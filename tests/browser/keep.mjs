@@ -66,6 +66,23 @@ test('a copied link opens in another tab of the browser, which has no token, wit
   assert.equal(lab.sockets, 1);
 });
 
+test('the texture is kept as outlines, for a laser and for a drawing program', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  for (const [format, ofTexture] of [['dxf', /TEXTURE_1/], ['svg', /<g[^>]*TEXTURE_1/]]) {
+    await lab.press('open-keep');
+    const { name, contents } = await lab.download(() => lab.press(`drawing-${format}`));
+    assert.equal(name, `case.${format}`);
+    assert.equal(contents.toString(), lab.last.drawing.text);
+    assert.match(contents.toString(), ofTexture);
+    for (const note of lab.last.drawing.notes) await lab.notice(note);
+    // A circle of a tenth of 20 um x 20 um, in millimetres: its radius is sqrt(0.1/pi) 0.02.
+    const radius = Math.sqrt(0.1 / Math.PI) * 0.02;
+    const numbers = contents.toString().match(/-?\d+(\.\d+)?(e-?\d+)?/g).map(Number);
+    // Coordinates are written with at least six digits.
+    assert.ok(numbers.some((value) => Math.abs(value - radius) < 1e-5 * radius), `no radius ${radius} in ${contents}`);
+  }
+});
+
 test('a case too large for a link is downloaded instead', async (t) => {
   // Every pixel is at random below or above the threshold, by a generator of 32 bits: nothing in it can be
   // packed.

@@ -18,7 +18,7 @@ function has({ toml, texture }, key, value) {
   return toml.split('\n').some((line) => line.replaceAll('"', '') === `${name} = ${JSON.stringify(value)?.replaceAll('"', '').replaceAll(',', ', ')}`);
 }
 
-assert.equal(lessons.length, 8);
+assert.equal(lessons.length, 9);
 
 for (const [number, lesson] of lessons.entries()) {
   test(`lesson ${number + 1}: ${told(words[lesson.id].title)}`, async (t) => {
@@ -38,8 +38,15 @@ for (const [number, lesson] of lessons.entries()) {
       await lab.find('#lesson-answer summary').click();
       assert.ok(await lab.find('#lesson-answer-text').isVisible());
       const buttons = lab.find('#lesson-buttons button');
-      assert.equal(await buttons.count(), step.set.length);
-      for (const [place, { id, keys = {}, view = {} }] of step.set.entries()) {
+      const own = step.record ? 1 : 0;
+      assert.equal(await buttons.count(), own + step.set.length);
+      if (step.record) {
+        assert.equal(await buttons.first().textContent(), say('lesson_record'));
+        await lab.after(() => buttons.first().click(), 'record', ({ curve }) => curve !== null);
+        await until(() => lab.find('#curve-measured').isVisible(), 'the record');
+      }
+      for (const [at, { id, keys = {}, view = {} }] of step.set.entries()) {
+        const place = own + at;
         assert.equal(await buttons.nth(place).textContent(), told(said.set[id]));
         const from = lab.sent.length;
         if (Object.keys(keys).length > 0) {

@@ -5,6 +5,8 @@ import './opening.mjs';
 import './controls.mjs';
 import './texture.mjs';
 import './find.mjs';
+import './record.mjs';
+import './sensitivity.mjs';
 import './guidance.mjs';
 import './keep.mjs';
 import './replay.mjs';

@@ -1,8 +1,8 @@
 // @ts-check
 // What a calibration has found: the verdict on the model, each unknown with its interval, the report, and what
 // to do with the numbers.
-import { change, newGesture } from './edit.js';
 import { send } from './connection.js';
+import { change, newGesture } from './edit.js';
 import { download, find, make, onPress } from './element.js';
 import { number } from './quantity.js';
 import { on, state } from './store.js';

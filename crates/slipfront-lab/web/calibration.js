@@ -13,7 +13,7 @@ import { COUNTS, endText, rangeOf, unknownsOf } from './unknowns.js';
 /** @import { CalibratedReply, CalibratingReply, CaseValue } from '../types/protocol' */
 /** @import { Unknown } from './unknowns.js' */
 
-/** Unknowns that are looked for unless others are chosen: a slider without units already has them. */
+/** Unknowns that are chosen at first: every record of a slider that begins to slide tells of them. */
 const CHOSEN = ['mu_static', 'r_star'];
 
 /** @param {Unknown} unknown */

@@ -33,8 +33,8 @@ const run = { t: [], mu: [], sliding: [] };
 const twin = { t: [], mu: [], sliding: [] };
 /** @type {Run} */
 const recorded = { t: [], mu: [], sliding: [] };
-/** The measured record as it is drawn; nothing if there is none, or it cannot be compared. */
-const measured = () => (state.measured && state.case && inStars(state.measured.curve, state.measured.shift, state.case)) || { t: [], mu: [] };
+/** The points of the measured record as they are drawn; none if there is no record, or it cannot be compared. */
+export const measuredPoints = () => (state.measured && state.case && inStars(state.measured.curve, state.measured.shift, state.case)) || { t: [], mu: [] };
 /** Where legs begin, t* since rest. @type {number[]} */
 const legs = [];
 /** @type {uPlot[]} */
@@ -182,7 +182,7 @@ function showCursor(plot) {
 /** @param {uPlot[]} of */
 function fill([above, below]) {
   // Both plots have all times, so that one stands below the other.
-  const record = measured();
+  const record = measuredPoints();
   const [t, mu, sliding, ...others] = Plot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu], [record.t, record.mu]]);
   above.setData([t, mu, ...others]);
   below.setData([t, sliding]);
@@ -193,7 +193,7 @@ function draw() {
   fill(plots);
   find('curve-twin').hidden = twin.t.length === 0;
   find('curve-recorded').hidden = recorded.t.length === 0;
-  find('curve-measured').hidden = measured().t.length === 0;
+  find('curve-measured').hidden = measuredPoints().t.length === 0;
   find('curve-letters').hidden = Object.keys(state.numbers?.instants ?? {}).length === 0;
 }
 const refresh = atMost(draw, SPACING_MS);
@@ -208,7 +208,7 @@ function fit() {
 
 /** The curves that there are: their names, colours and dashes. @returns {{name: string, stroke: string, dash: number[]}[]} */
 export function curveLines() {
-  const all = /** @type {Array<[{t: number[]}, string, string, number[]]>} */ ([[run, 'run', 'curve', []], [twin, 'twin', 'ghost', [6, 3]], [recorded, 'recorded', 'recorded', [2, 3]], [measured(), 'measured', 'measured', [2, 2]]]);
+  const all = /** @type {Array<[{t: number[]}, string, string, number[]]>} */ ([[run, 'run', 'curve', []], [twin, 'twin', 'ghost', [6, 3]], [recorded, 'recorded', 'recorded', [2, 3]], [measuredPoints(), 'measured', 'measured', [2, 2]]]);
   return all.filter(([{ t }]) => t.length > 0).map(([, name, stroke, dash]) => ({ name: say(`curve_${name}`), stroke: colour(stroke), dash }));
 }
 
