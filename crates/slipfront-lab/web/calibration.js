@@ -85,6 +85,8 @@ function begin(event) {
   const unknowns = ranges();
   if (!state.measured || !unknowns) return;
   const { file, shift } = state.measured;
+  // Until the session has answered.
+  find('calibrate-start').disabled = true;
   send({ do: 'calibrate', record: file, shift, noise: find('calibrate-noise').valueAsNumber / 100, runs: find('calibrate-runs').valueAsNumber, unknowns });
 }
 
@@ -103,6 +105,8 @@ function showProgress(calibrating) {
 /** Says how a calibration has ended, if it has found nothing. @param {CalibratedReply} calibrated */
 function end({ outcome, sentence }) {
   put('calibrating', null);
+  // One of the ranges may be the reason.
+  if (outcome === 'failed' && find('calibrate').open) return problem(sentence?.split('\n')[0] ?? '');
   if (outcome === 'failed') return notice(say('calibration_failed', { sentence: sentence ?? '' }), { topic: 'calibration', serious: true });
   const text = say(`calibration_${outcome}`);
   announce(text);
@@ -132,6 +136,8 @@ export function startCalibration() {
   on('calibrated', end);
   on('connected', give);
   on('refused', ({ of, sentence }) => {
-    if (of === 'calibrate' && find('calibrate').open) problem(sentence.split('\n')[0]);
+    if (of !== 'calibrate' || !find('calibrate').open) return;
+    problem(sentence.split('\n')[0]);
+    showCount();
   });
 }
