@@ -43,13 +43,23 @@ function problem(sentence) {
   if (sentence && !find('measure').open) find('measure').showModal();
 }
 
+/** Places of the columns to begin with: those that were asked for, or the first ones with fitting units. @param {RecordFile} file @param {RecordReply} record */
+function placesOf({ x, y }, { columns, curve }) {
+  if (curve) return curve.columns;
+  const first = (/** @type {RegExp} */ unit, other = -1) => columns.findIndex((column, k) => k !== other && unit.test(column.unit ?? ''));
+  const along = x === undefined ? Math.max(first(/^(.?s|min|h|.?m)$/), 0) : Number(x) - 1;
+  const friction = first(/^(.?N|1|%)$/, along);
+  return [along, y === undefined ? (friction < 0 ? (along === 0 ? 1 : 0) : friction) : Number(y) - 1];
+}
+
 /** Offers the columns of a table. @param {RecordFile} file @param {RecordReply} record */
-function fillColumns(file, { name, columns, curve, notes }) {
+function fillColumns(file, record) {
+  const { name, columns, notes } = record;
   shown = file;
   find('measure-columns').hidden = columns.length === 0;
   find('measure-file').textContent = say('measure_file', { name });
   find('measure-notes').textContent = notes.join(' ');
-  const chosen = curve?.columns ?? [0, Math.min(1, columns.length - 1)];
+  const chosen = placesOf(file, record);
   for (const [id, unit, place] of /** @type {Array<['record-x'|'record-y', 'record-x-unit'|'record-y-unit', number]>} */ ([['record-x', 'record-x-unit', 0], ['record-y', 'record-y-unit', 1]])) {
     const texts = columns.map((column, k) => say(column.unit === null ? 'column' : 'column_unit', { number: k + 1, name: column.name, unit: column.unit ?? '' }));
     find(id).replaceChildren(...texts.map((textContent, k) => make('option', { value: String(k + 1), textContent })));
