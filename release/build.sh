@@ -67,7 +67,7 @@ command_for() {
         cargo build --profile dist --locked --package slipfront-cli --target "$target"
     rm -rf "${stage:?}/$name"
     mkdir -p "$stage/$name"
-    cp "$CARGO_TARGET_DIR/$target/dist/$program" target/slipfront.wasm target/slipfront-pictures.wasm LICENSE-APACHE LICENSE-MIT "$stage/$name"
+    cp "$CARGO_TARGET_DIR/$target/dist/$program" target/slipfront.wasm target/slipfront-work.wasm LICENSE-APACHE LICENSE-MIT "$stage/$name"
     cp -r cases "$stage/$name"
     python3 -B tests/licences/notices.py --package crates/slipfront-cli --target "$target" --output "$stage/$name/THIRD-PARTY-NOTICES.txt"
     sbom crates/slipfront-cli "$target" "$stage/$name/slipfront.cdx.json"

@@ -16,7 +16,7 @@ import zipfile
 from pathlib import Path
 
 NOTICES = "THIRD-PARTY-NOTICES.txt"
-MODULES = ["slipfront.wasm", "slipfront-pictures.wasm"]
+MODULES = ["slipfront.wasm", "slipfront-work.wasm"]
 # What an archive contains, by the end of its name, as ends of the paths in it.
 CONTENTS = {
     "-linux-x86_64.tar.gz": ["/slipfront"],

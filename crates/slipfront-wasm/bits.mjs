@@ -3,7 +3,7 @@
 //
 //     node crates/slipfront-wasm/bits.mjs
 //
-// Needs target/slipfront.wasm (build.sh) and the example `bits`, which `cargo test --workspace` builds too.
+// Needs target/slipfront-work.wasm (build.sh) and the example `bits`, which `cargo test --workspace` builds too.
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';

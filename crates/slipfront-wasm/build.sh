@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# Builds the session of the laboratory as WebAssembly, target/slipfront.wasm, and the module that draws the
-# pictures of runs that are saved, target/slipfront-pictures.wasm. `slipfront lab --export` and `--single`
-# take both.
+# Builds the session of the laboratory as WebAssembly, target/slipfront.wasm, and the module that does the work
+# beside it, target/slipfront-work.wasm. `slipfront lab --export` and `--single` take both.
 #
 #     crates/slipfront-wasm/build.sh
 #
@@ -33,4 +32,4 @@ module() {
     printf 'target/%s has %d bytes\n' "$1" "$(stat --format=%s "target/$1")"
 }
 module slipfront.wasm session
-module slipfront-pictures.wasm pictures
+module slipfront-work.wasm work

@@ -151,7 +151,7 @@ async function firstPicture(address) {
 }
 
 if (IS_ALONE) {
-  for (const [name, bound] of [['slipfront.wasm', '<= 2.50'], ['slipfront-pictures.wasm', '']]) {
+  for (const [name, bound] of [['slipfront.wasm', '<= 2.60'], ['slipfront-work.wasm', '']]) {
     tell(`${name}, MB`, (statSync(path.join(ROOT, 'target', name)).size / 1e6).toFixed(2), bound);
   }
   const file = path.join(WORK, 'one.html');

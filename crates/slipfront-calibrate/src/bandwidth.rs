@@ -17,7 +17,7 @@ pub(crate) fn noise(y: &[f64]) -> f64 {
 }
 
 /// Standard deviation of the noise of a record over its mean friction.
-pub(crate) fn noise_share(record: &MeasuredRecord) -> f64 {
+pub fn noise_share(record: &MeasuredRecord) -> f64 {
     noise(&record.y) / mean(&record.y).abs()
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use slipfront_base::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_base::number_format::{are, with_si_prefix};
-use slipfront_case::case::{Case, PROGRAM};
+use slipfront_case::case::{Case, FilesInMemory, PROGRAM};
 use slipfront_case::case_file::{CaseError, KeyKind, Override, key, names_of, unknown_key, whole};
 use slipfront_case::key_rows;
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
@@ -229,6 +229,12 @@ impl CalibrationFile {
         self.project.set(overrides)
     }
 
+    /// The calibration with files in memory that the base case names.
+    pub(crate) fn with_files(mut self, in_memory: FilesInMemory) -> Self {
+        self.project.base.in_memory = in_memory;
+        self
+    }
+
     /// Name of the calibration and of its results.
     pub fn name(&self) -> &str {
         &self.project.name
@@ -337,10 +343,23 @@ impl CalibrationFile {
     }
 
     fn read_record(&self, number: usize, path: &Path) -> Result<SampledRecord, StudyError> {
+        let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
+        self.read_bytes(number, path, bytes)
+    }
+
+    /// Reads the record of this number from the bytes of its file.
+    ///
+    /// # Errors
+    /// When it is no record of these columns.
+    pub(crate) fn read_bytes(
+        &self,
+        number: usize,
+        path: &Path,
+        bytes: Vec<u8>,
+    ) -> Result<SampledRecord, StudyError> {
         let keys = &self.keys;
         let columns = MeasuredColumns::new(keys.columns(), [&keys.x_unit, &keys.y_unit], keys.table());
         let along = keys.along();
-        let bytes = read_limited(path, TEXT_MAX_BYTES).map_err(FolderError::read(path))?;
         let measured = columns.parse(&bytes, path, along);
         let mut measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
         measured.correct(&self.correction(number, along)?);

@@ -1,7 +1,10 @@
 //! Progress of a calibration: the purpose of its runs, and how many have ended.
 
+use serde::{Deserialize, Serialize};
+
 /// Purpose of runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum CalibrationStage {
     /// Runs of the case over the ranges.
     Training,
@@ -30,7 +33,7 @@ impl CalibrationStage {
 }
 
 /// Progress of a calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CalibrationProgress {
     /// Present stage.
     pub stage: CalibrationStage,

@@ -5,11 +5,13 @@ use std::io::Write;
 use slipfront_base::number_format::{count, four_digits, in_print, si_prefix, with_si_prefix};
 use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::case::Case;
+use slipfront_case::case_file::Override;
 use slipfront_plot::{Picture, PictureError, PictureSize, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
 use crate::findings::{Findings, InstrumentFindings, OnFinerBlocks, UnknownEstimate};
+use crate::fit::Found;
 use crate::predicted::{Band, PREDICTED};
 use crate::record_check::at_step;
 use crate::set_up::{Conditions, SetUp};
@@ -23,44 +25,47 @@ pub(crate) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
 /// Points that are drawn from the joint estimate of all unknowns, a row each.
 const POSTERIOR: &str = "posterior.csv";
 
-/// Writer of the results of a calibration.
+/// Report on the findings of a calibration.
 pub(crate) struct Report<'a> {
-    /// Files of the results.
-    pub(crate) batch: &'a mut Batch,
-    pub(crate) set_up: &'a SetUp,
-    pub(crate) findings: &'a Findings,
+    set_up: &'a SetUp,
+    findings: &'a Findings,
 }
 
-impl Report<'_> {
-    /// Writes the findings for these records, and returns them as a text.
-    pub(crate) fn write(
-        &mut self,
-        records: &[Vec<f64>],
-        bands: &[Band],
-        sample: &[Vec<f64>],
-    ) -> Result<String, StudyError> {
+impl<'a> Report<'a> {
+    pub(crate) const fn of(set_up: &'a SetUp, findings: &'a Findings) -> Self {
+        Self { set_up, findings }
+    }
+
+    /// The findings as a text for a person.
+    pub(crate) fn text(&self) -> Result<String, StudyError> {
+        Ok(in_words(self.findings) + &self.notes_on_case()?)
+    }
+
+    /// Writes all results, and returns the text.
+    pub(crate) fn write(&self, found: &Found, batch: &mut Batch) -> Result<String, StudyError> {
         let [numbers, words] = FOUND;
-        let findings = self.findings;
-        self.batch
-            .write(numbers, |to| Ok(serde_json::to_writer_pretty(to, findings)?))?;
-        let set_up = self.set_up;
-        self.batch
-            .write(POSTERIOR, |to| Ok(write_sample(set_up, sample, to)?))?;
-        for (number, ((record, band), conditions)) in
-            records.iter().zip(bands).zip(&self.set_up.conditions).enumerate()
-        {
-            self.write_record(number + 1, record, band, conditions)?;
+        let (set_up, findings) = (self.set_up, self.findings);
+        batch.write(numbers, |to| Ok(serde_json::to_writer_pretty(to, findings)?))?;
+        batch.write(POSTERIOR, |to| Ok(write_sample(set_up, &found.sample, to)?))?;
+        let records = found.records.iter().zip(&found.bands).zip(&set_up.conditions);
+        for (number, ((record, band), conditions)) in records.enumerate() {
+            write_record(number + 1, record, band, conditions, batch)?;
         }
         let case = self.case()?;
-        self.batch.write(CASE, |to| to.write_all(case.as_bytes()))?;
-        let text = in_words(self.findings) + &self.notes_on_case()?;
-        self.batch.write(words, |to| to.write_all(text.as_bytes()))?;
+        batch.write(CASE, |to| to.write_all(case.as_bytes()))?;
+        let text = self.text()?;
+        batch.write(words, |to| to.write_all(text.as_bytes()))?;
         Ok(text)
+    }
+
+    /// The median of every unknown, as settings of keys of the case.
+    pub(crate) fn set(&self) -> Vec<Override> {
+        self.set_up.set_to(&self.medians())
     }
 
     /// The case with the median of every unknown.
     fn case(&self) -> Result<String, StudyError> {
-        let set = self.set_up.set_to(&self.medians());
+        let set = self.set();
         let set: Vec<_> = set.iter().collect();
         Ok(self.set_up.base.parse()?.with(&set)?.to_toml()?)
     }
@@ -86,32 +91,31 @@ impl Report<'_> {
         let notes = sentences.iter().flatten();
         Ok(notes.map(|sentence| note(sentence, COLUMNS)).collect())
     }
+}
 
-    /// A record and the band of the calibrated model, as a table and as a picture.
-    fn write_record(
-        &mut self,
-        number: usize,
-        record: &[f64],
-        band: &Band,
-        conditions: &Conditions,
-    ) -> Result<(), StudyError> {
-        let grid = &conditions.grid;
-        let places = grid.places();
-        let name = format!("band-{number}");
-        let [x_name, y_name] = [grid.along(), grid.friction()].map(|measure| title(measure, measure.unit()));
-        self.batch.write(&format!("{name}.csv"), |to| {
-            let mut table = csv::Writer::from_writer(to);
-            table.write_record([&x_name, &y_name, "model 5 %", "model median", "model 95 %"])?;
-            for (k, x) in places.iter().enumerate() {
-                let row = [*x, record[k], band.low[k], band.median[k], band.high[k]];
-                table.write_record(row.map(|value| value.to_string()))?;
-            }
-            table.flush()
-        })?;
-        let measures = [grid.along(), grid.friction()];
-        self.batch
-            .draw(&name, |size| picture(&places, record, band, measures, size))
-    }
+/// A record and the band of the calibrated model, as a table and as a picture.
+fn write_record(
+    number: usize,
+    record: &[f64],
+    band: &Band,
+    conditions: &Conditions,
+    batch: &mut Batch,
+) -> Result<(), StudyError> {
+    let grid = &conditions.grid;
+    let places = grid.places();
+    let name = format!("band-{number}");
+    let [x_name, y_name] = [grid.along(), grid.friction()].map(|measure| title(measure, measure.unit()));
+    batch.write(&format!("{name}.csv"), |to| {
+        let mut table = csv::Writer::from_writer(to);
+        table.write_record([&x_name, &y_name, "model 5 %", "model median", "model 95 %"])?;
+        for (k, x) in places.iter().enumerate() {
+            let row = [*x, record[k], band.low[k], band.median[k], band.high[k]];
+            table.write_record(row.map(|value| value.to_string()))?;
+        }
+        table.flush()
+    })?;
+    let measures = [grid.along(), grid.friction()];
+    batch.draw(&name, |size| picture(&places, record, band, measures, size))
 }
 
 /// Writes a row for every point, in the units of the unknowns.

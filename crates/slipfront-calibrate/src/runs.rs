@@ -29,6 +29,17 @@ impl JournalEntry for CalibrationRun {
     const KEYS: &'static [&'static str] = &["curves"];
 }
 
+/// Identity of a run: a hash of all that decides its curves.
+fn identity(of_set_up: &str, point: &[f64], surface: u64) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(of_set_up.as_bytes());
+    hasher.update(&surface.to_le_bytes());
+    for share in point {
+        hasher.update(&share.to_le_bytes());
+    }
+    hasher.finalize().to_hex()[..16].to_owned()
+}
+
 /// Runs to be made: points of the ranges, each over a surface of its own.
 pub(crate) struct Runs<'a> {
     set_up: &'a SetUp,
@@ -47,19 +58,24 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// Identities of all runs: hashes of what decides their curves.
+    /// Identities of all runs.
     fn identities(&self) -> Result<Vec<String>, StudyError> {
         let of_set_up = self.set_up.identity()?;
-        let of_run = |(surface, point): (u64, &Vec<f64>)| {
-            let mut hasher = blake3::Hasher::new();
-            hasher.update(of_set_up.as_bytes());
-            hasher.update(&surface.to_le_bytes());
-            for share in point {
-                hasher.update(&share.to_le_bytes());
-            }
-            hasher.finalize().to_hex()[..16].to_owned()
-        };
-        Ok((self.first_surface..).zip(self.points).map(of_run).collect())
+        let runs = (self.first_surface..).zip(self.points);
+        Ok(runs
+            .map(|(surface, point)| identity(&of_set_up, point, surface))
+            .collect())
+    }
+
+    /// The runs of these numbers, to be made elsewhere.
+    fn wanted(&self, stage: CalibrationStage, numbers: &[usize]) -> WantedRuns {
+        let run = |number: &usize| (self.points[*number].clone(), self.first_surface + *number as u64);
+        WantedRuns {
+            stage,
+            is_finer: self.set_up.is_finer,
+            halvings: self.set_up.halvings,
+            runs: numbers.iter().map(run).collect(),
+        }
     }
 
     /// The curves of the run of this number; none after a stop.
@@ -69,11 +85,64 @@ impl<'a> Runs<'a> {
     }
 }
 
+/// Runs that a calibration needs and that are made elsewhere, such as in other Workers of a page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WantedRuns {
+    /// Purpose of the runs.
+    pub stage: CalibrationStage,
+    is_finer: bool,
+    halvings: u32,
+    /// Points of the ranges, and the surface of each run.
+    runs: Vec<(Vec<f64>, u64)>,
+}
+
+impl WantedRuns {
+    /// Number of runs.
+    pub fn count(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Shares the runs out to so many workers, each of which has every `parts`-th run.
+    pub fn shared_out(&self, parts: usize) -> Vec<Self> {
+        let part = |first: usize| Self {
+            runs: self.runs.iter().skip(first).step_by(parts).cloned().collect(),
+            ..self.clone()
+        };
+        (0..parts.min(self.count())).map(part).collect()
+    }
+
+    /// The set-up of the runs in a calibration with this one.
+    fn set_up(&self, set_up: &SetUp) -> SetUp {
+        SetUp {
+            is_finer: self.is_finer,
+            halvings: self.halvings,
+            ..set_up.clone()
+        }
+    }
+
+    /// Makes the runs on rayon's threads; none after a stop.
+    ///
+    /// # Errors
+    /// The error of the first run that has one.
+    pub(crate) fn make(
+        &self,
+        set_up: &SetUp,
+        stop: &AtomicBool,
+    ) -> Result<Option<Vec<Curves>>, TrainingError> {
+        let set_up = self.set_up(set_up);
+        let runs = self.runs.par_iter().with_max_len(1);
+        let made: Vec<_> = runs
+            .map(|(point, surface)| set_up.curves(point, *surface, stop))
+            .collect();
+        made.into_iter().collect()
+    }
+}
+
 /// Runs that were made before, with the journals to which others are appended.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct KeptRuns {
-    /// Journal of the results folder, which keeps other processes out.
-    journal: Journal,
+    /// Journal of the results folder, which keeps other processes out; none for runs in memory alone.
+    journal: Option<Journal>,
     /// Journal of training runs that several calibrations share.
     shared: Option<Journal>,
     known: HashMap<String, Curves>,
@@ -99,7 +168,7 @@ impl KeptRuns {
             journal
         });
         Ok(Self {
-            journal,
+            journal: Some(journal),
             shared,
             known: kept.into_iter().map(|kept| (kept.id, kept.curves)).collect(),
             damaged,
@@ -116,9 +185,30 @@ impl KeptRuns {
         self.known.len()
     }
 
+    /// Adds runs that were made elsewhere, in the order in which they were wanted.
+    ///
+    /// # Errors
+    /// When the case is not valid in the middle of the ranges.
+    pub(crate) fn add(
+        &mut self,
+        set_up: &SetUp,
+        wanted: &WantedRuns,
+        made: Vec<Curves>,
+    ) -> Result<(), StudyError> {
+        let of_set_up = wanted.set_up(set_up).identity()?;
+        let ids = wanted
+            .runs
+            .iter()
+            .map(|(point, surface)| identity(&of_set_up, point, *surface));
+        self.known.extend(ids.zip(made));
+        Ok(())
+    }
+
     fn keep(&mut self, stage: CalibrationStage, made: Vec<CalibrationRun>) -> Result<(), StudyError> {
         let shared = self.shared.as_mut().filter(|_| stage.is_for_any_records());
-        shared.unwrap_or(&mut self.journal).append(&made)?;
+        if let Some(journal) = shared.or(self.journal.as_mut()) {
+            journal.append(&made)?;
+        }
         self.known
             .extend(made.into_iter().map(|made| (made.id, made.curves)));
         Ok(())
@@ -130,6 +220,10 @@ pub struct RunMaker<'a> {
     stop: &'a AtomicBool,
     watch: &'a mut dyn FnMut(&CalibrationProgress),
     kept: Option<&'a mut KeptRuns>,
+    /// Whether runs that are known before they are needed are made elsewhere.
+    is_elsewhere: bool,
+    /// The runs for which a calibration was left, to be made elsewhere.
+    wanted: Option<WantedRuns>,
     ended: usize,
     of: usize,
 }
@@ -141,9 +235,16 @@ impl<'a> RunMaker<'a> {
             stop,
             watch,
             kept: None,
+            is_elsewhere: false,
+            wanted: None,
             ended: 0,
             of,
         }
+    }
+
+    /// Counts on so many runs beside those of a search for the closest curve.
+    pub(crate) fn expect(&mut self, of: usize) {
+        self.of = of;
     }
 
     /// Keeps the runs, and makes none that is kept already.
@@ -154,10 +255,22 @@ impl<'a> RunMaker<'a> {
         }
     }
 
+    /// Leaves runs to others, but for those of a search for the closest curve, where each depends on those
+    /// before.
+    pub(crate) fn elsewhere(self, is_elsewhere: bool) -> Self {
+        Self { is_elsewhere, ..self }
+    }
+
+    /// The runs that are to be made elsewhere before the calibration can go on.
+    pub(crate) fn into_wanted(self) -> Option<WantedRuns> {
+        self.wanted
+    }
+
     /// The curves of all runs, in their order.
     ///
     /// # Errors
-    /// The error of the first run that has one, those of the journal, and after a stop.
+    /// The error of the first run that has one, those of the journal, after a stop, and where runs are to be
+    /// made elsewhere first.
     pub(crate) fn curves(&mut self, stage: CalibrationStage, runs: &Runs) -> Result<Vec<Curves>, StudyError> {
         let ids = match self.kept {
             Some(_) => runs.identities()?,
@@ -171,6 +284,10 @@ impl<'a> RunMaker<'a> {
             CalibrationStage::Closest => self.of + missing.len(),
             _ => self.of.saturating_sub(found.len() - missing.len()),
         };
+        if self.is_elsewhere && stage != CalibrationStage::Closest && !missing.is_empty() {
+            self.wanted = Some(runs.wanted(stage, &missing));
+            return Err(StudyError::Interrupted);
+        }
         let stop = self.stop;
         self.show(stage, 0);
         for some in missing.chunks(AT_ONCE) {

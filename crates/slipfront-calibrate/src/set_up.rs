@@ -152,7 +152,7 @@ impl SetUp {
         changes.push(Override::new("friction.seed", &toml::Value::from(seed as i64)));
         let all: Vec<&Override> = conditions.overrides.iter().chain(&changes).collect();
         let made =
-            |file: CaseFile| Case::new(file, "training", &self.base.folder, &mut |_| true, Ranks::ALONE);
+            |file: CaseFile| Case::new(file, "training", self.base.files(), &mut |_| true, Ranks::ALONE);
         let mut case = made(self.base.parse()?.with(&all)?)?;
         if self.halvings > 0 {
             let step = 0.5_f64.powi(self.halvings as i32) * case.time_plan.dt_star;

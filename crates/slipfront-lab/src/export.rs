@@ -3,11 +3,13 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use slipfront_base::disk::{is_empty, write_atomic, write_with_folders};
@@ -20,8 +22,8 @@ use crate::{assets, presets};
 /// The name of the session as WebAssembly, beside the program and in an exported folder.
 pub const MODULE: &str = "slipfront.wasm";
 
-/// The name of the module beside it that draws the pictures of runs.
-const PICTURES: &str = "slipfront-pictures.wasm";
+/// The name of the module beside it that does the work beside a session.
+const WORK: &str = "slipfront-work.wasm";
 
 /// The file with the presets and the case with which the session begins.
 const BEGINNING: &str = "start.json";
@@ -124,8 +126,8 @@ struct Parts {
     modules: BTreeMap<&'static str, Vec<u8>>,
 }
 
-/// Finds the module of the session, in the first of some folders that has it. The one that draws pictures
-/// stands beside it.
+/// Finds the module of the session, in the first of some folders that has it. The one of work beside
+/// it is in the same folder.
 ///
 /// # Errors
 /// When none of the folders has the module.
@@ -158,7 +160,7 @@ impl Parts {
         };
         let modules = BTreeMap::from([
             (MODULE, read_module(module.to_owned())?),
-            (PICTURES, read_module(module.with_file_name(PICTURES))?),
+            (WORK, read_module(module.with_file_name(WORK))?),
         ]);
         let mut files: BTreeMap<String, Vec<u8>> = assets::all()
             .map(|(name, contents)| (name, contents.to_vec()))
@@ -300,7 +302,15 @@ fn is_exported(path: &Path) -> bool {
     read.is_ok() && String::from_utf8_lossy(&beginning).contains(BEGINNING_OF_PAGE)
 }
 
-/// The files that a page of one file asks for, as JSON within a script: texts, and modules in Base64.
+/// A module of a page of one file: compressed by gzip, in Base64.
+fn compressed(module: &[u8]) -> String {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    // Memory takes all that it is given.
+    let compressed = encoder.write_all(module).and_then(|()| encoder.finish());
+    BASE64_STANDARD.encode(compressed.unwrap_or_default())
+}
+
+/// The files that a page of one file asks for, as JSON within a script: texts, and compressed modules.
 fn files_within(parts: &Parts) -> String {
     let is_asked_for =
         |name: &str| name != "index.html" && !name.ends_with(".css") && !name.ends_with(".LICENSE");
@@ -311,7 +321,7 @@ fn files_within(parts: &Parts) -> String {
         .map(|name| (name.as_str(), parts.text(name)))
         .collect();
     for (name, contents) in &parts.modules {
-        files.insert(name, BASE64_STANDARD.encode(contents));
+        files.insert(name, compressed(contents));
     }
     // Texts: serialisation cannot fail. What would end the script is written otherwise.
     serde_json::to_string(&files)
@@ -331,7 +341,7 @@ mod tests {
     /// A folder with what begins like modules.
     fn with_modules() -> (TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
-        for name in [MODULE, PICTURES] {
+        for name in [MODULE, WORK] {
             fs::write(folder.path().join(name), b"\0asm\x01\0\0\0").unwrap();
         }
         let module = folder.path().join(MODULE);
@@ -359,7 +369,7 @@ mod tests {
         assert_eq!(beginning["opening"]["name"], "circle");
         assert!(beginning["presets"].as_array().unwrap().len() > 30);
         assert_eq!(fs::read_to_string(out.join(NOTICES)).unwrap(), "notices");
-        for name in [MODULE, PICTURES] {
+        for name in [MODULE, WORK] {
             assert!(
                 out.join(name).is_file() && kept.contains(&format!("'{name}'")),
                 "{name}"
@@ -384,8 +394,13 @@ mod tests {
         let (_, within) = page.split_once("id=\"files\">").unwrap();
         let (within, loader) = within.split_once("</script>").unwrap();
         let files: BTreeMap<String, String> = serde_json::from_str(within).unwrap();
-        for name in [MODULE, PICTURES] {
-            assert_eq!(files[name], BASE64_STANDARD.encode(b"\0asm\x01\0\0\0"), "{name}");
+        for name in [MODULE, WORK] {
+            let packed = BASE64_STANDARD.decode(&files[name]).unwrap();
+            let mut module = Vec::new();
+            flate2::read::GzDecoder::new(&*packed)
+                .read_to_end(&mut module)
+                .unwrap();
+            assert_eq!(module, b"\0asm\x01\0\0\0", "{name}");
         }
         assert_eq!(files[NOTICES], "notices");
         let asked: BTreeSet<&str> = files.keys().map(String::as_str).collect();
@@ -448,10 +463,10 @@ mod tests {
         );
         assert_eq!(find_module(&[other, folder.path().to_owned()]).unwrap(), module);
         // Both modules are needed.
-        fs::remove_file(folder.path().join(PICTURES)).unwrap();
+        fs::remove_file(folder.path().join(WORK)).unwrap();
         let missing = said(export_single(&start, &module, "notices", &page));
         assert!(
-            missing.contains("slipfront-pictures.wasm cannot be read"),
+            missing.contains("slipfront-work.wasm cannot be read"),
             "{missing}"
         );
     }

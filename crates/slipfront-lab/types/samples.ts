@@ -66,16 +66,50 @@ export const requests = {
     {"do":"frames_of","index":1},
     {"do":"frames_of","index":null},
   ],
+  read_record: [
+    {"do":"read_record","record":{"name":"rig.csv","bytes":""}},
+    {"do":"read_record","record":{"name":"rig.csv","bytes":"","x":"1","y":"2","x_unit":"ms","y_unit":"N"}},
+  ],
+  calibrate: [
+    {"do":"calibrate","record":{"name":"rig.csv","bytes":""},"shift":0.5,"noise":0.01,"runs":200,"unknowns":{"friction.r_star":[0.4,0.9],"drive.total_stiffness":{"from":"80 N/m","to":"350 N/m","scale":"log"}}},
+    {"do":"calibrate","record":{"name":"rig.csv","bytes":"","x":"1","y":"2","x_unit":"ms","y_unit":"N"},"shift":0.5,"from":0.5,"to":1.5,"noise":0.01,"runs":200,"unknowns":{}},
+  ],
+  calibrate_stop: [
+    {"do":"calibrate_stop"},
+  ],
+  sensitivity: [
+    {"do":"sensitivity","control":"load"},
+  ],
+  drawing: [
+    {"do":"drawing","format":"dxf"},
+    {"do":"drawing","format":"svg"},
+  ],
 } satisfies Samples<Requests, 'do'>;
 
 export const replies = {
+  calibrated: [
+    {"is":"calibrated","outcome":"done","sentence":null,"results":{"unknowns":[{"key":"friction.r_star","unit":null,"median":0.5,"interval":[0.4,0.6],"range":[0.25,0.75],"is_determined":true},{"key":"friction.r_star","unit":"N/m","median":0.5,"interval":[0.4,0.6],"range":[0.25,0.75],"is_determined":true}],"is_refused":false,"report":"a report","toml":"[base]","set":{"friction.r_star":0.5}}},
+    {"is":"calibrated","outcome":"stopped","sentence":null,"results":null},
+    {"is":"calibrated","outcome":"given_up","sentence":null,"results":null},
+    {"is":"calibrated","outcome":"failed","sentence":"why","results":null},
+  ],
+  calibrating: [
+    {"is":"calibrating","stage":"training","runs":1,"of":360},
+    {"is":"calibrating","stage":"closest","runs":1,"of":360},
+    {"is":"calibrating","stage":"prediction","runs":1,"of":360},
+    {"is":"calibrating","stage":"other_step","runs":1,"of":360},
+  ],
   case: [
-    {"is":"case","name":"case","toml":"[[texture]]\npoints = [[\"10 um\", \"10 um\"], [\"20 um\", \"10 um\"], [\"10 um\", \"20 um\"]]\nshape = \"polygon\"\n","files":["mask.png"],"link_files_bytes":1,"blocks":[50,50],"block_size_m":1e-6,"n_blocks":2500,"texture_percent":5.0,"texture":[{"points":[["10 um","10 um"],["20 um","10 um"],["10 um","20 um"]],"shape":"polygon"}],"shapes":[{"index":0,"outlines":[[[10.0,10.0],[20.0,10.0],[10.0,20.0]]]}],"values":{"r_star":{"star":0.5,"si":null},"speed":{"star":0.1,"si":0.5}},"units":{"time_s":1.0,"displacement_m":1.0,"speed_m_s":1.0,"stress_pa":1.0},"dt_star":0.1,"duration_star":400.0,"kinetic_from_star":1.0,"onset_star":80.0,"drive_degrees":30.0,"loading_rate":0.01,"steady_level":0.5,"can_undo":true,"can_redo":false,"leg":0,"why":"open","time_before_s":0.0,"twin":true,"has_memory":false,"mesh":"the block decides","warnings":["a warning"],"too_coarse":null,"seeds":"a note","search":{"width_blocks":4,"most_percent":30.0}},
-    {"is":"case","name":"case","toml":"[[texture]]\npoints = [[\"10 um\", \"10 um\"], [\"20 um\", \"10 um\"], [\"10 um\", \"20 um\"]]\nshape = \"polygon\"\n","files":["mask.png"],"link_files_bytes":1,"blocks":[50,50],"block_size_m":1e-6,"n_blocks":2500,"texture_percent":5.0,"texture":[{"points":[["10 um","10 um"],["20 um","10 um"],["10 um","20 um"]],"shape":"polygon"}],"shapes":[{"index":0,"outlines":[[[10.0,10.0],[20.0,10.0],[10.0,20.0]]]}],"values":{"r_star":{"star":0.5,"si":null},"speed":{"star":0.1,"si":0.5}},"units":{"time_s":1.0,"displacement_m":1.0,"speed_m_s":1.0,"stress_pa":1.0},"dt_star":0.1,"duration_star":400.0,"kinetic_from_star":null,"onset_star":80.0,"drive_degrees":null,"loading_rate":null,"steady_level":0.5,"can_undo":true,"can_redo":false,"leg":0,"why":"open","time_before_s":0.0,"twin":true,"has_memory":false,"mesh":"the block decides","warnings":["a warning"],"too_coarse":"too coarse","seeds":null,"search":{"width_blocks":4,"most_percent":30.0}},
+    {"is":"case","name":"case","toml":"[[texture]]\npoints = [[\"10 um\", \"10 um\"], [\"20 um\", \"10 um\"], [\"10 um\", \"20 um\"]]\nshape = \"polygon\"\n","files":["mask.png"],"link_files_bytes":1,"blocks":[50,50],"block_size_m":1e-6,"n_blocks":2500,"texture_percent":5.0,"texture":[{"points":[["10 um","10 um"],["20 um","10 um"],["10 um","20 um"]],"shape":"polygon"}],"shapes":[{"index":0,"outlines":[[[10.0,10.0],[20.0,10.0],[10.0,20.0]]]}],"values":{"r_star":{"star":0.5,"si":null},"speed":{"star":0.1,"si":0.5}},"units":{"time_s":1.0,"displacement_m":1.0,"speed_m_s":1.0,"stress_pa":1.0,"friction_n":0.5,"friction_coefficient":0.5},"dt_star":0.1,"duration_star":400.0,"kinetic_from_star":1.0,"onset_star":80.0,"drive_degrees":30.0,"loading_rate":0.01,"steady_level":0.5,"can_undo":true,"can_redo":false,"leg":0,"why":"open","time_before_s":0.0,"twin":true,"has_memory":false,"mesh":"the block decides","warnings":["a warning"],"too_coarse":null,"seeds":"a note","search":{"width_blocks":4,"most_percent":30.0}},
+    {"is":"case","name":"case","toml":"[[texture]]\npoints = [[\"10 um\", \"10 um\"], [\"20 um\", \"10 um\"], [\"10 um\", \"20 um\"]]\nshape = \"polygon\"\n","files":["mask.png"],"link_files_bytes":1,"blocks":[50,50],"block_size_m":1e-6,"n_blocks":2500,"texture_percent":5.0,"texture":[{"points":[["10 um","10 um"],["20 um","10 um"],["10 um","20 um"]],"shape":"polygon"}],"shapes":[{"index":0,"outlines":[[[10.0,10.0],[20.0,10.0],[10.0,20.0]]]}],"values":{"r_star":{"star":0.5,"si":null},"speed":{"star":0.1,"si":0.5}},"units":{"time_s":1.0,"displacement_m":1.0,"speed_m_s":1.0,"stress_pa":1.0,"friction_n":null,"friction_coefficient":0.5},"dt_star":0.1,"duration_star":400.0,"kinetic_from_star":null,"onset_star":80.0,"drive_degrees":null,"loading_rate":null,"steady_level":0.5,"can_undo":true,"can_redo":false,"leg":0,"why":"open","time_before_s":0.0,"twin":true,"has_memory":false,"mesh":"the block decides","warnings":["a warning"],"too_coarse":"too coarse","seeds":null,"search":{"width_blocks":4,"most_percent":30.0}},
   ],
   curve: [
     {"is":"curve","leg":0,"from_rest":true,"t":[0.5],"mu":[0.5],"sliding":[0.5],"twin_reset":false,"twin_t":[0.5],"twin_mu":[0.5]},
     {"is":"curve","leg":0,"from_rest":true,"t":[0.5],"mu":[0.5],"sliding":[0.5],"twin_reset":false,"twin_t":[0.5],"twin_mu":[0.5],"recorded_t":[0.5],"recorded_mu":[0.5]},
+  ],
+  drawing: [
+    {"is":"drawing","format":"dxf","text":"","notes":["a note"]},
+    {"is":"drawing","format":"svg","text":"","notes":["a note"]},
   ],
   exported: [
     {"is":"exported","toml":"","files":{"mask.png":""},"zip":""},
@@ -111,6 +145,12 @@ export const replies = {
     {"is":"probe","block":[0,0],"exists":true,"textured":true,"sliding":true,"mu_static":0.5,"mu_kinetic":0.5,"contact_stress_pa":0.5,"traction_pa":0.5,"displacement_m":0.5,"speed_m_s":0.5,"first_slip_star":0.5},
     {"is":"probe","block":[0,0],"exists":true,"textured":true,"sliding":true,"mu_static":0.5,"mu_kinetic":0.5,"contact_stress_pa":0.5,"traction_pa":0.5,"displacement_m":0.5,"speed_m_s":0.5,"first_slip_star":null},
   ],
+  record: [
+    {"is":"record","name":"rig.csv","columns":[{"name":"t","unit":"s"}],"curve":{"columns":[0,1],"along":"time","of":"force","values":1,"x":[0.5],"y":[0.5],"noise_percent":0.5},"problem":null,"notes":["a note"]},
+    {"is":"record","name":"rig.csv","columns":[{"name":"t","unit":"s"}],"curve":null,"problem":"no unit","notes":["a note"]},
+    {"is":"record","name":"rig.csv","columns":[{"name":"t","unit":null}],"curve":{"columns":[0,1],"along":"displacement","of":"coefficient","values":1,"x":[0.5],"y":[0.5],"noise_percent":0.5},"problem":null,"notes":["a note"]},
+    {"is":"record","name":"rig.csv","columns":[{"name":"t","unit":null}],"curve":null,"problem":"no unit","notes":["a note"]},
+  ],
   recorded: [
     {"is":"recorded","times_star":[0.5]},
   ],
@@ -130,6 +170,10 @@ export const replies = {
   ],
   saving: [
     {"is":"saving","under_way":[{"name":"run","share":0.5}]},
+  ],
+  sensitivity: [
+    {"is":"sensitivity","control":"load","values":[1000000.0,1100000.0],"percent":null},
+    {"is":"sensitivity","control":"load","values":[1000000.0,1100000.0],"percent":0.5},
   ],
 } satisfies Samples<Replies, 'is'>;
 

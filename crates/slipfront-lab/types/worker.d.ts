@@ -1,21 +1,12 @@
 // The Workers of a page without a server: the functions of the WebAssembly module, and the messages between
 // page and Worker.
 
-/** The functions that every module of slipfront-wasm exports (`exports.rs`). */
+/** The functions of a module of slipfront-wasm (`exports.rs`): the first three of every one, those up to `hear_lost` of the session, the others of work beside it. */
 export interface Module {
   memory: WebAssembly.Memory;
   /** Makes room for so many bytes, and returns its address. */
   room(length: number): number;
   begin(): void;
-}
-
-/** The functions of the module that draws the pictures of a run. */
-export interface PicturesModule extends Module {
-  draw(): void;
-}
-
-/** The functions of the module with the session. */
-export interface SessionModule extends Module {
   open(workers: number): void;
   handle(): void;
   /** Works for some time, and returns the time at which it is to be called again; below 0 for never. */
@@ -29,8 +20,7 @@ export interface SessionModule extends Module {
 /** A message of the page to a Worker whose module has begun. */
 export type Asked =
   | { do: 'open'; text: string; workers: number }
-  | { do: 'handle' | 'run'; text: string }
-  | { do: 'save'; text: string; pictures: WebAssembly.Module | null }
+  | { do: 'handle' | 'run' | 'save'; text: string }
   | { do: 'hear'; number: number; text: string }
   | { do: 'lost'; number: number }
   | { do: 'read'; pictures: number; messages: number };

@@ -5,7 +5,7 @@ import { fromBase64 } from './base64.js';
 /** Whether there is no server: the session runs in a Worker of the page. */
 export const isAlone = document.documentElement.dataset.channel === 'worker';
 
-/** The files within the page, text or Base64, by their names; none where they stand beside it. @type {Record<string, string>|null} */
+/** The files within the page, text or compressed in Base64, by their names; none where they stand beside it. @type {Record<string, string>|null} */
 const inside = JSON.parse(document.getElementById('files')?.textContent ?? 'null');
 
 /** Whether the page is one file. */
@@ -23,7 +23,11 @@ export const jsonOf = async (name) => JSON.parse((await textOf(name)) ?? 'null')
 
 /** The bytes of a file; null if there is none of this name. @param {string} name @returns {Promise<ArrayBuffer|null>} */
 export async function bytesOf(name) {
-  if (inside) return name in inside ? fromBase64(inside[name]).buffer : null;
+  if (inside) {
+    if (!(name in inside)) return null;
+    const compressed = new Blob([fromBase64(inside[name])]).stream();
+    return new Response(compressed.pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  }
   const answer = await fetch(name);
   return answer.ok ? answer.arrayBuffer() : null;
 }

@@ -3,10 +3,10 @@
 //
 // It asks nothing and knows nothing but the module and the texts that the page sends it.
 
-/** @import { Asked, Begin, BytesSaying, Module, PicturesModule, SessionModule, TextSaying } from '../types/worker' */
+/** @import { Asked, Begin, BytesSaying, Module, TextSaying } from '../types/worker' */
 
 /** Names of the messages of the module, by their numbers: `Saying` in imports.rs of slipfront-wasm. */
-const SAYINGS = ['reply', 'picture', 'kymograph', 'job', 'end', 'event', 'save', 'stop_saving', 'share', 'archive', 'bits', 'refusal', 'defect', 'pictures'];
+const SAYINGS = ['reply', 'picture', 'kymograph', 'job', 'end', 'event', 'save', 'stop_saving', 'share', 'archive', 'bits', 'refusal', 'defect'];
 /** Sayings that are bytes; all others are texts. */
 const BYTES = ['picture', 'kymograph', 'archive'];
 /** Pictures that the page may not have read yet before the newest alone is kept. */
@@ -14,10 +14,8 @@ const MOST_PICTURES = 2;
 /** How long steps are taken before messages are looked for. */
 const SLICE_MS = 10;
 
-/** The module; until it has begun there is none. @type {SessionModule} */
+/** The module, of the session or of work beside it; until it has begun there is none. @type {Module} */
 let module;
-/** The module that draws the pictures of a run that is saved; null where there is none. @type {PicturesModule|null} */
-let pictures = null;
 let unread = 0;
 let unreadPictures = 0;
 /** Pictures that wait for the page, by their kind. @type {Map<string, Uint8Array>} */
@@ -42,44 +40,11 @@ function say(what, number, at, length) {
   else post(is, number, bytes);
 }
 
-/** Gives a module bytes. @param {Uint8Array} bytes @param {Module} [to] */
-function give(bytes, to = module) {
-  const at = to.room(bytes.length);
-  new Uint8Array(to.memory.buffer, at, bytes.length).set(bytes);
-}
-
 /** Gives the module a text. @param {string} text */
-const giveText = (text) => give(new TextEncoder().encode(text));
-
-/** Begins the module that draws pictures. @param {WebAssembly.Module} compiled */
-function beginPictures(compiled) {
-  const { exports } = new WebAssembly.Instance(compiled, { env: { say: hearPictures } });
-  pictures = /** @type {PicturesModule} */ (/** @type {unknown} */ (exports));
-  pictures.begin();
-}
-
-/** What the module that draws has answered. */
-let drawn = new Uint8Array();
-
-/** Hears the module that draws. @param {number} what @param {number} _number @param {number} at @param {number} length */
-function hearPictures(what, _number, at, length) {
-  const bytes = new Uint8Array(/** @type {PicturesModule} */ (pictures).memory.buffer, at, length).slice();
-  if (SAYINGS[what] === 'pictures') drawn = bytes;
-  else console.error(new TextDecoder().decode(bytes));
-}
-
-/** Lets pictures be drawn of the files that the module shows, and gives it the answer: nothing, if they cannot be. @param {number} at @param {number} length */
-function draw(at, length) {
-  drawn = new Uint8Array();
-  try {
-    if (pictures) {
-      give(new Uint8Array(module.memory.buffer, at, length), pictures);
-      pictures.draw();
-    }
-  } catch (error) {
-    console.error(error);
-  }
-  give(drawn);
+function giveText(text) {
+  const bytes = new TextEncoder().encode(text);
+  const at = module.room(bytes.length);
+  new Uint8Array(module.memory.buffer, at, bytes.length).set(bytes);
 }
 
 /** Works for some milliseconds, and comes back when there is more to do. */
@@ -103,7 +68,6 @@ later.onmessage = () => advance();
 /** Does what the page asks for. @param {Asked} asked */
 function carryOut(asked) {
   if ('text' in asked) giveText(asked.text);
-  if (asked.do === 'save' && asked.pictures) beginPictures(asked.pictures);
   if (asked.do === 'open') module.open(asked.workers);
   else if (asked.do === 'hear') module.hear(asked.number);
   else if (asked.do === 'lost') module.hear_lost(asked.number);
@@ -139,8 +103,8 @@ function answer(asked) {
 onmessage = async ({ data }) => {
   if (data.do === 'begin') {
     try {
-      const instance = await WebAssembly.instantiate(data.module, { env: { say, now: () => performance.now(), date: () => giveText(new Date().toISOString()), draw } });
-      module = /** @type {SessionModule} */ (/** @type {unknown} */ (instance.exports));
+      const instance = await WebAssembly.instantiate(data.module, { env: { say, now: () => performance.now(), date: () => giveText(new Date().toISOString()) } });
+      module = /** @type {Module} */ (/** @type {unknown} */ (instance.exports));
       module.begin();
     } catch (error) {
       return post('defect', 0, String(error));

@@ -20,10 +20,10 @@ async function compiled(name) {
 const load = () => Promise.all([compiled('slipfront.wasm'), textOf('start.json').catch(() => null)]);
 
 /** @type {Promise<WebAssembly.Module|null>|null} */
-let pictures = null;
+let work = null;
 
-/** The module that draws the pictures of runs that are saved, which is loaded with the first of these; null where it is missing or damaged. */
-export const loadPictures = () => (pictures ??= compiled('slipfront-pictures.wasm'));
+/** The module that does the work beside the session, which is loaded when there is some; null where it is missing or damaged. */
+export const loadWork = () => (work ??= compiled('slipfront-work.wasm'));
 
 /** What is loaded of a page without a server while its other parts are; null if the browser has no SIMD. */
 export const loading = isAlone && WebAssembly.validate(SIMD) ? load() : null;

@@ -3,7 +3,7 @@
 // runs that are saved, have Workers of their own.
 import { isSingle, textOf } from './assets.js';
 import { download } from './element.js';
-import { loading, loadPictures } from './module.js';
+import { loading, loadWork } from './module.js';
 import { receive } from './receive.js';
 import { put } from './store.js';
 import { say } from './text.js';
@@ -32,21 +32,27 @@ let failures = [];
 
 /** @import { Said } from '../types/worker' */
 
-/** Begins a Worker. @param {(said: Said, worker: Worker) => void} hear */
-function begin(hear) {
+/** Begins a Worker with a module; it waits for one that is still to come. @param {WebAssembly.Module|Promise<WebAssembly.Module|null>} module @param {(said: Said, worker: Worker) => void} hear */
+function begin(module, hear) {
   const worker = new Worker(script);
   worker.onmessage = ({ data }) => hear(data, worker);
   worker.onerror = (event) => {
     event.preventDefault();
     hear({ is: 'defect', number: 0, data: event.message ?? '' }, worker);
   };
-  worker.postMessage({ do: 'begin', module });
+  if (module instanceof WebAssembly.Module) worker.postMessage({ do: 'begin', module });
+  else {
+    module.then((loaded) => {
+      if (loaded) worker.postMessage({ do: 'begin', module: loaded });
+      else hear({ is: 'defect', number: 0, data: say('no_work') }, worker);
+    });
+  }
   return worker;
 }
 
 /** Begins work beside the session. @param {number} number @param {string} text */
 function beginTask(number, text) {
-  const worker = begin(({ is, data }) => {
+  const worker = begin(loadWork(), ({ is, data }) => {
     if (is === 'event') session?.postMessage({ do: 'hear', number, text: data });
     else if (is === 'defect' || is === 'refusal') {
       console.error(data);
@@ -73,7 +79,7 @@ function tellSaving() {
 function beginSave(text) {
   const { name, document } = JSON.parse(text);
   if (saves.has(name)) return put('refused', { of: 'save', sentence: say('save_taken', { name }) });
-  const worker = begin((said) => {
+  const worker = begin(loadWork(), (said) => {
     const { is, number, data } = said;
     if (is === 'share') {
       const save = saves.get(name);
@@ -87,7 +93,7 @@ function beginSave(text) {
     } else put('refused', { of: 'save', sentence: say('save_failed', { name, sentence: is === 'refusal' ? data : say('worker_ended') }) });
   });
   saves.set(name, { worker, share: 0 });
-  loadPictures().then((pictures) => worker.postMessage({ do: 'save', text: JSON.stringify(document), pictures }));
+  worker.postMessage({ do: 'save', text: JSON.stringify(document) });
   tellSaving();
 }
 
@@ -124,7 +130,8 @@ function fail(why) {
 }
 
 function open() {
-  session = begin(hear);
+  if (!module) return;
+  session = begin(module, hear);
   // One core is left for the session.
   const workers = Math.max(1, Math.min(MOST_WORKERS, navigator.hardwareConcurrency - 1));
   session.postMessage({ do: 'open', text: beginning, workers });

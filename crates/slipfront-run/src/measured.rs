@@ -1,5 +1,6 @@
 //! A measured record: two columns of a table, such as force against time.
 
+mod columns;
 mod correction;
 mod workbook;
 
@@ -15,6 +16,7 @@ use slipfront_case::table::{
 };
 use thiserror::Error;
 
+pub use self::columns::{TableColumn, columns_of, is_displacement, suggested};
 pub use self::correction::Correction;
 
 /// A column as a user names it.
@@ -478,26 +480,14 @@ impl MeasuredRecord {
         path: &Path,
         columns: [&Column; 2],
     ) -> Result<Found, MeasuredError> {
-        let names: Vec<ColumnName> = match &layout.names {
-            Some(names) => names.texts.iter().map(|name| ColumnName::of(name)).collect(),
-            None => Vec::new(),
-        };
+        let names = ColumnName::all(layout);
         let mut places = [0; 2];
         for (place, column) in places.iter_mut().zip(columns) {
             *place = place_of(path, column, &names, layout.columns)?;
         }
-        // The line of units counts where the name has none.
-        let below = |place: usize| {
-            let unit = layout.units.as_ref()?.texts.get(place);
-            let unit = unit.map_or("", |text| without_brackets(text));
-            // No unit in such a line is the unit 1, of a coefficient.
-            let is_bare = names.get(place).is_some_and(|name| is_coefficient(name.bare));
-            (!unit.is_empty() || is_bare).then_some(unit)
-        };
-        let units = [0, 1].map(|k| {
-            let in_name = names.get(places[k]).and_then(|name| name.unit.clone());
-            in_name.or_else(|| below(places[k]).map(str::to_owned))
-        });
+        let mut of_columns = units_of(layout, &names);
+        of_columns.resize(layout.columns, None);
+        let units = places.map(|place| of_columns[place].clone());
         let [_, given] = columns.map(|column| column.unit.as_deref());
         if Measure::Coefficient
             .factor(given.or(units[1].as_deref()).unwrap_or("N"))
@@ -546,6 +536,12 @@ struct ColumnName<'t> {
 }
 
 impl<'t> ColumnName<'t> {
+    /// The names of all columns of a table; none if it has no line of names.
+    fn all(layout: &'t TableLayout) -> Vec<Self> {
+        let names = layout.names.iter().flat_map(|names| &names.texts);
+        names.map(|name| Self::of(name)).collect()
+    }
+
     /// The parts of a name such as `Force (N)`, `force [N]`, `F / N`, `t/s`, `Time, s`, `Zeit in s`,
     /// `force_n`.
     fn of(whole: &'t str) -> Self {
@@ -567,6 +563,21 @@ impl<'t> ColumnName<'t> {
         };
         Self { whole, bare, unit }
     }
+}
+
+/// Units of the columns of a table: the one in the name, or else the one in the line of units.
+fn units_of(layout: &TableLayout, names: &[ColumnName]) -> Vec<Option<String>> {
+    let below = |place: usize| {
+        let unit = layout.units.as_ref()?.texts.get(place);
+        let unit = unit.map_or("", |text| without_brackets(text));
+        // No unit in such a line is the unit 1, of a coefficient.
+        let is_bare = names.get(place).is_some_and(|name| is_coefficient(name.bare));
+        (!unit.is_empty() || is_bare).then(|| unit.to_owned())
+    };
+    let in_name = |place: usize| names.get(place)?.unit.clone();
+    (0..layout.columns)
+        .map(|place| in_name(place).or_else(|| below(place)))
+        .collect()
 }
 
 /// A unit without the brackets around it.

@@ -122,6 +122,11 @@ pub fn steps_to(case: &Case, along: Measure, end: f64) -> u64 {
     (end_star / case.time_plan.dt_star).ceil() as u64 + 1
 }
 
+/// Friction force at mu* = 1, N; none for a drive that rotates, whose friction is a torque.
+pub fn unit_force_star(case: &Case) -> Option<f64> {
+    FrictionUnit::of(&case.scales, &case.model).force(1.0)
+}
+
 fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {
     let scales = &case.scales;
     let times = |mut values: Vec<f64>, unit: f64| {

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use slipfront_base::ordered::map_of;
 use slipfront_case::case::Case;
 
@@ -95,4 +96,56 @@ pub(crate) fn values(case: &Case) -> BTreeMap<&'static str, ControlValue> {
         ("seed", value(file.friction.seed as f64, None)),
         ("direction", value(file.drive.direction, None)),
     ])
+}
+
+/// Share of the range of a slider, or of its value where the slider is logarithmic, by which a quantity is
+/// changed to see what static friction does.
+const CHANGE: [f64; 2] = [0.05, 0.1];
+
+/// Two values of the quantity of a slider.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct TwoValues {
+    pub(crate) control: String,
+    pub(crate) key: String,
+    /// The present value and the other one, as the slider has them.
+    pub(crate) values: [f64; 2],
+    /// Both values, as the key takes them.
+    pub(crate) set_to: [Value; 2],
+}
+
+/// The present value of the quantity of a slider, and one that is a tenth larger, or by a twentieth of the
+/// range of a linear slider; smaller where the range ends before.
+///
+/// # Errors
+/// A sentence, if there is no such quantity, or it is a number of a surface.
+pub(crate) fn two_values(case: &Case, id: &str) -> Result<TwoValues, String> {
+    let control = CONTROLS.iter().find(|control| control.id == id && !control.whole);
+    let control =
+        control.ok_or_else(|| format!("there is no slider {id:?} with a quantity that changes friction"))?;
+    let has_unit = control.si_key == Some(control.key);
+    let present = &values(case)[control.id];
+    let value = match present.si {
+        Some(si) if has_unit => si,
+        _ => present.star,
+    };
+    let [of_range, of_value] = CHANGE;
+    let change = match control.logarithmic {
+        true => of_value * value,
+        false => of_range * (control.max - control.min),
+    };
+    let other = if value + change <= control.max {
+        value + change
+    } else {
+        value - change
+    };
+    let set = |value: f64| match has_unit {
+        true => Value::from(format!("{value} {}", control.unit)),
+        false => Value::from(value),
+    };
+    Ok(TwoValues {
+        control: control.id.to_owned(),
+        key: control.key.to_owned(),
+        values: [value, other],
+        set_to: [value, other].map(set),
+    })
 }

@@ -123,6 +123,20 @@ impl Document {
         self.keys.to_string()
     }
 
+    /// The keys of the case.
+    #[cfg(feature = "work")]
+    pub(crate) fn keys(&self) -> &Table {
+        &self.keys
+    }
+
+    /// Contents of the files that the case names, as a case takes them.
+    pub(crate) fn files_in_memory(&self) -> FilesInMemory {
+        let files = self.files.iter();
+        files
+            .map(|(name, contents)| (name.clone(), Arc::clone(contents)))
+            .collect()
+    }
+
     /// Contents of the files that the case names, by their plain names.
     pub(crate) fn files(&self) -> &BTreeMap<String, Arc<[u8]>> {
         &self.files
@@ -338,10 +352,7 @@ impl Document {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        let files = self.files.iter();
-        let in_memory: FilesInMemory = files
-            .map(|(name, contents)| (name.clone(), Arc::clone(contents)))
-            .collect();
+        let in_memory = self.files_in_memory();
         let files = Files {
             folder: Path::new(""),
             in_memory: Some(&in_memory),

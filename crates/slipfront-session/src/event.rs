@@ -6,8 +6,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use crate::protocol::Estimate;
+use crate::job::WantedRuns;
+use crate::protocol::{CalibratingReply, CalibrationStage, Estimate};
 
 /// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a
 /// run without a transition.
@@ -47,6 +49,16 @@ pub(crate) enum EventKind {
     Searched(Result<Mask, String>),
     /// The comparison of the best texture of a search with the painted one, or why they cannot be compared.
     Compared(Result<Comparison, String>),
+    /// A reply to the page, as JSON, with which the work ends.
+    Replied(String),
+    /// How far a calibration is.
+    Calibrating(CalibratingReply),
+    /// Runs that a calibration needs before it can go on, of this stage.
+    Wants(CalibrationStage, Vec<WantedRuns>),
+    /// The curves of the next of the runs that a calibration wanted, as JSON, or why they cannot be made.
+    Made(Result<String, String>),
+    /// The results of a calibration as the page is sent them, or why there are none.
+    Calibrated(Result<Value, String>),
     /// The work has ended by a defect of its own.
     Lost,
 }

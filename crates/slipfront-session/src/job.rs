@@ -2,60 +2,60 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::controls::TwoValues;
 use crate::document::Document;
-use crate::event::{Event, EventKind, Mask, Worker};
-use crate::repeat::repeat;
-use crate::search;
+use crate::event::Mask;
+use crate::protocol::{CalibrateRequest, DrawingFormat, RecordFile};
 
-/// A computation beside a session. It reports what it finds by [`Event`]s, and can be sent as JSON.
+/// A computation beside a session. It reports what it finds by events, and can be sent as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Job {
-    document: Document,
-    kind: JobKind,
+    pub(crate) document: Document,
+    pub(crate) kind: JobKind,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-enum JobKind {
+pub(crate) enum JobKind {
     /// A computation of static friction with each of these seeds.
     Repeat(Vec<u64>),
     /// A search for a texture with less static friction than the painted one.
     Search,
     /// A comparison of the best texture of a search with the painted one.
     Compare(Mask),
+    /// A computation of static friction with two values of the quantity of a slider.
+    Sensitivity(TwoValues),
+    /// The record in a file.
+    ReadRecord(RecordFile),
+    /// A calibration of the case.
+    Calibrate {
+        request: Box<CalibrateRequest>,
+        /// Runs that it needs and that have been made, each with its curves.
+        made: Vec<MadeRuns>,
+        /// Whether the runs are made by other jobs, or by the threads of this one.
+        is_elsewhere: bool,
+    },
+    /// Runs of a calibration.
+    MakeRuns {
+        request: Box<CalibrateRequest>,
+        wanted: Vec<WantedRuns>,
+    },
+    /// The texture as a drawing.
+    Draw(DrawingFormat),
+}
+
+/// Runs that a calibration wants, as JSON that the calibration alone understands.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct WantedRuns(pub(crate) String);
+
+/// Runs that a calibration wanted, with their curves as JSON.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct MadeRuns {
+    pub(crate) wanted: WantedRuns,
+    pub(crate) curves: String,
 }
 
 impl Job {
-    /// Finds static friction of a case with each of these seeds, in their order.
-    pub(crate) fn repeat(document: Document, seeds: Vec<u64>) -> Self {
-        let kind = JobKind::Repeat(seeds);
+    pub(crate) fn new(document: Document, kind: JobKind) -> Self {
         Self { document, kind }
-    }
-
-    /// Searches for a texture with less static friction than that of a case.
-    pub(crate) fn search(document: Document) -> Self {
-        let kind = JobKind::Search;
-        Self { document, kind }
-    }
-
-    /// Compares a texture with that of a case, on surfaces that a search has not seen.
-    pub(crate) fn compare(document: Document, best: Mask) -> Self {
-        let kind = JobKind::Compare(best);
-        Self { document, kind }
-    }
-
-    /// Does the job, until it is done or the worker is to stop.
-    pub fn run(&self, worker: &dyn Worker) {
-        let document = &self.document;
-        match &self.kind {
-            JobKind::Repeat(seeds) => repeat(document, seeds, worker),
-            JobKind::Search => {
-                let searched = search::search(document, worker);
-                worker.tell(Event(EventKind::Searched(searched)));
-            }
-            JobKind::Compare(best) => {
-                let compared = search::compare(document, best, worker.stop());
-                worker.tell(Event(EventKind::Compared(compared)));
-            }
-        }
     }
 }

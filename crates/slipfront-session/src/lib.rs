@@ -9,7 +9,6 @@
 //! A session knows no file, thread, socket or clock. Its [`Host`] tells it the time, hands it the messages of
 //! the page, passes on what it says, and does what it may not: work beside it, saving, folders.
 
-mod archive;
 mod base64;
 mod controls;
 mod document;
@@ -34,9 +33,10 @@ mod shapes;
 #[cfg(test)]
 mod testing;
 mod view;
+#[cfg(feature = "work")]
+mod work;
 mod zip;
 
-pub use archive::{Draw, NamedFiles, run_archive};
 pub use document::{Document, MAX_BLOCKS};
 pub use event::{Event, Worker};
 pub use host::{Host, OpenedCase, Task};
@@ -48,3 +48,5 @@ pub use recorded::RecordedRun;
 pub use replies::{failed, hello, refused, saved, saving};
 pub use run_files::recorded_run;
 pub use session::Session;
+#[cfg(feature = "work")]
+pub use work::run_archive;

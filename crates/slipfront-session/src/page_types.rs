@@ -16,14 +16,17 @@ use crate::controls::{CONTROLS, ControlValue};
 use crate::document::Document;
 use crate::picture::DisplayedField;
 use crate::protocol::{
-    CaseReply, CurveReply, Estimate, FindingReply, FoundOutcome, FoundReply, NumbersReply, PeakReply,
-    PresetEntry, ProbeReply, RepeatedReply, Reply, Request, SavingEntry, SearchLimits, Units,
+    CalibratedReply, CalibratingReply, CalibrationOutcome, CalibrationResults, CalibrationStage, CaseReply,
+    CurveReply, DrawingFormat, DrawingReply, Estimate, FindingReply, FoundOutcome, FoundReply, NumbersReply,
+    PeakReply, PresetEntry, ProbeReply, RecordAbscissa, RecordColumn, RecordCurve, RecordOrdinate,
+    RecordReply, RepeatedReply, Reply, Request, SavingEntry, SearchLimits, SensitivityReply, Units,
+    UnknownReply,
 };
 use crate::shapes;
 
 /// Requests as the page may send them: every key with every kind of value, and every key that may be absent
 /// so.
-const REQUESTS: [&str; 31] = [
+const REQUESTS: [&str; 39] = [
     r#"{"do":"open","source":{}}"#,
     r#"{"do":"open","source":{"preset":"circle"}}"#,
     r#"{"do":"open","source":{"folder":"run"}}"#,
@@ -55,6 +58,14 @@ const REQUESTS: [&str; 31] = [
     r#"{"do":"export"}"#,
     r#"{"do":"frames_of","index":1}"#,
     r#"{"do":"frames_of","index":null}"#,
+    r#"{"do":"read_record","record":{"name":"rig.csv","bytes":""}}"#,
+    r#"{"do":"read_record","record":{"name":"rig.csv","bytes":"","x":"1","y":"2","x_unit":"ms","y_unit":"N"}}"#,
+    r#"{"do":"calibrate","record":{"name":"rig.csv","bytes":""},"shift":0.5,"noise":0.01,"runs":200,"unknowns":{"friction.r_star":[0.4,0.9],"drive.total_stiffness":{"from":"80 N/m","to":"350 N/m","scale":"log"}}}"#,
+    r#"{"do":"calibrate","record":{"name":"rig.csv","bytes":"","x":"1","y":"2","x_unit":"ms","y_unit":"N"},"shift":0.5,"from":0.5,"to":1.5,"noise":0.01,"runs":200,"unknowns":{}}"#,
+    r#"{"do":"calibrate_stop"}"#,
+    r#"{"do":"sensitivity","control":"load"}"#,
+    r#"{"do":"drawing","format":"dxf"}"#,
+    r#"{"do":"drawing","format":"svg"}"#,
 ];
 
 fn read(request: Value) -> Result<Request, String> {
@@ -118,7 +129,7 @@ fn requests_are_read_and_show_every_key_and_word_that_is() {
     for (place, Place { keys, words }) in &places {
         let at = place.join(".");
         // What keys of the case may hold is the case's.
-        if at.starts_with("set.keys.") {
+        if at.starts_with("set.keys.") || at.starts_with("calibrate.unknowns.") {
             continue;
         }
         if !keys.is_empty() {
@@ -137,8 +148,16 @@ fn requests_are_read_and_show_every_key_and_word_that_is() {
             }
         }
     }
-    assert_eq!(any_key, ["open.source.files", "open.source.run", "set.keys"]);
-    assert_eq!(of_words, ["view.after_change", "view.field"]);
+    assert_eq!(
+        any_key,
+        [
+            "calibrate.unknowns",
+            "open.source.files",
+            "open.source.run",
+            "set.keys"
+        ]
+    );
+    assert_eq!(of_words, ["drawing.format", "view.after_change", "view.field"]);
 }
 
 /// Keys of `summary.json` that the page shows, in the order of the alphabet: new numbers of runs change no
@@ -205,6 +224,8 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
                 displacement_m: 1.0,
                 speed_m_s: 1.0,
                 stress_pa: 1.0,
+                friction_n: too_coarse.is_none().then_some(0.5),
+                friction_coefficient: 0.5,
             },
             dt_star: 0.1,
             duration_star: 400.0,
@@ -364,6 +385,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     check(&Reply::Recorded {
         times_star: vec![0.5],
     });
+    records_and_calibrations(check);
     check(&Reply::Refused {
         of: "set",
         sentence: String::new(),
@@ -371,6 +393,85 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     check(&Reply::Failed {
         sentence: String::new(),
     });
+}
+
+/// Hands `check` the replies about records, calibrations, sensitivities and drawings.
+fn records_and_calibrations(check: &mut impl FnMut(&Reply)) {
+    for (along, of) in [
+        (RecordAbscissa::Time, RecordOrdinate::Force),
+        (RecordAbscissa::Displacement, RecordOrdinate::Coefficient),
+    ] {
+        let is_read = along == RecordAbscissa::Time;
+        let curve = RecordCurve {
+            columns: [0, 1],
+            along,
+            of,
+            values: 1,
+            x: vec![0.5],
+            y: vec![0.5],
+            noise_percent: 0.5,
+        };
+        for (curve, problem) in [(Some(curve), None), (None, Some("no unit".to_owned()))] {
+            check(&Reply::Record(RecordReply {
+                name: "rig.csv".to_owned(),
+                columns: vec![RecordColumn {
+                    name: "t".to_owned(),
+                    unit: is_read.then(|| "s".to_owned()),
+                }],
+                curve,
+                problem,
+                notes: vec!["a note".to_owned()],
+            }));
+        }
+    }
+    for stage in [
+        CalibrationStage::Training,
+        CalibrationStage::Closest,
+        CalibrationStage::Prediction,
+        CalibrationStage::OtherStep,
+    ] {
+        let (runs, of) = (1, 360);
+        check(&Reply::Calibrating(CalibratingReply { stage, runs, of }));
+    }
+    for outcome in [
+        CalibrationOutcome::Done,
+        CalibrationOutcome::Stopped,
+        CalibrationOutcome::GivenUp,
+        CalibrationOutcome::Failed,
+    ] {
+        let unknown = |unit: Option<&str>| UnknownReply {
+            key: "friction.r_star".to_owned(),
+            unit: unit.map(str::to_owned),
+            median: 0.5,
+            interval: [0.4, 0.6],
+            range: [0.25, 0.75],
+            is_determined: true,
+        };
+        let results = (outcome == CalibrationOutcome::Done).then(|| CalibrationResults {
+            unknowns: vec![unknown(None), unknown(Some("N/m"))],
+            is_refused: false,
+            report: "a report".to_owned(),
+            toml: "[base]".to_owned(),
+            set: [("friction.r_star".to_owned(), json!(0.5))].into_iter().collect(),
+        });
+        check(&Reply::Calibrated(CalibratedReply {
+            outcome,
+            sentence: (outcome == CalibrationOutcome::Failed).then(|| "why".to_owned()),
+            results: results.map(|results| serde_json::to_value(results).unwrap()),
+        }));
+    }
+    for percent in [None, Some(0.5)] {
+        let (control, values) = ("load".to_owned(), [1e6, 1.1e6]);
+        check(&Reply::Sensitivity(SensitivityReply {
+            control,
+            values,
+            percent,
+        }));
+    }
+    for format in [DrawingFormat::Dxf, DrawingFormat::Svg] {
+        let (text, notes) = (String::new(), vec!["a note".to_owned()]);
+        check(&Reply::Drawing(DrawingReply { format, text, notes }));
+    }
 }
 
 /// Names each kind of reply, and all of them: the compiler demands a new kind here, and then the test a
@@ -386,7 +487,7 @@ macro_rules! kinds {
         }
     };
 }
-kinds! { Hello Case Curve Numbers Probe Repeated Finding Found Saving Saved Exported Recorded Refused Failed }
+kinds! { Hello Case Curve Numbers Probe Repeated Finding Found Saving Saved Exported Recorded Record Calibrating Calibrated Sensitivity Drawing Refused Failed }
 
 /// Values that a key of a texture may have.
 fn texture_values(key: &Key) -> Vec<Value> {

@@ -101,6 +101,16 @@ pub(crate) enum Request {
     Export,
     /// Shows a recorded snapshot in place of the live field, or the live field again.
     FramesOf { index: Option<usize> },
+    /// Reads a measured record.
+    ReadRecord { record: RecordFile },
+    /// Estimates unknown keys of the case from a record.
+    Calibrate(Box<CalibrateRequest>),
+    /// Ends the calibration under way.
+    CalibrateStop,
+    /// Asks for the change of static friction with the quantity of a slider.
+    Sensitivity { control: String },
+    /// Asks for the texture as a drawing.
+    Drawing { format: DrawingFormat },
 }
 
 impl Request {
@@ -123,8 +133,60 @@ impl Request {
             Self::SaveStop { .. } => "save_stop",
             Self::Export => "export",
             Self::FramesOf { .. } => "frames_of",
+            Self::ReadRecord { .. } => "read_record",
+            Self::Calibrate(_) => "calibrate",
+            Self::CalibrateStop => "calibrate_stop",
+            Self::Sensitivity { .. } => "sensitivity",
+            Self::Drawing { .. } => "drawing",
         }
     }
+}
+
+/// The file of a measured record, and the columns of its table.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RecordFile {
+    pub(crate) name: String,
+    /// The file, in Base64.
+    pub(crate) bytes: String,
+    /// Names of the columns, or their numbers from 1; chosen by their units where they are missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) x: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) y: Option<String>,
+    /// Units of the columns, where the table has none or other ones are meant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) x_unit: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) y_unit: Option<String>,
+}
+
+/// A calibration that the page asks for.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CalibrateRequest {
+    pub(crate) record: RecordFile,
+    /// Added to times or displacements, s or m.
+    pub(crate) shift: f64,
+    /// The part that is compared, after the shift, s or m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) from: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) to: Option<f64>,
+    /// Standard deviation of the noise, as a share of the mean friction.
+    pub(crate) noise: f64,
+    /// Number of training runs.
+    pub(crate) runs: u32,
+    /// Ranges of the unknown keys, as calibration files have them.
+    pub(crate) unknowns: Map<String, Value>,
+}
+
+/// Format of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum DrawingFormat {
+    Dxf,
+    Svg,
 }
 
 /// Where a case is taken from: if nothing is given, the case with which the laboratory was started.
@@ -181,6 +243,14 @@ pub(crate) enum Reply<'a> {
     Recorded {
         times_star: Vec<f64>,
     },
+    Calibrating(CalibratingReply),
+    Calibrated(CalibratedReply),
+    #[cfg(feature = "work")]
+    Record(RecordReply),
+    #[cfg(feature = "work")]
+    Sensitivity(SensitivityReply),
+    #[cfg(feature = "work")]
+    Drawing(DrawingReply),
     /// A request was refused; nothing changed.
     Refused {
         of: &'static str,
@@ -276,6 +346,10 @@ pub(crate) struct Units {
     pub(crate) displacement_m: f64,
     pub(crate) speed_m_s: f64,
     pub(crate) stress_pa: f64,
+    /// Friction force where mu* is 1, N; none if the drive turns the slider.
+    pub(crate) friction_n: Option<f64>,
+    /// Friction coefficient mu where mu* is 1.
+    pub(crate) friction_coefficient: f64,
 }
 
 /// New points of the curves.
@@ -396,6 +470,150 @@ pub(crate) enum FoundOutcome {
     GivenUp,
     /// The painted texture stays, since the search has failed; a refusal sent before says why.
     Failed,
+}
+
+/// A measured record.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize)]
+pub(crate) struct RecordReply {
+    pub(crate) name: String,
+    pub(crate) columns: Vec<RecordColumn>,
+    /// The record; none if the table could not be read with these columns.
+    pub(crate) curve: Option<RecordCurve>,
+    /// Why there is no curve, which other columns or units may mend.
+    pub(crate) problem: Option<String>,
+    /// How the table was read, and what is doubtful about it.
+    pub(crate) notes: Vec<String>,
+}
+
+/// A column of a table.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize)]
+pub(crate) struct RecordColumn {
+    pub(crate) name: String,
+    pub(crate) unit: Option<String>,
+}
+
+/// Two columns of a table, in SI units.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize)]
+pub(crate) struct RecordCurve {
+    /// Places of the columns in the table, from 0.
+    pub(crate) columns: [usize; 2],
+    pub(crate) along: RecordAbscissa,
+    pub(crate) of: RecordOrdinate,
+    /// Number of values of the record; longer ones are thinned out below.
+    pub(crate) values: usize,
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    /// Noise by the scatter of values about their neighbours, % of the mean friction.
+    pub(crate) noise_percent: f64,
+}
+
+/// Quantity of the abscissae of a record.
+#[cfg(feature = "work")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum RecordAbscissa {
+    Time,
+    Displacement,
+}
+
+/// Quantity of the ordinates of a record.
+#[cfg(feature = "work")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum RecordOrdinate {
+    Force,
+    Coefficient,
+}
+
+/// How far a calibration is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct CalibratingReply {
+    pub(crate) stage: CalibrationStage,
+    pub(crate) runs: usize,
+    pub(crate) of: usize,
+}
+
+/// Purpose of the runs of a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum CalibrationStage {
+    Training,
+    Closest,
+    Prediction,
+    OtherStep,
+}
+
+/// The end of a calibration.
+#[derive(Debug, Serialize)]
+pub(crate) struct CalibratedReply {
+    pub(crate) outcome: CalibrationOutcome,
+    /// Why it has failed.
+    pub(crate) sentence: Option<String>,
+    /// [`CalibrationResults`], if it is done.
+    pub(crate) results: Option<Value>,
+}
+
+/// How a calibration has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum CalibrationOutcome {
+    Done,
+    Stopped,
+    /// The case was changed before the end.
+    GivenUp,
+    Failed,
+}
+
+/// Results of a calibration.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize)]
+pub(crate) struct CalibrationResults {
+    pub(crate) unknowns: Vec<UnknownReply>,
+    /// Whether the model cannot have made the record.
+    pub(crate) is_refused: bool,
+    /// The report, as `slipfront calibrate` prints it.
+    pub(crate) report: String,
+    /// The calibration file, with which `slipfront calibrate` finds the same.
+    pub(crate) toml: String,
+    /// The median of every unknown, as keys of the case.
+    pub(crate) set: Map<String, Value>,
+}
+
+/// An unknown key, as it was estimated.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct UnknownReply {
+    pub(crate) key: String,
+    pub(crate) unit: Option<String>,
+    pub(crate) median: f64,
+    /// The interval that holds the unknown with 90 %.
+    pub(crate) interval: [f64; 2],
+    pub(crate) range: [f64; 2],
+    /// Whether the record determines the unknown.
+    pub(crate) is_determined: bool,
+}
+
+/// Static friction at two values of the quantity of a slider.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize)]
+pub(crate) struct SensitivityReply {
+    pub(crate) control: String,
+    /// The two values, as the slider has them.
+    pub(crate) values: [f64; 2],
+    /// Change of static friction mu_s* from the first value to the second, %; none without a transition.
+    pub(crate) percent: Option<f64>,
+}
+
+/// The texture as a drawing.
+#[cfg(feature = "work")]
+#[derive(Debug, Serialize)]
+pub(crate) struct DrawingReply {
+    pub(crate) format: DrawingFormat,
+    pub(crate) text: String,
+    pub(crate) notes: Vec<String>,
 }
 
 /// Confidence of the intervals.

@@ -1,56 +1,9 @@
 //! Static friction with and without texture over several seeds.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_case::case::Case;
-use slipfront_run::running::run_unless;
-use slipfront_run::summary::Summary;
-use toml::Value;
-
-use crate::document::Document;
-use crate::event::{Event, EventKind, Frictions, Worker};
+use crate::event::Frictions;
 use crate::protocol::{Estimate, RepeatedReply};
-
-/// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first
-/// peak.
-pub(crate) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
-    let twin = document.has_texture().then(|| document.twin()).transpose();
-    let twin = match twin {
-        Ok(twin) => twin,
-        Err(error) => return worker.tell(Event(EventKind::Repeated(Err(error)))),
-    };
-    let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
-    for &seed in seeds {
-        let runs = documents
-            .iter()
-            .map(|document| static_friction(document, seed, worker.stop()).transpose());
-        let Some(found) = runs.collect::<Option<Result<Frictions, String>>>() else {
-            return;
-        };
-        let goes_on = found.is_ok();
-        worker.tell(Event(EventKind::Repeated(found)));
-        if !goes_on {
-            return;
-        }
-    }
-}
-
-/// mu_s* of a case with this seed, which is none of a run without a transition; none if it was stopped.
-fn static_friction(document: &Document, seed: u64, stop: &AtomicBool) -> Result<Option<Option<f64>>, String> {
-    let keys = [
-        ("friction.seed", Value::Integer(seed as i64)),
-        ("time.stop", Value::from("after_onset")),
-    ];
-    let seeded = document.with(keys.map(|(key, value)| (key.to_owned(), Some(value))))?;
-    let case = seeded.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
-    let case: Arc<Case> = Arc::new(case.map_err(|error| error.to_string())?);
-    let record = run_unless(&case, &|| stop.load(Ordering::Relaxed));
-    let record = record.transpose().map_err(|error| error.to_string())?;
-    let found = |summary: &Summary| summary.transition.then_some(summary.static_friction_star);
-    Ok(record.map(|record| found(&record.summary)))
-}
 
 /// Results over the seeds from 1 on. They are counted in the order of the seeds, whichever ends first: seeds
 /// whose runs are short would come first otherwise, and a mean over them depends on the machine.

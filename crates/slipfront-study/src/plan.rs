@@ -413,7 +413,7 @@ impl Plan {
             file.output.snapshots = Snapshots::At(Vec::new());
             file.output.series = AutoOr::Auto;
         }
-        let mut case = Case::new(file, name, &self.base.folder, watch, Ranks::ALONE)?;
+        let mut case = Case::new(file, name, self.base.files(), watch, Ranks::ALONE)?;
         if !keeps_all {
             case.output.series_stride = case.time_plan.last_step;
         }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
+use slipfront_case::case::{Files, FilesInMemory};
 use slipfront_case::case_file::{
     CaseError, Key, Override, ParsedCase, Place, Source, Tables, limit_nesting, read_text, syntax_error,
     unknown_key,
@@ -22,6 +23,8 @@ pub struct Base {
     pub name: String,
     /// The folder to which the files of the case are relative.
     pub folder: PathBuf,
+    /// Files of the case in memory, which are not looked for in the folder.
+    pub in_memory: FilesInMemory,
     /// Keys that are set beside the file, as by `--set`.
     pub(crate) overrides: Vec<Override>,
     /// The file that holds the case as its table `base`, in which errors name their places.
@@ -36,6 +39,14 @@ impl Base {
             source = source.of_table(whole.clone(), "base");
         }
         ParsedCase::parse_from(&self.text, source)?.set(&self.overrides)
+    }
+
+    /// The files that the case names.
+    pub fn files(&self) -> Files<'_> {
+        Files {
+            folder: &self.folder,
+            in_memory: Some(&self.in_memory),
+        }
     }
 
     /// Sets keys of the case, each by a text such as `drive.v_star=0.05`.
@@ -55,6 +66,7 @@ impl Base {
             text,
             name,
             folder,
+            in_memory: FilesInMemory::new(),
             overrides: Vec::new(),
             whole: None,
         }

@@ -30,24 +30,23 @@ mod of_every_module {
 )]
 mod of_session {
     exported! {
-        calls::open(workers: u32);
-        calls::handle();
-        calls::advance(now: f64, unread: u32) -> f64;
-        calls::hear(task: u32);
-        calls::hear_lost(task: u32);
-        calls::run();
-        calls::save();
-        calls::bits(most_steps: u32);
+        session::open(workers: u32);
+        session::handle();
+        session::advance(now: f64, unread: u32) -> f64;
+        session::hear(task: u32);
+        session::hear_lost(task: u32);
     }
 }
 
-#[cfg(feature = "pictures")]
+#[cfg(feature = "work")]
 #[expect(
     unsafe_code,
     reason = "names of functions stay as they are, and Rust cannot tell whether others have them"
 )]
-mod of_pictures {
+mod of_work {
     exported! {
-        pictures::draw();
+        work::run();
+        work::save();
+        work::bits(most_steps: u32);
     }
 }

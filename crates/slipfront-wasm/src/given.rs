@@ -1,6 +1,9 @@
 //! Bytes that the Worker gives a module.
 
 use std::cell::RefCell;
+use std::time::Duration;
+
+use serde::Deserialize;
 
 use crate::imports::{Saying, tell};
 
@@ -28,4 +31,21 @@ pub(crate) fn begin() {
     std::panic::set_hook(Box::new(|defect| {
         tell(Saying::Defect, 0, defect.to_string().as_bytes());
     }));
+}
+
+/// Reads the bytes that the Worker has given as JSON.
+pub(crate) fn read<T: for<'de> Deserialize<'de>>() -> Result<T, String> {
+    serde_json::from_slice(&take()).map_err(|error| error.to_string())
+}
+
+/// Passes on why something cannot be done.
+pub(crate) fn refuse(done: Result<(), String>) {
+    if let Err(sentence) = done {
+        tell(Saying::Refusal, 0, sentence.as_bytes());
+    }
+}
+
+/// A time of the Worker, ms.
+pub(crate) fn duration(milliseconds: f64) -> Duration {
+    Duration::try_from_secs_f64(milliseconds / 1000.0).unwrap_or_default()
 }

@@ -31,8 +31,6 @@ pub(crate) enum Saying {
     Refusal,
     /// A defect, as the terminal of a program would show it.
     Defect,
-    /// Pictures of a run, or why they cannot be drawn.
-    Pictures,
 }
 
 #[expect(unsafe_code, reason = "Rust cannot look at a function of the Worker")]
@@ -40,6 +38,12 @@ pub(crate) enum Saying {
 // shown.
 unsafe extern "C" {
     safe fn say(what: u32, number: u32, at: *const u8, length: usize);
+    /// The time by the clock of the Worker, ms.
+    #[cfg(feature = "work")]
+    pub(crate) safe fn now() -> f64;
+    /// Gives the module the time of day, UTC as in RFC 3339.
+    #[cfg(feature = "work")]
+    pub(crate) safe fn date();
 }
 
 /// Says something to the Worker, with a number where it has one.

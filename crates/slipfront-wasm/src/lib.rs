@@ -1,13 +1,12 @@
-//! A session of the laboratory as WebAssembly, for a Worker of its page: `lab_worker.js` of slipfront-lab. A
-//! second module, made with the feature `pictures` alone, draws the pictures of runs that are saved.
+//! The laboratory as WebAssembly, for Workers of its page: `lab_worker.js` of slipfront-lab. One module has the
+//! session, made with the feature `session` alone; a second one, made with `work` alone and loaded on first use,
+//! does the work beside it.
 //!
-//! The Worker writes bytes into the room that a module gives it, calls a function, and is told what comes of
-//! it by `say`.
+//! The Worker writes bytes into the room that a module gives it, calls a function, and gets the results by
+//! `say`.
 
-#[cfg(feature = "session")]
+#[cfg(feature = "work")]
 pub mod bits;
-#[cfg(all(feature = "session", target_family = "wasm"))]
-mod calls;
 #[cfg(target_family = "wasm")]
 mod exports;
 #[cfg(target_family = "wasm")]
@@ -16,7 +15,7 @@ mod given;
 mod host;
 #[cfg(target_family = "wasm")]
 mod imports;
-#[cfg(all(feature = "pictures", target_family = "wasm"))]
-mod pictures;
 #[cfg(all(feature = "session", target_family = "wasm"))]
-mod questions;
+mod session;
+#[cfg(all(feature = "work", target_family = "wasm"))]
+mod work;

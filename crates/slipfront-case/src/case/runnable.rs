@@ -171,16 +171,16 @@ impl Case {
         Self::make(file, name, files, true, watch, ranks)
     }
 
-    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The
-    /// memory for stepping its model is not checked.
-    pub fn new(
+    /// Makes a case of a case file on all `ranks` at once; `files` is the folder of those that it names, or
+    /// has them in memory. The memory for stepping its model is not checked.
+    pub fn new<'f>(
         file: CaseFile,
         name: &str,
-        folder: &Path,
+        files: impl Into<Files<'f>>,
         watch: &mut Watch,
         ranks: Ranks,
     ) -> Result<Self, CaseError> {
-        Self::make(file, name, folder.into(), false, watch, ranks)
+        Self::make(file, name, files.into(), false, watch, ranks)
     }
 
     /// Makes a case: the file, the quantities that follow from it alone, its inputs, the model, the steps.

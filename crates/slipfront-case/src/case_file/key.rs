@@ -159,7 +159,12 @@ impl Key {
     /// The key with its name, and its meaning as a doc comment has it.
     pub const fn named(mut self, name: &'static str, doc: &'static str) -> Self {
         self.name = name;
-        self.doc = doc.trim_ascii();
+        // Pages of reference alone have them, and a module for a browser is smaller without.
+        self.doc = if cfg!(feature = "disk") {
+            doc.trim_ascii()
+        } else {
+            ""
+        };
         self
     }
 }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::state::Session;
+use crate::protocol::CalibrationOutcome;
 
 /// Time between two looks after work beside the session.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(100);
@@ -24,6 +25,8 @@ impl Session {
         }
         self.follow_repetition();
         self.follow_search(now);
+        self.follow_calibration(now);
+        self.follow_errands();
         // A host may ask more often than anything moves.
         if !self.is_idle() {
             self.run_until_next_picture(now);
@@ -31,7 +34,10 @@ impl Session {
         if is_changed {
             self.clock.disturb_slice();
         }
-        let follows = self.search.is_some() || self.repeating.is_some();
+        let follows = self.search.is_some()
+            || self.repeating.is_some()
+            || self.calibration.is_some()
+            || !self.errands.is_empty();
         let followed = follows.then_some(now + FOLLOW_INTERVAL);
         self.next_picture(now).into_iter().chain(followed).min()
     }
@@ -40,6 +46,8 @@ impl Session {
     pub(super) fn give_up_work(&mut self) {
         self.give_up_search();
         self.end_repetition();
+        self.end_calibration(CalibrationOutcome::GivenUp);
+        self.give_up_errands();
     }
 
     /// When there is something to do for the next picture; none if nothing moves.

@@ -13,6 +13,7 @@ pub(super) struct Clock {
     pub(super) probe: Option<Duration>,
     pub(super) kymograph: Option<Duration>,
     pub(super) search: Option<Duration>,
+    pub(super) calibration: Option<Duration>,
     /// Steps that are due, with a fraction, and when they were counted last.
     pub(super) due: f64,
     last_count: Duration,

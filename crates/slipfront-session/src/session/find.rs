@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::clock::is_due;
 use super::state::{Session, TextureSearch};
 use crate::event::{Comparison, EventKind, Mask, Tried};
-use crate::job::Job;
+use crate::job::{Job, JobKind};
 use crate::protocol::{FindingReply, FoundOutcome, FoundReply, Reply};
 use crate::search::{self, NOTHING_TRIED, SEARCH_TIME};
 
@@ -26,14 +26,12 @@ impl Session {
         }
         self.apply_edits();
         let document = self.document()?.clone();
-        let case = self.case_of(&document)?;
-        search::check(&case, self.host.threads())?;
         self.search = Some(TextureSearch {
             gesture,
             began: None,
             elapsed: Duration::ZERO,
             is_enough: false,
-            task: self.host.begin(Job::search(document))?,
+            task: self.host.begin(Job::new(document, JobKind::Search))?,
             tried: Tried::default(),
             compared: None,
         });
@@ -120,7 +118,9 @@ impl Session {
     fn compare(&mut self, searched: Result<Mask, String>) -> Result<(), String> {
         let best = searched?;
         let document = self.document()?.clone();
-        let task = self.host.begin(Job::compare(document, best.clone()))?;
+        let task = self
+            .host
+            .begin(Job::new(document, JobKind::Compare(best.clone())))?;
         if let Some(search) = &mut self.search {
             search.task = task;
             search.compared = Some(best);

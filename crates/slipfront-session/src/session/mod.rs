@@ -2,8 +2,10 @@
 
 mod advance;
 mod brush;
+mod calibrate;
 mod clock;
 mod edit;
+mod errands;
 mod find;
 mod painting;
 mod repeat;

@@ -2,7 +2,7 @@
 
 use super::repetition::{Part, Repetition};
 use super::state::Session;
-use crate::job::Job;
+use crate::job::{Job, JobKind};
 use crate::protocol::Reply;
 use crate::repeat::SeedsFound;
 
@@ -27,7 +27,9 @@ impl Session {
         let mut parts = Vec::new();
         for first in 1..=n_parts as u64 {
             let seeds: Vec<u64> = (first..=seeds).step_by(n_parts).collect();
-            let task = self.host.begin(Job::repeat(document.clone(), seeds.clone()))?;
+            let task = self
+                .host
+                .begin(Job::new(document.clone(), JobKind::Repeat(seeds.clone())))?;
             let seeds = seeds.into_iter();
             parts.push(Part { task, seeds });
         }

@@ -4,7 +4,7 @@ use slipfront_base::ordered::map_of;
 
 use super::state::Session;
 use crate::history::History;
-use crate::protocol::{Message, Reply, Request};
+use crate::protocol::{CalibrationOutcome, Message, Reply, Request};
 use crate::{base64, zip};
 
 impl Session {
@@ -64,6 +64,14 @@ impl Session {
                 self.stop_search();
                 Ok(())
             }
+            Request::ReadRecord { record } => self.read_record(record),
+            Request::Calibrate(request) => self.calibrate(request),
+            Request::CalibrateStop => {
+                self.end_calibration(CalibrationOutcome::Stopped);
+                Ok(())
+            }
+            Request::Sensitivity { control } => self.sensitivity(&control),
+            Request::Drawing { format } => self.drawing(format),
             Request::Save { name } => self.save(&name),
             Request::SaveStop { name } => {
                 self.host.stop_saving(&name);

@@ -3,7 +3,9 @@
 use std::rc::Rc;
 use std::time::Duration;
 
+use super::calibrate::Calibration;
 use super::clock::Clock;
+use super::errands::Errand;
 use super::painting::Painting;
 use super::repetition::Repetition;
 use crate::document::Document;
@@ -66,6 +68,9 @@ pub struct Session {
     /// The computation of static friction over several seeds, while it is under way.
     pub(super) repeating: Option<Repetition>,
     pub(super) search: Option<TextureSearch>,
+    pub(super) calibration: Option<Calibration>,
+    /// Work that ends with one reply.
+    pub(super) errands: Vec<Errand>,
     /// Updates to send with the next points of the curves.
     pub(super) pending: PendingUpdates,
 }
@@ -103,6 +108,8 @@ impl Session {
             single_steps: 0,
             repeating: None,
             search: None,
+            calibration: None,
+            errands: Vec::new(),
             pending: PendingUpdates::default(),
         }
     }

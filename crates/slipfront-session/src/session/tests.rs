@@ -35,6 +35,16 @@ impl Tried {
         panic!("no {is} came after {all:?}");
     }
 
+    /// Hands over a request, and works up to the first reply of this name; all replies until then.
+    fn ask_for(&mut self, request: Value, is: &str) -> Vec<Value> {
+        let mut all = self.ask(request);
+        if count(&all, is) == 0 {
+            all.extend(self.follow(is, |_| true));
+        }
+        all.retain(|reply| reply["is"] != "curve");
+        all
+    }
+
     /// The reply with the result of the search.
     fn found(&mut self) -> Value {
         self.follow("found", |_| true).pop().unwrap()
@@ -665,4 +675,156 @@ fn the_files_of_a_run_are_replayed_and_other_files_are_refused() {
     damaged.insert("fields.nc".to_owned(), crate::base64::encode(b"CDF").into());
     let said = refused(&damaged, &mut tried).unwrap();
     assert!(said.contains("fields.nc"), "{said}");
+}
+
+/// A slider of equal blocks, which a drive of constant speed makes stick and slip.
+const STICKS: &str = "slider.blocks = [4, 4]\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n\
+                      drive.v_star = 0.1\n";
+
+/// The file of a record that goes up and down, over 60 t*.
+fn record() -> Value {
+    let case = slipfront_case::case::Case::parse(STICKS, "case", "", &[]).unwrap();
+    let row = |k: u32| {
+        let t = f64::from(k);
+        let mu = 0.6 * (0.05 * t).min(0.7 + 0.02 * (t % 7.0));
+        format!("{},{mu}\n", t * case.scales.time())
+    };
+    let rows: String = (0..60).map(row).collect();
+    let bytes = crate::base64::encode(format!("t (s),mu\n{rows}").as_bytes());
+    json!({ "name": "rig.csv", "bytes": bytes })
+}
+
+fn calibration(unknowns: &Value) -> Value {
+    json!({ "do": "calibrate", "record": record(), "shift": 0, "noise": 0.02, "runs": 200, "unknowns": unknowns })
+}
+
+fn two_unknowns() -> Value {
+    json!({ "friction.mu_static": [0.3, 0.9], "friction.r_star": [0.4, 0.9] })
+}
+
+#[test]
+fn a_record_is_read_and_stays_where_the_case_changes() {
+    let mut tried = Tried::with(STICKS);
+    // The host has not been looked at when the case changes.
+    let message = json!({ "do": "read_record", "record": record() }).to_string();
+    tried
+        .session
+        .handle(crate::protocol::Message::parse(&message).unwrap());
+    let replies = tried.ask_for(
+        json!({ "do": "set", "keys": { "drive.v_star": 0.2 }, "gesture": 1 }),
+        "record",
+    );
+    let read = replies.iter().find(|reply| reply["is"] == "record").unwrap();
+    assert_eq!(read["curve"]["values"], 60, "{read}");
+    assert_eq!(read["curve"]["of"], "coefficient");
+}
+
+/// The host of the tests has two workers, which make the runs that the calibration wants.
+#[test]
+fn a_calibration_finds_what_one_of_the_command_finds() {
+    let mut tried = Tried::with(STICKS);
+    let replies = tried.ask_for(calibration(&two_unknowns()), "calibrated");
+    let stages: Vec<&Value> = replies
+        .iter()
+        .filter(|reply| reply["is"] == "calibrating")
+        .collect();
+    assert!(stages.len() > 2, "{stages:?}");
+    let done = replies.last().unwrap();
+    assert_eq!(done["outcome"], "done", "{done}");
+    let results = &done["results"];
+    // The calibration file that the page is given finds the same bits in one go.
+    let toml = results["toml"].as_str().unwrap();
+    let bytes = crate::base64::decode(record()["bytes"].as_str().unwrap()).unwrap();
+    let files = slipfront_case::case::FilesInMemory::new();
+    let mut alone =
+        slipfront_calibrate::CalibrationInMemory::new(toml, files, ("rig.csv", bytes), 1).unwrap();
+    let go_on = std::sync::atomic::AtomicBool::new(false);
+    let found = alone.find(false, &go_on, &mut |_| {}).unwrap();
+    let slipfront_calibrate::Outcome::Found(found) = found else {
+        panic!("runs are wanted")
+    };
+    let numbers: Value = serde_json::from_str(&found.numbers).unwrap();
+    for (k, unknown) in results["unknowns"].as_array().unwrap().iter().enumerate() {
+        assert_eq!(unknown["median"], numbers["unknowns"][k]["median"]);
+        assert_eq!(unknown["interval"], numbers["unknowns"][k]["interval"]);
+    }
+    assert_eq!(results["report"], found.report);
+    assert_eq!(results["set"].as_object().unwrap().len(), 2);
+    // The medians are keys that the case takes.
+    let replies = tried.ask(json!({ "do": "set", "keys": results["set"], "gesture": 2 }));
+    assert_eq!(count(&replies, "refused"), 0, "{replies:?}");
+}
+
+#[test]
+fn a_calibration_ends_with_its_case_and_by_a_stop() {
+    for (request, outcome) in [
+        (json!({ "do": "calibrate_stop" }), "stopped"),
+        (
+            json!({ "do": "set", "keys": { "drive.v_star": 0.2 }, "gesture": 1 }),
+            "given_up",
+        ),
+    ] {
+        let mut tried = Tried::with(STICKS);
+        tried.ask(calibration(&two_unknowns()));
+        let replies = tried.ask_for(request, "calibrated");
+        let ended = replies.iter().find(|reply| reply["is"] == "calibrated").unwrap();
+        assert_eq!(ended["outcome"], outcome);
+    }
+}
+
+#[test]
+fn what_cannot_be_calibrated_says_why() {
+    let mut tried = Tried::with(STICKS);
+    let one = tried.ask(calibration(&json!({ "friction.r_star": [0.4, 0.9] })));
+    let refused = one.iter().find(|reply| reply["is"] == "refused").unwrap();
+    assert!(
+        refused["sentence"].as_str().unwrap().contains("2 to 4"),
+        "{refused}"
+    );
+    let wrong = json!({ "friction.mu_static": [0.3, 0.9], "friction.no_such": [0.4, 0.9] });
+    let failed = tried.ask_for(calibration(&wrong), "calibrated").pop().unwrap();
+    assert_eq!(failed["outcome"], "failed");
+    assert!(
+        failed["sentence"].as_str().unwrap().contains("no_such"),
+        "{failed}"
+    );
+}
+
+#[test]
+fn sensitivity_is_the_change_between_two_runs() {
+    let mut tried = Tried::with("slider.blocks = [10, 10]\ndrive.v_star = 0.1");
+    let kinetic = tried
+        .ask_for(json!({ "do": "sensitivity", "control": "r_star" }), "sensitivity")
+        .pop()
+        .unwrap();
+    assert_eq!(kinetic["values"], json!([0.5, 0.55]));
+    let scatter = tried
+        .ask_for(json!({ "do": "sensitivity", "control": "sigma" }), "sensitivity")
+        .pop()
+        .unwrap();
+    // More scatter lets slip begin earlier.
+    assert!(number(&scatter["percent"]) < -0.1, "{scatter}");
+    for control in ["seed", "no such"] {
+        let replies = tried.ask(json!({ "do": "sensitivity", "control": control }));
+        assert_eq!(count(&replies, "refused"), 1, "{replies:?}");
+    }
+}
+
+#[test]
+fn a_texture_is_drawn() {
+    let mut tried = Tried::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 10 }]");
+    let drawn = tried
+        .ask_for(json!({ "do": "drawing", "format": "dxf" }), "drawing")
+        .pop()
+        .unwrap();
+    assert!(drawn["text"].as_str().unwrap().contains("CIRCLE"), "{drawn}");
+    let mut plain = Tried::with(STICKS);
+    let refused = plain
+        .ask_for(json!({ "do": "drawing", "format": "svg" }), "refused")
+        .pop()
+        .unwrap();
+    assert!(
+        refused["sentence"].as_str().unwrap().contains("no texture"),
+        "{refused}"
+    );
 }

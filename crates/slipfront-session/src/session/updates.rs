@@ -6,6 +6,7 @@ use slipfront::PositionBins;
 use slipfront::lattice::K_DRIVE;
 use slipfront_base::ordered::map_of;
 use slipfront_case::case_file::Motion;
+use slipfront_run::run_curve::unit_force_star;
 use slipfront_run::summary::summary_json;
 use slipfront_study::note_on_seeds;
 
@@ -47,6 +48,8 @@ impl Session {
                 displacement_m: scales.displacement(),
                 speed_m_s: scales.speed(),
                 stress_pa: scales.stress(),
+                friction_n: unit_force_star(case),
+                friction_coefficient: scales.mu_static_mean,
             },
             dt_star: case.time_plan.dt_star,
             duration_star: case.time_plan.end_star(),

@@ -6,6 +6,7 @@ use std::time::Duration;
 use slipfront::Execution;
 use slipfront_run::manifest::{Manifest, RunTimes};
 use slipfront_run::names::MANIFEST;
+use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::running::Running;
 
@@ -15,18 +16,11 @@ use crate::zip;
 /// Share of a run after which its progress is told again.
 const SHARE: f64 = 0.01;
 
-/// Files, each as its name and its contents.
-pub type NamedFiles = Vec<(String, Vec<u8>)>;
-
-/// Draws the pictures of a run of these files, with its movie or without. Gives the files of the pictures, or
-/// a sentence that says why it cannot.
-pub type Draw<'a> = dyn Fn(&[(String, Vec<u8>)], bool) -> Result<NamedFiles, String> + 'a;
-
 /// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads,
 /// summary, series, fields, kymograph and pictures, each with the bytes that `slipfront run` writes, and the
 /// manifest of these files. `now` tells the time of day, UTC as in RFC 3339, and that of a monotonic clock;
-/// `report_progress` is told the share of the run that is done. `draw` gives the pictures of a run of these
-/// files, with its movie or without; why it cannot, the manifest says.
+/// `report_progress` is given the share of the run that is done. If the pictures cannot be drawn, the manifest
+/// says why.
 ///
 /// # Errors
 /// A sentence, if the case cannot be run, or the run diverges.
@@ -34,7 +28,6 @@ pub fn run_archive(
     document: &Document,
     now: &dyn Fn() -> (String, Duration),
     report_progress: &dyn Fn(f64),
-    draw: &Draw<'_>,
 ) -> Result<Vec<u8>, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
@@ -56,12 +49,12 @@ pub fn run_archive(
     };
     let mut record = running.record(reason);
     let mut files = results::in_memory(&case, &mut record).map_err(sentence)?;
-    let without_pictures = match draw(&files, case.output.movie) {
+    let without_pictures = match pictures::in_memory(&files, case.output.movie) {
         Ok(pictures) => {
             files.extend(pictures);
             None
         }
-        Err(sentence) => Some(sentence),
+        Err(error) => Some(error.to_string()),
     };
     let (finished, ended) = now();
     let times = RunTimes {

@@ -1,0 +1,280 @@
+//! A calibration from records: training, estimate, and checks of how far to trust it.
+
+use slipfront_run::measured::Measure;
+
+use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
+use crate::calibration::{Calibration, Estimate, Pair};
+use crate::clipping::Clipped;
+use crate::closest::closest;
+use crate::file::{CalibrationFile, CalibrationKeys, SampledRecord};
+use crate::findings::{
+    CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
+};
+use crate::normals::{Stream, normals};
+use crate::predicted::{Band, PREDICTED, Predicted};
+use crate::progress::CalibrationStage;
+use crate::record_check::RecordCheck;
+use crate::runs::RunMaker;
+use crate::sample_points::SamplePoints;
+use crate::set_up::{Curves, SetUp};
+use crate::training::Training;
+use slipfront_study::{StudyError, TrainingError};
+
+/// Number of runs at another time step.
+const AT_OTHER_STEP: usize = 40;
+
+/// Number of points that are drawn from the estimate.
+const SAMPLE: usize = 400;
+
+/// Curves of measured records, and the estimate of a training from them.
+struct FittedRecords {
+    curves: Vec<Vec<f64>>,
+    calibration: Calibration,
+    estimate: Estimate,
+}
+
+impl FittedRecords {
+    fn of(training: &Training, set_up: &SetUp, records: &[SampledRecord], noise: f64) -> Self {
+        let curves = records.iter().map(|record| record.grid.record(&record.measured));
+        let curves: Vec<Vec<f64>> = curves.collect();
+        let calibration = Calibration::new(training, &set_up.grids(), noise);
+        let estimate = calibration.estimate(&curves);
+        Self {
+            curves,
+            calibration,
+            estimate,
+        }
+    }
+
+    /// Points that are drawn from the estimate.
+    fn sample(&self, points: usize) -> Vec<Vec<f64>> {
+        self.calibration.sample(&self.estimate, points)
+    }
+
+    /// Runs of the calibrated model, and what they and the training say of the records.
+    ///
+    /// A record with less noise than the file states has intervals that are too wide and hold: it is compared
+    /// with the runs as a record with the noise that it lacks.
+    fn check(
+        &self,
+        set_up: &SetUp,
+        records: &[SampledRecord],
+        noise: f64,
+        maker: &mut RunMaker,
+    ) -> Result<(Predicted, RecordCheck), StudyError> {
+        let points = self.sample(PREDICTED);
+        let (of_step, closest) = closest(maker, set_up, &points, &self.curves, noise)?.unzip();
+        let stage = CalibrationStage::Prediction;
+        let predicted = Predicted::run(maker, stage, of_step.as_ref().unwrap_or(set_up), points, noise)?;
+        let as_noisy = records.iter().zip(&self.curves).enumerate();
+        let as_noisy = as_noisy.map(|(number, (record, curve))| {
+            let missing = missing_noise(&record.measured, noise);
+            record
+                .grid
+                .noisy(curve, missing, normals(Stream::Missing, 0, number))
+        });
+        let clipped = || {
+            let mut records = records.iter().enumerate();
+            records.find_map(|(number, record)| Clipped::of(number, &record.measured))
+        };
+        let check = RecordCheck {
+            clipped: if set_up.has_range() { None } else { clipped() },
+            misfit: self.estimate.misfit.clone(),
+            comparison: predicted.compare(&as_noisy.collect::<Vec<_>>()),
+            closest,
+        };
+        Ok((predicted, check))
+    }
+}
+
+/// A calibration: its file, its records, and the set-up of its runs.
+#[derive(Clone, Copy)]
+pub(crate) struct Fit<'a> {
+    pub(crate) file: &'a CalibrationFile,
+    pub(crate) records: &'a [SampledRecord],
+    pub(crate) set_up: &'a SetUp,
+}
+
+/// Results of a calibration.
+pub(crate) struct Found {
+    pub(crate) findings: Findings,
+    /// Friction of every record at the places where it is compared.
+    pub(crate) records: Curves,
+    /// Friction of every record as the calibrated model has it.
+    pub(crate) bands: Vec<Band>,
+    /// Points of the ranges that are drawn from the estimate.
+    pub(crate) sample: Vec<Vec<f64>>,
+}
+
+impl Fit<'_> {
+    /// Trains, fits the records, and runs blocks of half the size and further experiments.
+    ///
+    /// # Errors
+    /// When runs cannot be made or kept, and after a stop.
+    pub(crate) fn find(&self, maker: &mut RunMaker) -> Result<Found, StudyError> {
+        let Self {
+            file,
+            records,
+            set_up,
+        } = *self;
+        let instrument = self.instrument()?;
+        let keys = &file.keys;
+        let (runs, noise) = (keys.runs as usize, keys.noise);
+        let (finer, further) = (finer(file, set_up), file.further(set_up)?);
+        let finer_runs = if matches!(finer, Ok(Some(_))) {
+            keys.finer_runs as usize
+        } else {
+            0
+        };
+        let of = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_OTHER_STEP;
+        maker.expect(of);
+        let training = Training::run(maker, CalibrationStage::Training, set_up, runs)?;
+        let told = FittedRecords::of(&training, set_up, records, noise);
+        let estimate = &told.estimate;
+        let unknowns = set_up.unknowns.iter().enumerate();
+        let mut unknowns: Vec<UnknownEstimate> = unknowns
+            .map(|(number, unknown)| UnknownEstimate::of(unknown, estimate, number))
+            .collect();
+        let finer = match finer {
+            Ok(Some(finer)) => {
+                let training = Training::run(maker, CalibrationStage::FinerBlocks, &finer, finer_runs)?;
+                let there = FittedRecords::of(&training, &finer, records, noise).estimate;
+                let found = finer.unknowns.iter().zip(&there.distributions);
+                for (told, (unknown, found)) in unknowns.iter_mut().zip(found) {
+                    told.hold_against(unknown, found);
+                }
+                OnFinerBlocks::Runs(finer_runs)
+            }
+            Ok(None) => OnFinerBlocks::NotAskedFor,
+            Err(reason) => OnFinerBlocks::Impossible(reason),
+        };
+        let next = weigh(maker, &set_up.grids(), further, &training, &told, noise)?;
+        let (predicted, check) = told.check(set_up, records, noise, maker)?;
+        let bands = predicted.bands();
+        // Where the calibrated model needs a finer step already, it is held against that of the training.
+        let halvings = predicted.halvings();
+        let points = predicted.points()[..AT_OTHER_STEP].to_vec();
+        let other = if halvings > 0 {
+            set_up.clone()
+        } else {
+            set_up.halved(1)
+        };
+        let other = Predicted::run(maker, CalibrationStage::OtherStep, &other, points, noise)?;
+        let (mut coarse, mut fine) = (&predicted.curves()[..AT_OTHER_STEP], other.curves());
+        if halvings > 0 {
+            (coarse, fine) = (fine, coarse);
+        }
+        let moved = told.calibration.moved(coarse, fine);
+        for (told, (unknown, moved)) in unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved)) {
+            told.hold_against_finer_step(unknown, moved);
+        }
+        let within = bands.iter().zip(&told.curves);
+        let findings = Findings {
+            runs,
+            noise,
+            pairs: pairs(set_up, estimate),
+            is_refused: check.is_refused(),
+            within_band_percent: within.map(|(band, curve)| band.holds_percent(curve)).collect(),
+            check,
+            instrument,
+            unknowns,
+            finer_step: 1 << halvings.max(1),
+            finer,
+            next,
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        Ok(Found {
+            findings,
+            bands,
+            sample: told.sample(SAMPLE),
+            records: told.curves,
+        })
+    }
+
+    /// Trains, and tests whether the model can have made the records.
+    ///
+    /// # Errors
+    /// When runs cannot be made or kept, and after a stop.
+    pub(crate) fn check(&self, maker: &mut RunMaker) -> Result<RecordCheck, StudyError> {
+        let CalibrationKeys { runs, noise, .. } = self.file.keys;
+        let Self { set_up, records, .. } = *self;
+        maker.expect(runs as usize + PREDICTED);
+        let training = Training::run(maker, CalibrationStage::Training, set_up, runs as usize)?;
+        let told = FittedRecords::of(&training, set_up, records, noise);
+        let (_, check) = told.check(set_up, records, noise, maker)?;
+        Ok(check)
+    }
+
+    /// Frequencies that the instrument passes and that the records have, and their noise.
+    fn instrument(&self) -> Result<InstrumentFindings, StudyError> {
+        let set_up = self.set_up;
+        let middle = set_up.middle();
+        let instrument = set_up.instrument(&middle, &set_up.conditions[0]);
+        let instrument = instrument.map_err(|source| TrainingError::Instrument {
+            point: set_up.point(&middle),
+            source,
+        })?;
+        let records = self.records.iter();
+        let of_times = records.filter(|record| record.measured.along == Measure::Time);
+        Ok(InstrumentFindings {
+            bandwidth_hz: instrument.and_then(|instrument| instrument.bandwidth()),
+            fastest_swing_hz: of_times
+                .filter_map(|record| fastest_swing(&record.measured))
+                .max_by(f64::total_cmp),
+            noise_percent: self
+                .records
+                .iter()
+                .map(|record| 100.0 * noise_share(&record.measured))
+                .collect(),
+        })
+    }
+}
+
+/// Trains with each of the further experiments beside the records, and returns how much narrower the
+/// intervals are.
+fn weigh(
+    maker: &mut RunMaker,
+    grids: &[SamplePoints],
+    further: Vec<(String, SetUp)>,
+    training: &Training,
+    told: &FittedRecords,
+    noise: f64,
+) -> Result<Vec<Further>, StudyError> {
+    let widths = told.calibration.widths(&told.estimate);
+    let mut weighed = Vec::new();
+    for (set, further) in further {
+        let more = Training::run(maker, CalibrationStage::Further, &further, training.points.len())?;
+        let grids = [grids, &further.grids()].concat();
+        let with = Calibration::new(&training.clone().with(more), &grids, noise);
+        let with = with.widths(&told.estimate);
+        weighed.push(Further {
+            set,
+            narrowed_to: with
+                .iter()
+                .zip(&widths)
+                .map(|(with, without)| with / without)
+                .collect(),
+        });
+    }
+    Ok(weighed)
+}
+
+/// The set-up on blocks of half the size; none if the file does not ask for it, or a reason why there is
+/// none.
+fn finer(file: &CalibrationFile, set_up: &SetUp) -> Result<Option<SetUp>, String> {
+    if file.keys.finer_runs == 0 {
+        return Ok(None);
+    }
+    set_up.finer().map(Some)
+}
+
+/// Pairs of unknowns that are determined only together.
+fn pairs(set_up: &SetUp, estimate: &Estimate) -> Vec<CoupledUnknowns> {
+    let of = |pair: &Pair| CoupledUnknowns {
+        keys: pair
+            .unknowns
+            .map(|number| set_up.unknowns[number].key().to_owned()),
+        correlation: pair.correlation,
+    };
+    estimate.pairs.iter().map(of).collect()
+}

@@ -1,0 +1,73 @@
+//! Work that ends with one reply: a record is read, a sensitivity is computed, a texture is drawn.
+
+use super::state::Session;
+use crate::controls;
+use crate::event::EventKind;
+use crate::host::Task;
+use crate::job::{Job, JobKind};
+use crate::protocol::{DrawingFormat, RecordFile, Reply};
+
+/// Work that ends with one reply. Dropping it ends the work.
+pub(super) struct Errand {
+    /// Name of the request.
+    of: &'static str,
+    task: Box<dyn Task>,
+}
+
+/// Name of the request whose work does not depend on the case.
+const READ_RECORD: &str = "read_record";
+
+impl Session {
+    /// Begins to read a record.
+    pub(super) fn read_record(&mut self, record: RecordFile) -> Result<(), String> {
+        let document = self.document()?.clone();
+        self.begin_errand(READ_RECORD, Job::new(document, JobKind::ReadRecord(record)))
+    }
+
+    /// Begins to compute static friction at the present value of the quantity of a slider, and at another
+    /// one.
+    pub(super) fn sensitivity(&mut self, control: &str) -> Result<(), String> {
+        self.apply_edits();
+        let document = self.document()?.clone();
+        let values = controls::two_values(&*self.case_of(&document)?, control)?;
+        self.begin_errand("sensitivity", Job::new(document, JobKind::Sensitivity(values)))
+    }
+
+    /// Begins to draw the texture.
+    pub(super) fn drawing(&mut self, format: DrawingFormat) -> Result<(), String> {
+        self.apply_edits();
+        let document = self.document()?.clone();
+        self.begin_errand("drawing", Job::new(document, JobKind::Draw(format)))
+    }
+
+    /// Begins work that takes the place of earlier work for such a request.
+    fn begin_errand(&mut self, of: &'static str, job: Job) -> Result<(), String> {
+        self.errands.retain(|errand| errand.of != of);
+        let task = self.host.begin(job)?;
+        self.errands.push(Errand { of, task });
+        Ok(())
+    }
+
+    /// Gives up work for a case that is no longer the present one.
+    pub(super) fn give_up_errands(&mut self) {
+        self.errands.retain(|errand| errand.of == READ_RECORD);
+    }
+
+    /// Sends the replies of work that has ended.
+    pub(super) fn follow_errands(&mut self) {
+        let host = &self.host;
+        self.errands.retain_mut(|Errand { of, task }| {
+            let Some(event) = task.next_event() else {
+                return true;
+            };
+            host.reply(match event.0 {
+                EventKind::Replied(reply) => reply,
+                _ => {
+                    let sentence = format!("`{of}` failed by a defect of its own");
+                    Reply::Refused { of, sentence }.json()
+                }
+            });
+            false
+        });
+    }
+}

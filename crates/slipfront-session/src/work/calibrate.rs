@@ -1,0 +1,224 @@
+//! A calibration of the case from a record that a page was given.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::Map;
+use slipfront_calibrate::{
+    CalibrationInMemory, CalibrationProgress, CalibrationStage as Stage, Outcome, WantedRuns as Wanted,
+};
+use slipfront_run::measured::{Measure, columns_of};
+use toml::{Table, Value};
+
+use super::record::Chosen;
+use crate::base64;
+use crate::document::Document;
+use crate::event::{Event, EventKind, Worker};
+use crate::job::{MadeRuns, WantedRuns};
+use crate::protocol::{
+    CalibrateRequest, CalibratingReply, CalibrationResults, CalibrationStage, UnknownReply,
+};
+
+/// Calibrates a case. Where its runs are made elsewhere, those of a search for the closest curve excepted,
+/// the job ends with the runs that it wants first.
+pub(super) fn calibrate(
+    document: &Document,
+    request: &CalibrateRequest,
+    made: &[MadeRuns],
+    is_elsewhere: bool,
+    worker: &dyn Worker,
+) {
+    let tell = |kind| worker.tell(Event(kind));
+    match find(document, request, made, is_elsewhere, worker) {
+        Ok(Found::Results(results)) => {
+            let results = serde_json::to_value(results).map_err(|error| error.to_string());
+            tell(EventKind::Calibrated(results));
+        }
+        Ok(Found::Wants(stage, wanted)) => tell(EventKind::Wants(stage, wanted)),
+        Err(sentence) => tell(EventKind::Calibrated(Err(sentence))),
+    }
+}
+
+/// Makes runs that a calibration wants, and reports each.
+pub(super) fn make_runs(
+    document: &Document,
+    request: &CalibrateRequest,
+    wanted: &[WantedRuns],
+    worker: &dyn Worker,
+) {
+    let tell = |made| worker.tell(Event(EventKind::Made(made)));
+    let calibration = match Request::of(document, request).and_then(|request| request.calibration()) {
+        Ok(calibration) => calibration,
+        Err(sentence) => return tell(Err(sentence)),
+    };
+    for runs in wanted {
+        let made = read_wanted(runs).and_then(|runs| {
+            let made = calibration.make(&runs, worker.stop());
+            made.map_err(|error| error.to_string())
+        });
+        match made {
+            Ok(Some(curves)) => tell(Ok(json(&curves))),
+            Ok(None) => return,
+            Err(sentence) => return tell(Err(sentence)),
+        }
+    }
+}
+
+/// What a calibration has come to.
+enum Found {
+    Results(CalibrationResults),
+    Wants(CalibrationStage, Vec<WantedRuns>),
+}
+
+fn find(
+    document: &Document,
+    request: &CalibrateRequest,
+    made: &[MadeRuns],
+    is_elsewhere: bool,
+    worker: &dyn Worker,
+) -> Result<Found, String> {
+    let request = Request::of(document, request)?;
+    let mut calibration = request.calibration()?;
+    for made in made {
+        let curves = serde_json::from_str(&made.curves).map_err(|error| error.to_string())?;
+        let added = calibration.add(&read_wanted(&made.wanted)?, curves);
+        added.map_err(|error| error.to_string())?;
+    }
+    let mut watch = |now: &CalibrationProgress| {
+        worker.tell(Event(EventKind::Calibrating(CalibratingReply {
+            stage: stage(now.stage),
+            runs: now.runs,
+            of: now.of,
+        })));
+    };
+    let found = calibration.find(is_elsewhere, worker.stop(), &mut watch);
+    match found.map_err(|error| error.to_string())? {
+        Outcome::Found(found) => request.results(found).map(Found::Results),
+        Outcome::Wants(wanted) => {
+            let each = wanted.shared_out(wanted.count());
+            let each = each.iter().map(|runs| WantedRuns(json(runs)));
+            Ok(Found::Wants(stage(wanted.stage), each.collect()))
+        }
+    }
+}
+
+/// Something as JSON.
+fn json(of: &impl serde::Serialize) -> String {
+    // Structs of texts and finite numbers: serialisation cannot fail.
+    serde_json::to_string(of).expect("runs are JSON")
+}
+
+fn read_wanted(runs: &WantedRuns) -> Result<Wanted, String> {
+    serde_json::from_str(&runs.0).map_err(|error| error.to_string())
+}
+
+/// The stage that a page is told; it asks for none of the others.
+fn stage(stage: Stage) -> CalibrationStage {
+    match stage {
+        Stage::Training | Stage::FinerBlocks | Stage::Further | Stage::Planning => CalibrationStage::Training,
+        Stage::Closest => CalibrationStage::Closest,
+        Stage::Prediction => CalibrationStage::Prediction,
+        Stage::OtherStep => CalibrationStage::OtherStep,
+    }
+}
+
+/// A calibration that a page asks for: its file and its record.
+struct Request<'a> {
+    document: &'a Document,
+    toml: String,
+    name: &'a str,
+    bytes: Vec<u8>,
+}
+
+impl<'a> Request<'a> {
+    fn of(document: &'a Document, request: &'a CalibrateRequest) -> Result<Self, String> {
+        let file = &request.record;
+        let bytes = base64::decode(&file.bytes)?;
+        let columns = columns_of(&bytes, Path::new(&file.name)).map_err(|error| error.to_string())?;
+        Ok(Self {
+            document,
+            toml: calibration_file(document, request, Chosen::of(file, &columns)?)?,
+            name: &file.name,
+            bytes,
+        })
+    }
+
+    fn calibration(&self) -> Result<CalibrationInMemory, String> {
+        let files = self.document.files_in_memory();
+        let record = (self.name, self.bytes.clone());
+        let threads = rayon::current_num_threads();
+        let calibration = CalibrationInMemory::new(&self.toml, files, record, threads);
+        calibration.map_err(|error| error.to_string())
+    }
+
+    fn results(&self, found: slipfront_calibrate::CalibrationResults) -> Result<CalibrationResults, String> {
+        /// The part of the findings that a page shows beside the report.
+        #[derive(Deserialize)]
+        struct Findings {
+            unknowns: Vec<UnknownReply>,
+            is_refused: bool,
+        }
+        let findings = serde_json::from_str(&found.numbers);
+        let Findings { unknowns, is_refused } = findings.map_err(|error| error.to_string())?;
+        let set = found.set.into_iter();
+        let set: Map<_, _> = set
+            .map(|(key, value)| (key, serde_json::to_value(value).unwrap_or_default()))
+            .collect();
+        Ok(CalibrationResults {
+            unknowns,
+            is_refused,
+            report: found.report,
+            toml: self.toml.clone(),
+            set,
+        })
+    }
+}
+
+/// The calibration file that a page asks for.
+///
+/// # Errors
+/// A sentence, if a range is none.
+fn calibration_file(
+    document: &Document,
+    request: &CalibrateRequest,
+    chosen: Chosen,
+) -> Result<String, String> {
+    let ranges = request.unknowns.iter();
+    let ranges = ranges.map(|(key, range)| Ok((key.clone(), Value::try_from(range)?)));
+    let ranges: Result<Vec<(String, Value)>, toml::ser::Error> = ranges.collect();
+    let ranges = ranges.map_err(|error| error.to_string())?;
+    let (against, unit) = match chosen.along {
+        Measure::Displacement => ("displacement", "m"),
+        _ => ("time", "s"),
+    };
+    let [x, y] = chosen.columns;
+    let place = |place: f64| format!("{place} {unit}");
+    let shift = (request.shift != 0.0).then(|| place(request.shift));
+    let texts = [
+        ("x", Some(x.name)),
+        ("y", Some(y.name)),
+        ("x_unit", x.unit),
+        ("y_unit", y.unit),
+        ("against", Some(against.to_owned())),
+        ("shift", shift),
+        ("from", request.from.map(place)),
+        ("to", request.to.map(place)),
+    ];
+    let texts = texts.into_iter();
+    let texts = texts.filter_map(|(key, text)| Some((key.to_owned(), Value::from(text?))));
+    let numbers = [
+        ("noise", Value::from(request.noise)),
+        ("runs", Value::from(i64::from(request.runs))),
+        ("finer_runs", Value::from(0)),
+        ("unknowns", Value::Table(ranges.into_iter().collect())),
+    ];
+    let numbers = numbers.map(|(key, value)| (key.to_owned(), value));
+    let file = Table::from_iter([
+        ("base".to_owned(), Value::Table(document.keys().clone())),
+        (
+            "calibrate".to_owned(),
+            Value::Table(texts.chain(numbers).collect()),
+        ),
+    ]);
+    toml::to_string_pretty(&file).map_err(|error| error.to_string())
+}

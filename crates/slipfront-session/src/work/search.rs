@@ -1,0 +1,140 @@
+//! A search for a texture with less static friction than the painted one, and its comparison with that.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slipfront_base::number_format::count;
+use slipfront_case::case::Case;
+use slipfront_case::texture_file::textured_blocks;
+use slipfront_design::{Bounds, Design, Limits, Quantity, Wish};
+use slipfront_study::StudyError;
+
+use crate::document::Document;
+use crate::event::{Comparison, Event, EventKind, Mask, Tried, Worker};
+use crate::protocol::Estimate;
+use crate::search::{NOTHING_TRIED, SEARCH_TIME, WIDTH, limits};
+
+/// Most runs of a search: as many as a design has unless its file says otherwise.
+const MAX_RUNS: usize = 10_000;
+
+/// Number of surfaces, unseen by the search, on which the best texture is compared with the painted one.
+const FRESH_SURFACES: u64 = 8;
+
+/// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is
+/// time for several hundred textures in a minute, and for a comparison of the best in less than another one.
+const MAX_BLOCK_STEPS: f64 = 1e7;
+
+/// The design that a search is for, and the painted blocks, if there are any.
+fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
+    let allowed = limits(case);
+    let limits = Limits {
+        coverage: [0.0, allowed.most_percent],
+        feature: allowed.width_blocks,
+        gap: allowed.width_blocks,
+        ..Limits::default()
+    };
+    let wish = Wish::Least(Quantity::StaticFriction);
+    let mut design = Design::new(&[(case, wish)], false, limits, 1)?;
+    let painted = Some(textured_blocks(case)).filter(|painted| painted.contains(&true));
+    if let Some(painted) = &painted {
+        design.begin_with("painted".to_owned(), painted.clone());
+    }
+    Ok((design, painted))
+}
+
+/// Refuses a slider that has no room for a feature.
+fn refuse_narrow(design: &Design) -> Result<(), String> {
+    let [nx, ny] = design.size();
+    if nx.min(ny) < WIDTH {
+        return Err(format!(
+            "the slider has {nx} x {ny} blocks, where the narrowest feature that is searched for has {WIDTH}: take more blocks"
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a slider of which so many threads can try too few textures in the time.
+fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
+    let needed = design
+        .block_steps_per_texture()
+        .map_err(|error| error.to_string())?;
+    let most = MAX_BLOCK_STEPS * threads as f64;
+    if needed > most {
+        return Err(format!(
+            "the slider is too large for a search of a minute: to try a texture takes {needed:.2e} block-steps, where at most {most:.0e} \
+             leave time for some hundred textures on {}; take fewer blocks or a faster drive, or `slipfront design`, which takes as \
+             long as it needs",
+            count(threads, "thread")
+        ));
+    }
+    Ok(())
+}
+
+/// The design that a search for a document is for, and the painted blocks, if there are any.
+fn design_for(document: &Document, stop: &AtomicBool) -> Result<(Design, Option<Vec<bool>>), String> {
+    let case = document.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
+    let case = case.map_err(|error| error.to_string())?;
+    design(&case).map_err(|error| error.to_string())
+}
+
+/// Searches for a texture for [`SEARCH_TIME`], and gives the best one.
+///
+/// # Errors
+/// A sentence, if there is none, or the search was stopped.
+pub(super) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, String> {
+    let began = worker.now();
+    let (design, _) = design_for(document, worker.stop())?;
+    refuse_narrow(&design)?;
+    refuse_large(&design, rayon::current_num_threads())?;
+    let bounds = Bounds {
+        runs: MAX_RUNS,
+        share_of_time: &|| (worker.now() - began).as_secs_f64() / SEARCH_TIME.as_secs_f64(),
+        stop: worker.stop(),
+        cut: None,
+    };
+    let searched = design.search(&bounds, &mut |now| {
+        worker.tell(Event(EventKind::Tried(Tried {
+            textures: now.textures,
+            best_percent: now.best_texture.is_some().then_some(-now.best),
+            best_texture: now.best_texture.clone().map(Mask),
+        })));
+    });
+    let best = searched.map_err(|error| match error {
+        StudyError::NoDesign => format!(
+            "no texture whose features and gaps are {WIDTH} blocks wide covers as little of this slider as a search may: paint more, or \
+             take more blocks"
+        ),
+        error => error.to_string(),
+    })?;
+    best.into_iter()
+        .next()
+        .map(Mask)
+        .ok_or_else(|| NOTHING_TRIED.to_owned())
+}
+
+/// Compares the best texture of a search with the painted one, on surfaces that the search has not seen.
+///
+/// # Errors
+/// A sentence, if runs cannot be made, or the comparison was stopped.
+pub(super) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Result<Comparison, String> {
+    let (design, painted) = design_for(document, stop)?;
+    let both: Vec<Arc<Vec<bool>>> = [Arc::clone(&best.0)]
+        .into_iter()
+        .chain(painted.map(Arc::new))
+        .collect();
+    let losses = design.losses_on_fresh(&both, FRESH_SURFACES, stop);
+    let losses = losses.map_err(|error| error.to_string())?;
+    let changes = |losses: &Vec<f64>| {
+        let changes: Vec<f64> = losses.iter().map(|loss| 100.0 * (loss - 1.0)).collect();
+        Estimate::of(&changes)
+    };
+    // Without texture nothing changes.
+    let gain = |(surface, loss): (usize, &f64)| losses.get(1).map_or(1.0, |painted| painted[surface]) - loss;
+    let gain: Vec<f64> = losses[0].iter().enumerate().map(gain).collect();
+    Ok(Comparison {
+        surfaces: losses[0].len(),
+        best: changes(&losses[0]),
+        painted: losses.get(1).and_then(changes),
+        is_better: Estimate::of(&gain).is_some_and(|gain| gain.mean - gain.half_width.unwrap_or(0.0) > 0.0),
+    })
+}

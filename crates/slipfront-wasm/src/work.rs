@@ -1,0 +1,69 @@
+//! Functions of the work beside a session that the Worker calls.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use serde::Deserialize;
+use slipfront_session::{Document, Event, Job, Worker, run_archive};
+
+use crate::bits::bits_of_run;
+use crate::given::{self, duration, read, refuse};
+use crate::imports::{Saying, date, now, tell};
+
+/// A Worker that does work beside a session. It is ended from outside.
+struct OtherWorker(AtomicBool);
+
+impl Worker for OtherWorker {
+    fn tell(&self, event: Event) {
+        if let Ok(event) = serde_json::to_vec(&event) {
+            tell(Saying::Event, 0, &event);
+        }
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        &self.0
+    }
+
+    fn now(&self) -> Duration {
+        clock()
+    }
+}
+
+/// The time by the clock of the Worker.
+fn clock() -> Duration {
+    duration(now())
+}
+
+/// The time of day, UTC as in RFC 3339.
+fn time_of_day() -> String {
+    date();
+    String::from_utf8(given::take()).unwrap_or_default()
+}
+
+/// Does a job beside a session, and reports what it finds.
+pub(crate) fn run() {
+    refuse(read().map(|job: Job| job.run(&OtherWorker(AtomicBool::new(false)))));
+}
+
+/// Runs a case from rest, and gives the archive of its files.
+pub(crate) fn save() {
+    let now = || (time_of_day(), clock());
+    let report = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
+    let archive = read().and_then(|document: Document| run_archive(&document, &now, &report));
+    refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
+}
+
+/// A case as a text, and the files that it names.
+#[derive(Deserialize)]
+struct CaseOfFiles {
+    toml: String,
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+/// Gives the bits of a run after so many steps.
+pub(crate) fn bits(most_steps: u32) {
+    let bits =
+        read().and_then(|case: CaseOfFiles| bits_of_run(&case.toml, &case.files, u64::from(most_steps)));
+    refuse(bits.map(|bits| tell(Saying::Bits, 0, bits.as_bytes())));
+}
