@@ -19,7 +19,9 @@ let record = '';
 function row({ key, unit, median, interval: [low, high], is_determined: determined }) {
   const behind = unit === null || unit === '1' || unit === '' ? '' : ` ${unit}`;
   const cells = [`${number(median)}${behind}`, `${number(low)} ${say('range_to')} ${number(high)}${behind}`, say(determined ? 'determined' : 'not_determined')];
-  return make('tr', {}, [make('th', { textContent: key, scope: 'row' }), ...cells.map((textContent) => make('td', { textContent }))]);
+  // A long key is broken behind its table, where there is little room.
+  const [table, ...parts] = key.split('.');
+  return make('tr', {}, [make('th', { scope: 'row' }, [`${table}.`, make('wbr'), parts.join('.')]), ...cells.map((textContent) => make('td', { textContent }))]);
 }
 
 /** @param {CalibrationResults} results */
