@@ -92,6 +92,21 @@ test('a path becomes a time by the speed of the drive, and a coefficient is over
   mu.forEach((value) => near(value, 0.25));
 });
 
+test('a file that is no table says so, and asks for no columns', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  for (const [name, text] of [['notes.txt', 'words'], ['sheet.xlsx', 'PK no workbook'], ['empty.csv', '']]) {
+    const { problem, curve } = await lab.after(() => drop(lab, name, text), 'record', (record) => record.name === name);
+    assert.equal(curve, null);
+    await lab.reads('measure-problem', problem);
+    assert.ok(await lab.find('#measure').isVisible() && !(await lab.find('#measure-columns').isVisible()), name);
+  }
+  // By its name a picture is no record.
+  await choose(lab, 'picture.png', '');
+  await lab.reads('measure-problem', say('record_unreadable', { name: 'picture.png' }));
+  await lab.page.keyboard.press('Escape');
+  assert.equal(await lab.find('#measured-row').isVisible(), false);
+});
+
 test('a table without units is asked for them, and for its columns', async (t) => {
   const lab = await open(t, { toml: SMALL });
   const { units } = lab.last.case;

@@ -227,7 +227,7 @@ test('a dropped file that can be no image, case or run is refused in a sentence,
   };
   for (const [name, bytes] of Object.entries({
     'run.zip': [...zip], 'empty.zip': [], 'wide.png': png(2 ** 31 - 1, 1), 'large.png': png(100_000, 100_000), 'none.png': png(0, 0),
-    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)], 'text.txt': [1, 2, 3],
+    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)], 'text.md': [1, 2, 3],
   })) {
     await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
     await dropFile(lab, name, bytes);
