@@ -56,7 +56,7 @@ function placesOf({ x, y }, { columns, curve }) {
 function fillColumns(file, record) {
   const { name, columns, notes } = record;
   shown = file;
-  find('measure-columns').hidden = columns.length === 0;
+  find('measure-columns').hidden = columns.length < 2;
   find('measure-file').textContent = say('measure_file', { name });
   find('measure-notes').textContent = notes.join(' ');
   const chosen = placesOf(file, record);
