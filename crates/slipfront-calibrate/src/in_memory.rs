@@ -1,5 +1,5 @@
-//! A calibration without a results folder: a page makes it of the texts and bytes that it has, and may have its
-//! runs made by several workers.
+//! A calibration without a results folder. A page makes it of the texts and bytes that it has, and may have
+//! its runs made by several workers.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -39,7 +39,7 @@ pub struct CalibrationResults {
 pub enum Outcome {
     /// The calibration is done.
     Found(CalibrationResults),
-    /// These runs are to be [added](CalibrationInMemory::add) first.
+    /// The calibration needs these runs first, by [`add`](CalibrationInMemory::add).
     Wants(WantedRuns),
 }
 

@@ -550,7 +550,7 @@ pub(crate) enum CalibrationStage {
 #[derive(Debug, Serialize)]
 pub(crate) struct CalibratedReply {
     pub(crate) outcome: CalibrationOutcome,
-    /// Why it has failed.
+    /// Reason of a failure.
     pub(crate) sentence: Option<String>,
     /// [`CalibrationResults`], if it is done.
     pub(crate) results: Option<Value>,

@@ -1,6 +1,6 @@
-//! The laboratory as WebAssembly, for Workers of its page: `lab_worker.js` of slipfront-lab. One module has the
-//! session, made with the feature `session` alone; a second one, made with `work` alone and loaded on first use,
-//! does the work beside it.
+//! The laboratory as WebAssembly, for Workers of its page: `lab_worker.js` of slipfront-lab. One module has
+//! the session, made with the feature `session` alone. A second one, made with `work` alone and loaded on
+//! first use, does the work beside it.
 //!
 //! The Worker writes bytes into the room that a module gives it, calls a function, and gets the results by
 //! `say`.

@@ -64,7 +64,7 @@ pub(super) fn make_runs(
     }
 }
 
-/// What a calibration has come to.
+/// Results of a calibration, or the runs that it needs first.
 enum Found {
     Results(CalibrationResults),
     Wants(CalibrationStage, Vec<WantedRuns>),

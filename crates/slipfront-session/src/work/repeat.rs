@@ -55,8 +55,8 @@ pub(super) fn static_friction(
     Ok(record.map(|record| found(&record.summary)))
 }
 
-/// Finds static friction mu_s* at two values of the quantity of a slider, and the change from the first to the
-/// second.
+/// Finds static friction mu_s* at two values of the quantity of a slider, and the change from the first to
+/// the second.
 ///
 /// # Errors
 /// A sentence, if the case cannot be run, or the work was stopped.
