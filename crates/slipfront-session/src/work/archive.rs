@@ -19,7 +19,7 @@ const SHARE: f64 = 0.01;
 /// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads,
 /// summary, series, fields, kymograph and pictures, each with the bytes that `slipfront run` writes, and the
 /// manifest of these files. `now` tells the time of day, UTC as in RFC 3339, and that of a monotonic clock;
-/// `report_progress` gets the share of the run that is done. If the pictures cannot be drawn, the manifest says
+/// `report_progress` gets the share of the run that is done. If pictures cannot be drawn, the manifest says
 /// why.
 ///
 /// # Errors
