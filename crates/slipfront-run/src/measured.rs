@@ -2,22 +2,26 @@
 
 mod columns;
 mod correction;
+mod error;
+mod measure;
+mod names;
 mod workbook;
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use slipfront_base::disk::open_limited;
 use slipfront_base::number_format::{count, with_si_prefix};
 use slipfront_base::text::{display_path, truncated};
-use slipfront_case::quantity::{Duration, Force, Length};
 use slipfront_case::table::{
     HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, has_thousands, number,
 };
-use thiserror::Error;
 
 pub use self::columns::{TableColumn, columns_of, is_displacement, suggested};
 pub use self::correction::Correction;
+pub use self::error::MeasuredError;
+pub use self::measure::Measure;
+use self::names::{ColumnName, is_coefficient, units_of};
 
 /// A column as a user names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,87 +30,6 @@ pub struct Column {
     pub name: String,
     /// Unit of the column, if the header has none or another is meant.
     pub unit: Option<String>,
-}
-
-/// Quantity of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// Time, s.
-    Time,
-    /// Displacement, m.
-    Displacement,
-    /// Force, N.
-    Force,
-    /// Friction coefficient, 1.
-    Coefficient,
-}
-
-/// Reason for which a table is no record.
-#[derive(Debug, Error)]
-#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
-pub enum MeasuredError {
-    #[error("{} {source}", display_path(path))]
-    Table { path: PathBuf, source: TableError },
-    #[error("{} {why}", display_path(path))]
-    Workbook { path: PathBuf, why: String },
-    #[error(
-        "{} has `{name}` in several columns, {columns}: give the number of the one that is meant, such as {number}",
-        display_path(path)
-    )]
-    Several {
-        path: PathBuf,
-        name: String,
-        columns: String,
-        number: usize,
-    },
-    #[error("{} has no column `{name}`: {known}", display_path(path))]
-    Column {
-        path: PathBuf,
-        name: String,
-        known: String,
-    },
-    #[error(
-        "nothing tells the unit of column `{column}` of {}: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
-        display_path(path)
-    )]
-    NoUnit {
-        path: PathBuf,
-        column: String,
-        axis: &'static str,
-        example: &'static str,
-    },
-    #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
-    Unit {
-        path: PathBuf,
-        column: String,
-        why: String,
-    },
-    #[error(
-        "line {line} of {}, {text:?}, has no number in column `{column}`: write one, remove the line, or begin it with #",
-        display_path(path)
-    )]
-    NoNumber {
-        path: PathBuf,
-        line: u64,
-        text: String,
-        column: String,
-    },
-    #[error(
-        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards: \
-         keep the lines of one step of a test",
-        display_path(path)
-    )]
-    Falls {
-        path: PathBuf,
-        line: u64,
-        before: f64,
-        value: f64,
-    },
-    #[error(
-        "{} has {found} lines of numbers; a record has at least two",
-        display_path(path)
-    )]
-    TooShort { path: PathBuf, found: usize },
 }
 
 /// Largest steps back of displacements, as shares of the whole path, that are taken for the noise of a
@@ -118,33 +41,6 @@ const DAY: f64 = 86_400.0;
 
 /// Largest number of bytes of a line of a record.
 const LINE_MAX_BYTES: u64 = 1 << 20;
-
-/// Units in the words of instruments, and their sizes in SI units.
-const UNIT_WORDS: [(Measure, &str, f64); 22] = [
-    (Measure::Time, "sec", 1.0),
-    (Measure::Time, "secs", 1.0),
-    (Measure::Time, "second", 1.0),
-    (Measure::Time, "seconds", 1.0),
-    (Measure::Time, "Sec", 1.0),
-    (Measure::Time, "msec", 1e-3),
-    (Measure::Time, "usec", 1e-6),
-    (Measure::Time, "min", 60.0),
-    (Measure::Time, "minutes", 60.0),
-    (Measure::Time, "h", 3600.0),
-    (Measure::Displacement, "micron", 1e-6),
-    (Measure::Displacement, "microns", 1e-6),
-    (Measure::Displacement, "inch", 0.0254),
-    // Standard gravity, 9.80665 m/s^2.
-    (Measure::Force, "gf", 9.80665e-3),
-    (Measure::Force, "kgf", 9.80665),
-    (Measure::Force, "lbf", 4.448_221_615_260_5),
-    (Measure::Coefficient, "1", 1.0),
-    (Measure::Coefficient, "-", 1.0),
-    (Measure::Coefficient, "\u{2013}", 1.0),
-    (Measure::Coefficient, "\u{2212}", 1.0),
-    (Measure::Coefficient, "", 1.0),
-    (Measure::Coefficient, "%", 0.01),
-];
 
 /// Two columns in SI units, of which the first never falls.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,71 +67,6 @@ struct Found {
     /// Factor of abscissae; or why their unit is not known, which does not matter to times of the day.
     x_factor: Result<f64, MeasuredError>,
     y_factor: f64,
-}
-
-impl Measure {
-    /// SI unit of the quantity.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Time => "s",
-            Self::Displacement => "m",
-            Self::Force => "N",
-            Self::Coefficient => "1",
-        }
-    }
-
-    /// The value of a quantity with its unit, such as `1.5 s`, in SI units.
-    ///
-    /// # Errors
-    /// A sentence on why the text is none.
-    pub fn parse(self, text: &str) -> Result<f64, String> {
-        let text = text.trim();
-        let is_of_number = |character: char| character.is_ascii_digit() || character == '.';
-        let end = text.rfind(is_of_number).map_or(0, |at| at + 1);
-        let (number, unit) = text.split_once(' ').unwrap_or_else(|| text.split_at(end));
-        let number = number.parse::<f64>().ok().filter(|number| number.is_finite());
-        match (number, self.factor(unit.trim())) {
-            (Some(_), None) if unit.trim().is_empty() => {
-                Err(format!("{text:?} has no unit: write it as \"2 {}\"", self.unit()))
-            }
-            (Some(number), Some(factor)) => Ok(number * factor),
-            (Some(_), None) => Err(self.no_such_unit(unit.trim())),
-            (None, _) => Err(format!(
-                "{text:?} is no number with a unit, such as 2 {}",
-                self.unit()
-            )),
-        }
-    }
-
-    /// The size of a unit in SI units, as instruments write it.
-    fn factor(self, unit: &str) -> Option<f64> {
-        let one = format!("1 {unit}");
-        let read = match self {
-            Self::Time => one.parse::<Duration>().ok().map(|time| time.si()),
-            Self::Displacement => one.parse::<Length>().ok().map(|length| length.si()),
-            Self::Force => one.parse::<Force>().ok().map(|force| force.si()),
-            Self::Coefficient => None,
-        };
-        let words = || {
-            let of = UNIT_WORDS
-                .iter()
-                .find(|(measure, word, _)| *measure == self && *word == unit);
-            of.map(|(_, _, size)| *size)
-        };
-        read.or_else(words)
-    }
-
-    /// A sentence about a unit that is none of this quantity.
-    fn no_such_unit(self, unit: &str) -> String {
-        let one = format!("1 {unit}");
-        let why = match self {
-            Self::Time => one.parse::<Duration>().err().map(|why| why.to_string()),
-            Self::Displacement => one.parse::<Length>().err().map(|why| why.to_string()),
-            Self::Force => one.parse::<Force>().err().map(|why| why.to_string()),
-            Self::Coefficient => None,
-        };
-        why.unwrap_or_else(|| format!("a coefficient has the unit 1 or %, and not {unit:?}"))
-    }
 }
 
 impl MeasuredRecord {
@@ -528,76 +359,6 @@ impl NoNumber {
     }
 }
 
-/// The name of a column, with its unit if it has one.
-struct ColumnName<'t> {
-    whole: &'t str,
-    bare: &'t str,
-    unit: Option<String>,
-}
-
-impl<'t> ColumnName<'t> {
-    /// The names of all columns of a table; none if it has no line of names.
-    fn all(layout: &'t TableLayout) -> Vec<Self> {
-        let names = layout.names.iter().flat_map(|names| &names.texts);
-        names.map(|name| Self::of(name)).collect()
-    }
-
-    /// The parts of a name such as `Force (N)`, `force [N]`, `F / N`, `t/s`, `Time, s`, `Zeit in s`,
-    /// `force_n`.
-    fn of(whole: &'t str) -> Self {
-        let in_brackets = [('(', ')'), ('[', ']')].into_iter().find_map(|(open, close)| {
-            let (bare, rest) = whole.split_once(open)?;
-            Some((bare.trim(), rest.strip_suffix(close)?.trim()))
-        });
-        // Elsewhere what stands behind is a unit only if it is known: `F_max` and `Fx/Fz` have none.
-        let behind = || {
-            [" / ", "/", ", ", " in ", "_"].into_iter().find_map(|sign| {
-                let (bare, unit) = whole.rsplit_once(sign)?;
-                let (bare, unit) = (bare.trim(), unit.trim());
-                (!bare.is_empty() && (is_known(unit) || sign == " / ")).then_some((bare, unit))
-            })
-        };
-        let (bare, unit) = match in_brackets.or_else(behind) {
-            Some((bare, unit)) => (bare, Some(unit.to_owned())),
-            None => (whole, None),
-        };
-        Self { whole, bare, unit }
-    }
-}
-
-/// Units of the columns of a table: the one in the name, or else the one in the line of units.
-fn units_of(layout: &TableLayout, names: &[ColumnName]) -> Vec<Option<String>> {
-    let below = |place: usize| {
-        let unit = layout.units.as_ref()?.texts.get(place);
-        let unit = unit.map_or("", |text| without_brackets(text));
-        // No unit in such a line is the unit 1, of a coefficient.
-        let is_bare = names.get(place).is_some_and(|name| is_coefficient(name.bare));
-        (!unit.is_empty() || is_bare).then(|| unit.to_owned())
-    };
-    let in_name = |place: usize| names.get(place)?.unit.clone();
-    (0..layout.columns)
-        .map(|place| in_name(place).or_else(|| below(place)))
-        .collect()
-}
-
-/// A unit without the brackets around it.
-fn without_brackets(text: &str) -> &str {
-    text.trim_matches(['(', ')', '[', ']']).trim()
-}
-
-/// Whether a unit is one of a quantity that a column can have, or is written as these are in names: small.
-fn is_known(unit: &str) -> bool {
-    let measures = [
-        Measure::Time,
-        Measure::Displacement,
-        Measure::Force,
-        Measure::Coefficient,
-    ];
-    !unit.is_empty()
-        && (measures.into_iter().any(|measure| measure.factor(unit).is_some())
-            || ["n", "kn", "mn"].contains(&unit))
-}
-
 /// Position of a column among `n`: the one of exactly this name, else the one of this name without its unit
 /// or in other letters, else the one of this number.
 fn place_of(
@@ -688,20 +449,6 @@ fn factor(
             Measure::Coefficient => "1",
         },
     })
-}
-
-/// Whether a name is a usual one of a friction coefficient.
-fn is_coefficient(name: &str) -> bool {
-    const NAMES: [&str; 7] = [
-        "mu",
-        "\u{3bc}",
-        "\u{b5}",
-        "cof",
-        "coefficient",
-        "friction coefficient",
-        "coefficient of friction",
-    ];
-    NAMES.contains(&name.trim().to_lowercase().as_str())
 }
 
 #[cfg(test)]

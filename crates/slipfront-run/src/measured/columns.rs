@@ -4,7 +4,10 @@ use std::path::Path;
 
 use slipfront_case::table::{HEAD_BYTES, TableLayout, TableOptions};
 
-use super::{ColumnName, Measure, MeasuredError, is_coefficient, units_of, workbook};
+use super::error::MeasuredError;
+use super::measure::Measure;
+use super::names::{ColumnName, is_coefficient, units_of};
+use super::workbook;
 
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -147,7 +147,13 @@ fn case(input: &[u8]) {
     {
         return;
     }
-    match Case::new(file, "case", repository("cases").as_path(), &mut |_| true, Ranks::ALONE) {
+    match Case::new(
+        file,
+        "case",
+        repository("cases").as_path(),
+        &mut |_| true,
+        Ranks::ALONE,
+    ) {
         Err(error) => readable(&error),
         Ok(case) => {
             assert!(case.time_plan.last_step >= 1 && case.time_plan.dt_star > 0.0);

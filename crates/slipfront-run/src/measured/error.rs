@@ -1,0 +1,75 @@
+//! Why a table is no record.
+
+use std::path::PathBuf;
+
+use slipfront_base::text::display_path;
+use slipfront_case::table::TableError;
+use thiserror::Error;
+
+/// Reason for which a table is no record.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum MeasuredError {
+    #[error("{} {source}", display_path(path))]
+    Table { path: PathBuf, source: TableError },
+    #[error("{} {why}", display_path(path))]
+    Workbook { path: PathBuf, why: String },
+    #[error(
+        "{} has `{name}` in several columns, {columns}: give the number of the one that is meant, such as {number}",
+        display_path(path)
+    )]
+    Several {
+        path: PathBuf,
+        name: String,
+        columns: String,
+        number: usize,
+    },
+    #[error("{} has no column `{name}`: {known}", display_path(path))]
+    Column {
+        path: PathBuf,
+        name: String,
+        known: String,
+    },
+    #[error(
+        "nothing tells the unit of column `{column}` of {}: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
+        display_path(path)
+    )]
+    NoUnit {
+        path: PathBuf,
+        column: String,
+        axis: &'static str,
+        example: &'static str,
+    },
+    #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
+    Unit {
+        path: PathBuf,
+        column: String,
+        why: String,
+    },
+    #[error(
+        "line {line} of {}, {text:?}, has no number in column `{column}`: write one, remove the line, or begin it with #",
+        display_path(path)
+    )]
+    NoNumber {
+        path: PathBuf,
+        line: u64,
+        text: String,
+        column: String,
+    },
+    #[error(
+        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards: \
+         keep the lines of one step of a test",
+        display_path(path)
+    )]
+    Falls {
+        path: PathBuf,
+        line: u64,
+        before: f64,
+        value: f64,
+    },
+    #[error(
+        "{} has {found} lines of numbers; a record has at least two",
+        display_path(path)
+    )]
+    TooShort { path: PathBuf, found: usize },
+}

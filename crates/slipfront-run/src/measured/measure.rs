@@ -1,0 +1,108 @@
+//! Quantities of columns, and their units as instruments write them.
+
+use slipfront_case::quantity::{Duration, Force, Length};
+
+/// Quantity of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Time, s.
+    Time,
+    /// Displacement, m.
+    Displacement,
+    /// Force, N.
+    Force,
+    /// Friction coefficient, 1.
+    Coefficient,
+}
+
+/// Units in the words of instruments, and their sizes in SI units.
+const UNIT_WORDS: [(Measure, &str, f64); 22] = [
+    (Measure::Time, "sec", 1.0),
+    (Measure::Time, "secs", 1.0),
+    (Measure::Time, "second", 1.0),
+    (Measure::Time, "seconds", 1.0),
+    (Measure::Time, "Sec", 1.0),
+    (Measure::Time, "msec", 1e-3),
+    (Measure::Time, "usec", 1e-6),
+    (Measure::Time, "min", 60.0),
+    (Measure::Time, "minutes", 60.0),
+    (Measure::Time, "h", 3600.0),
+    (Measure::Displacement, "micron", 1e-6),
+    (Measure::Displacement, "microns", 1e-6),
+    (Measure::Displacement, "inch", 0.0254),
+    // Standard gravity, 9.80665 m/s^2.
+    (Measure::Force, "gf", 9.80665e-3),
+    (Measure::Force, "kgf", 9.80665),
+    (Measure::Force, "lbf", 4.448_221_615_260_5),
+    (Measure::Coefficient, "1", 1.0),
+    (Measure::Coefficient, "-", 1.0),
+    (Measure::Coefficient, "\u{2013}", 1.0),
+    (Measure::Coefficient, "\u{2212}", 1.0),
+    (Measure::Coefficient, "", 1.0),
+    (Measure::Coefficient, "%", 0.01),
+];
+
+impl Measure {
+    /// SI unit of the quantity.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Time => "s",
+            Self::Displacement => "m",
+            Self::Force => "N",
+            Self::Coefficient => "1",
+        }
+    }
+
+    /// The value of a quantity with its unit, such as `1.5 s`, in SI units.
+    ///
+    /// # Errors
+    /// A sentence on why the text is none.
+    pub fn parse(self, text: &str) -> Result<f64, String> {
+        let text = text.trim();
+        let is_of_number = |character: char| character.is_ascii_digit() || character == '.';
+        let end = text.rfind(is_of_number).map_or(0, |at| at + 1);
+        let (number, unit) = text.split_once(' ').unwrap_or_else(|| text.split_at(end));
+        let number = number.parse::<f64>().ok().filter(|number| number.is_finite());
+        match (number, self.factor(unit.trim())) {
+            (Some(_), None) if unit.trim().is_empty() => {
+                Err(format!("{text:?} has no unit: write it as \"2 {}\"", self.unit()))
+            }
+            (Some(number), Some(factor)) => Ok(number * factor),
+            (Some(_), None) => Err(self.no_such_unit(unit.trim())),
+            (None, _) => Err(format!(
+                "{text:?} is no number with a unit, such as 2 {}",
+                self.unit()
+            )),
+        }
+    }
+
+    /// The size of a unit in SI units, as instruments write it.
+    pub(super) fn factor(self, unit: &str) -> Option<f64> {
+        let one = format!("1 {unit}");
+        let read = match self {
+            Self::Time => one.parse::<Duration>().ok().map(|time| time.si()),
+            Self::Displacement => one.parse::<Length>().ok().map(|length| length.si()),
+            Self::Force => one.parse::<Force>().ok().map(|force| force.si()),
+            Self::Coefficient => None,
+        };
+        let words = || {
+            let of = UNIT_WORDS
+                .iter()
+                .find(|(measure, word, _)| *measure == self && *word == unit);
+            of.map(|(_, _, size)| *size)
+        };
+        read.or_else(words)
+    }
+
+    /// A sentence about a unit that is none of this quantity.
+    pub(super) fn no_such_unit(self, unit: &str) -> String {
+        let one = format!("1 {unit}");
+        let why = match self {
+            Self::Time => one.parse::<Duration>().err().map(|why| why.to_string()),
+            Self::Displacement => one.parse::<Length>().err().map(|why| why.to_string()),
+            Self::Force => one.parse::<Force>().err().map(|why| why.to_string()),
+            Self::Coefficient => None,
+        };
+        why.unwrap_or_else(|| format!("a coefficient has the unit 1 or %, and not {unit:?}"))
+    }
+}
