@@ -89,7 +89,11 @@ impl Session {
         while let Some(event) = search.task.next_event() {
             match event.0 {
                 EventKind::Tried(tried) => search.note(tried),
-                EventKind::Searched(found) => searched = Some(found),
+                // The last event of this task, which may have ended.
+                EventKind::Searched(found) => {
+                    searched = Some(found);
+                    break;
+                }
                 EventKind::Compared(Ok(comparison)) => {
                     let best = search.compared.take()?;
                     return Some(Ok((best, comparison)));

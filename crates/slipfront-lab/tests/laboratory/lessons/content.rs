@@ -27,6 +27,8 @@ pub(crate) struct Lesson {
 pub(crate) struct Step {
     pub(crate) id: String,
     pub(crate) case: String,
+    /// Measured record that the reader can load.
+    pub(crate) record: Option<String>,
     pub(crate) view: View,
     pub(crate) set: Vec<Button>,
 }
