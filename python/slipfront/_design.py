@@ -228,7 +228,7 @@ class Design:
         Raises
         ------
         CaseError
-            When no texture keeps the limits.
+            When no texture satisfies the limits.
 
         Warns
         -----

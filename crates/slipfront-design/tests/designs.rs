@@ -754,7 +754,7 @@ fn the_folder_has_the_cases_of_the_verdict() {
     let text = opened
         .find(&bounds(60, &AtomicBool::new(false)), &mut |_| {})
         .unwrap();
-    assert!(text.contains("no texture keeps the limits"), "{text}");
+    assert!(text.contains("no texture satisfies the limits"), "{text}");
 }
 
 /// A slider that is thick for the features of the design is told to be no sheet.

@@ -270,7 +270,7 @@ fn copy(from: &Path, to: &Path) {
 )]
 #[case::damaged(
     "printf x | dd of=k/.slipfront/checkpoint.bin bs=1 seek=900 conv=notrunc",
-    "its checksum does not fit"
+    "its checksum is wrong"
 )]
 #[case::equal("true", "rank 1: the folder k is not the folder k of rank 0")]
 fn another_folder_is_not_resumed(#[case] change: &str, #[case] sentence: &str) {

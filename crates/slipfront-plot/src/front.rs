@@ -66,7 +66,7 @@ pub struct FrontMap {
     pub nucleations: Vec<[f64; 2]>,
 }
 
-/// Share of the sliding blocks against place and time.
+/// Share of the sliding blocks against position and time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpaceTime {
     /// Quantity of the places; its unit is added.
@@ -108,7 +108,7 @@ pub fn front(map: &FrontMap, space_time: &SpaceTime, size: PictureSize) -> Resul
     canvas.widened(size).finish()
 }
 
-/// Draws the share of the sliding blocks against place and time alone, usually as wide as a journal's text
+/// Draws the share of the sliding blocks against position and time alone, usually as wide as a journal's text
 /// (175 mm).
 ///
 /// # Errors

@@ -48,7 +48,7 @@ pub enum MeasuredError {
     #[error("{} {why}", display_path(path))]
     Workbook { path: PathBuf, why: String },
     #[error(
-        "{} has `{name}` in several columns, {columns}: give the number of the one that is meant, such as {number}",
+        "{} has `{name}` in several columns, {columns}: give the number of a column, such as {number}",
         display_path(path)
     )]
     Several {
@@ -64,7 +64,7 @@ pub enum MeasuredError {
         known: String,
     },
     #[error(
-        "nothing tells the unit of column `{column}` of {}: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
+        "column `{column}` of {} has no unit: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
         display_path(path)
     )]
     NoUnit {
@@ -90,8 +90,8 @@ pub enum MeasuredError {
         column: String,
     },
     #[error(
-        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards: \
-         keep the lines of one step of a test",
+        "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a single \
+         step of the test",
         display_path(path)
     )]
     Falls {
@@ -101,7 +101,7 @@ pub enum MeasuredError {
         value: f64,
     },
     #[error(
-        "{} has {found} lines of numbers; a record has at least two",
+        "{} has {found} lines of numbers; a record needs at least two",
         display_path(path)
     )]
     TooShort { path: PathBuf, found: usize },
@@ -199,7 +199,7 @@ impl Measure {
             (Some(number), Some(factor)) => Ok(number * factor),
             (Some(_), None) => Err(self.no_such_unit(unit.trim())),
             (None, _) => Err(format!(
-                "{text:?} is no number with a unit, such as 2 {}",
+                "{text:?} is not a number with a unit, such as 2 {}",
                 self.unit()
             )),
         }
@@ -390,7 +390,7 @@ impl MeasuredRecord {
             (_, None) => {}
             (_, Some((first, lines))) => {
                 record.footer = Some(format!(
-                    "{} ends with {} without numbers, from line {} on",
+                    "{} ends with {} without numbers, starting at line {}",
                     display_path(path),
                     count(lines, "line"),
                     first.line
@@ -435,7 +435,7 @@ impl MeasuredRecord {
         self.x = bins.values().map(|[x, _, n]| x / n).collect();
         self.y = bins.values().map(|[_, y, n]| y / n).collect();
         self.averaged = Some(format!(
-            "displacements go back by up to {}, as those of a sensor with noise: {} are averaged over bins of this width to {}",
+            "displacements decrease by up to {}, like sensor noise: {} are averaged over bins of this width to {}",
             with_si_prefix(back, "m"),
             count(points, "point"),
             self.x.len()

@@ -199,16 +199,16 @@ impl DirectedPoints<'_> {
             .max();
         let most = most.unwrap_or(0);
         let parts = [
-            (without > 0).then(|| format!("{} left out that had no transition", are(without, "run"))),
+            (without > 0).then(|| format!("{} without a transition left out", are(without, "run"))),
             (directions < all.len()).then(|| {
                 format!(
-                    "{directions} of {} count, those in which at least half of the runs have a value",
+                    "{directions} of {} are used, those with values from at least half of the runs",
                     count(all.len(), "direction")
                 )
             }),
             (replicates < most).then(|| {
                 format!(
-                    "{replicates} of {} count, those with a value in each of the directions",
+                    "{replicates} of {} are used, those with a value in every direction",
                     count(most, "replicate")
                 )
             }),
@@ -221,12 +221,12 @@ impl DirectedPoints<'_> {
 /// Result for the values of replicates in these directions, without friction across the drive.
 fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Result<OverDirections, String> {
     if degrees.len() < 2 {
-        return Err("anisotropy needs values in two directions or more".to_owned());
+        return Err("anisotropy needs values in at least two directions".to_owned());
     }
     let too_few = || {
         format!(
-            "anisotropy cannot be told from chance with {} that {} a value in every direction: it takes {MIN_REPLICATES} or more \
-             (`study.replicates`)",
+            "with {} that {} a value in every direction anisotropy cannot be distinguished from scatter: use {MIN_REPLICATES} \
+             or more (`study.replicates`)",
             count(values.len(), "replicate"),
             if values.len() == 1 { "has" } else { "have" },
         )

@@ -50,7 +50,7 @@ pub fn execute_on_device(
 ) -> Result<StudyResults, StudyError> {
     assert!(
         !plan.settings.keeps_all_runs(),
-        "a device makes no folders of runs"
+        "a device cannot write folders of runs"
     );
     let (to_scheduler, finished) = mpsc::channel::<TaskResult>();
     let (to_device, tasks) = mpsc::channel::<Task>();

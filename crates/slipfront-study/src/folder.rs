@@ -84,10 +84,10 @@ impl StudyFolder {
     pub fn notes(&self) -> Vec<String> {
         let damaged = (self.records.damaged > 0).then(|| {
             let lines = count(self.records.damaged, "damaged line");
-            format!("the journal has {lines}, passed over: its runs count as not run")
+            format!("the journal has {lines}, which are ignored: their runs count as not run")
         });
         let changed =
-            "the study has changed since this folder was last used; runs that still belong to it are kept";
+            "the study was changed after this folder was last used; runs that still belong to it are kept";
         damaged
             .into_iter()
             .chain(self.changed.then(|| changed.to_owned()))

@@ -35,8 +35,8 @@ pub(crate) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String
         Ok((over, combinations(axes, &others)))
     } else {
         Err(format!(
-            "there is no polar picture: it would have {} curves, two for each combination of the levels of the other axes, and can have \
-             {MOST_CURVES}; anisotropy.csv has what it would show",
+            "there is no polar picture: it would have {} curves, two for each combination of the levels of the other axes, but \
+             at most {MOST_CURVES} are possible; anisotropy.csv contains the values",
             2 * count
         ))
     })
@@ -82,7 +82,7 @@ pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<S
     let missing = QUANTITIES.into_iter().filter(expected);
     let missing = missing.filter(|quantity| !measured.contains(quantity));
     missing
-        .map(|quantity| format!("there is no picture of {quantity}: no run has a value of it"))
+        .map(|quantity| format!("there is no picture of {quantity}: no run has a value"))
         .collect()
 }
 
@@ -124,7 +124,7 @@ impl ChartKind {
             (None, 0) => Self::Nothing("the study has no axis".to_owned()),
             (None, 1 | 2) => Self::Bars,
             (None, count) => Self::Nothing(format!(
-                "none of its {count} axes has numbers, and bars are drawn for one axis or two"
+                "none of its {count} axes is numeric, and bars need one or two axes"
             )),
             (Some((x, Ok(split))), _) => Self::Curves { x, split },
             // Over another axis there may be fewer of them.
@@ -191,13 +191,13 @@ fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     }
     if held > MOST_CURVES {
         return Err(format!(
-            "a picture would have {held} of them, one for each level of `{}`, and can have {MOST_CURVES}",
+            "a picture would have {held} curves, one for each level of `{}`, but at most {MOST_CURVES} are possible",
             axes[others[split]].columns.join(" ")
         ));
     }
     match count / held {
         pictures if pictures > MOST_PICTURES => Err(format!(
-            "they would take {pictures} pictures, more than {MOST_PICTURES}"
+            "they would need {pictures} pictures, more than {MOST_PICTURES}"
         )),
         _ => Ok(split),
     }

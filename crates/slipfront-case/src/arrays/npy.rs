@@ -189,7 +189,7 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
         let shape = shape(&header.shape)?;
         let wanted = data_start as u64 + number.size as u64 * shape[0] as u64 * shape[1] as u64;
         if length != wanted {
-            let detail = format!("it has {length} bytes where its header asks for {wanted}");
+            let detail = format!("it has {length} bytes, but its header requires {wanted}");
             return Err(broken(path, ".npy", &detail));
         }
         let start = SeekFrom::Start(data_start as u64);

@@ -228,7 +228,7 @@ impl Budget {
                         count(budget.frames as usize, "snapshot"),
                         count(budget.fields as usize, "field")
                     ),
-                    remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
+                    remedy: "use fewer `output.snapshots` or `output.fields`, or increase `output.stride`",
                 },
                 bytes: [snapshots(cells), snapshots(all_cells), snapshots(all_cells)],
             },
@@ -264,7 +264,7 @@ impl Budget {
                 cause: |_| Cause {
                     key: "texture",
                     what: "the files that it reads".to_owned(),
-                    remedy: "scale them down, or name fewer",
+                    remedy: "scale them down, or use fewer",
                 },
                 bytes: [self.laid, self.inputs, 0.0],
             },
@@ -412,7 +412,7 @@ impl Budget {
         let (whose, remedy) = if is_resumed {
             // The case of a run that resumes can be changed no more.
             let remedy = "give it more, in a queue for example with `--mem`";
-            ("going on with this run", Some(remedy))
+            ("resuming this run", Some(remedy))
         } else {
             ("a run of this case", None)
         };
@@ -452,7 +452,7 @@ impl Budget {
         let (needed, most) = (byte_size(of_rank), cause.in_words(bytes));
         let remedy = remedy.unwrap_or(cause.remedy);
         let sentence = format!(
-            "{whose} takes about {needed} of memory{each} ({most}){together} where {bound}: {remedy}{or}"
+            "{whose} needs about {needed} of memory{each} ({most}){together}, but {bound}: {remedy}{or}"
         );
         Err(file.source.error(cause.key, sentence))
     }
@@ -490,8 +490,8 @@ impl Budget {
         };
         let (cause, bytes) = self.most(Place::Files);
         let sentence = format!(
-            "the files of this run take about {} ({}){beside} where {} are free in {}: free some, {}{without}, \
-             or choose another folder",
+            "the files of this run need about {} ({}){beside}, but {} are free in {}: free some, {}{without}, or choose another \
+             folder",
             byte_size(self.disk()),
             cause.in_words(bytes),
             byte_size(free),

@@ -230,7 +230,11 @@ fn what_a_bulk_body_does_not_have_is_refused() {
             "follows from `slider.height`",
         ),
         ("drive.attach", "'left'", "its whole upper face is driven"),
-        ("drive.motion", "'rotation'", "a body that turns is not derived"),
+        (
+            "drive.motion",
+            "'rotation'",
+            "its equations for rotation are not derived",
+        ),
     ] {
         let refused = refusal(&[bulk, &format!("{key}={value}")]);
         assert!(refused.contains(key) && refused.contains(why), "{refused}");

@@ -742,7 +742,7 @@ fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
         (
             "1,1",
             "bearing_percent = 40",
-            "the texture covers 25.00 % of the blocks instead of 60.00 %: blocks of equal height touch together",
+            "the texture covers 25.00 % of the blocks instead of 60.00 %: blocks of equal height are in contact together",
         ),
     ] {
         let said = said(lowest, bearing);

@@ -264,7 +264,7 @@ fn the_block_decides_where_no_key_gives_a_length() {
             SHEET,
             "the block of 20 um decides: it takes the place of `friction.slip_weakening`",
         ),
-        ("slider.blocks = [1, 1]", "a single block has none"),
+        ("slider.blocks = [1, 1]", "a single block has no mesh error"),
     ] {
         let case = case(text);
         assert_eq!(case.deciding_length(), expected);

@@ -205,7 +205,7 @@ fn a_case_of_a_prestressed_chain_has_the_speed_of_its_front(tau: f64) {
 #[test_case("initial.displacement_x = 'short.csv'", "has 2 lines of numbers"; "size")]
 #[test_case("initial.displacement_x = 'nan.csv'", "where a finite number is wanted"; "no number")]
 #[test_case("initial = { displacement_x = 'huge.csv', displacement_unit = '1 m' }",
-    "it must be finite; look at the unit of the file"; "unit")]
+    "it must be finite; check the unit of the file"; "unit")]
 #[test_case("initial.velocity_x = 'one.csv'\ndrive.loading = 'held'", "a held drive begins over blocks at rest"; "held")]
 #[test_case("initial.displacement_y = 'one.csv'\nslider.outline = 'disc'", "block (0, 0) has 1 in units of the model: it does not exist"; "outline")]
 #[test_case("load = { shear_star = 0.1, shear_field = 'nan.csv' }", "where a finite number is wanted"; "shear")]

@@ -238,10 +238,10 @@ fn what_is_complete_or_has_not_begun() {
     for (folder, why) in [
         (
             "other",
-            "it has no case.toml; begin the run again, there with --force",
+            "it has no case.toml; start the run again in this folder with --force",
         ),
-        ("nowhere", "there is none of this name; begin the run again"),
-        ("whole/case.toml", "it is a file: name its folder"),
+        ("nowhere", "it does not exist; start the run again"),
+        ("whole/case.toml", "it is a file: give its folder"),
     ] {
         let said = workspace.fail(&format!("run --quiet --resume {folder}"), 2);
         assert!(said.contains(why), "{said}");
@@ -373,11 +373,11 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     }
     refused(
         &text("\"row_length\":60", "\"row_length\":59"),
-        "is damaged: it holds no state of a run",
+        "is damaged: it does not contain the state of a run",
     );
     refused(
         &sealed(latest[..n - 8].to_vec()),
-        "is damaged: it holds no state of a run",
+        "is damaged: it does not contain the state of a run",
     );
     let case = String::from_utf8(workspace.read("halted/case.toml")).unwrap();
     workspace.write("halted/case.toml", case.replace("seed = 1", "seed = 2"));

@@ -77,7 +77,7 @@ fn what_cannot_be_drawn_of_a_folder_is_refused() {
         ("plot out --field traction", "--field is for pictures of runs"),
         (
             "plot run out",
-            "out is no folder of a run, and curves are drawn over each other of runs alone",
+            "out is not a folder of a run, and only curves of runs can be combined",
         ),
         (
             "plot part",

@@ -274,7 +274,7 @@ fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
     workspace.write("a/friction.svg", "mine");
     let said = workspace.fail("plot a", 2);
     assert!(
-        said.contains("a/friction.svg is not as the run has drawn it") && said.contains("--force"),
+        said.contains("a/friction.svg was changed after the run drew it") && said.contains("--force"),
         "{said}"
     );
     assert_eq!(workspace.read("a/friction.svg"), b"mine");

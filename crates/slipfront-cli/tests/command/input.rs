@@ -94,7 +94,7 @@ fn a_signal_ends_the_reading_of_any_file() {
                 "{command} {case}: {}",
                 stderr(&output)
             );
-            let said = "error: stopped while the case was made; nothing was written\n";
+            let said = "error: stopped while the case was prepared; nothing was written\n";
             assert_eq!(stderr(&output), said, "{command} {case}");
         }
     }

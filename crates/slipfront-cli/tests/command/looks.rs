@@ -598,15 +598,15 @@ fn subcommands_are_found() {
     let workspace = Workspace::new();
     let help = workspace.succeed("--help");
     for line in [
-        "Many runs:",
-        "  study        Vary a case over keys and seeds, and tabulate the answers",
-        "  help         Print this help, or that of a subcommand",
+        "Several runs:",
+        "  study        Vary keys and seeds of a case, and tabulate the results",
+        "  help         Print this help, or the help of a subcommand",
     ] {
         assert!(help.lines().any(|shown| shown == line), "{line}\n{help}");
     }
     let said = workspace.fail("rnu", 2);
     assert!(
-        said.contains("\"rnu\" is no subcommand: did you mean `slipfront run`?"),
+        said.contains("\"rnu\" is not a subcommand: did you mean `slipfront run`?"),
         "{said}"
     );
     let said = workspace.fail("check --set texture.coverage=5", 2);

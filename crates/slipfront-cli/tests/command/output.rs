@@ -371,7 +371,7 @@ fn a_movie_shows_every_snapshot() {
     for line in ["movie run", "movie run --field velocity_x"] {
         let said = workspace.fail(line, 2);
         assert!(
-            said.contains("movie.gif is not as the run has drawn it: choose another place"),
+            said.contains("movie.gif was changed after the run drew it: choose another place"),
             "{said}"
         );
     }

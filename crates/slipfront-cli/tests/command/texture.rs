@@ -26,7 +26,7 @@ fn a_signal_ends_a_texture_that_takes_long() {
         assert_eq!(output.status.code(), Some(130), "{command}: {}", stderr(&output));
         assert_eq!(
             stderr(&output),
-            "error: stopped while the case was made; nothing was written\n"
+            "error: stopped while the case was prepared; nothing was written\n"
         );
     }
     assert_eq!(workspace.files(".").len(), 2);

@@ -262,7 +262,7 @@ fn folders_of_pictures_are_passed_over() {
     assert_eq!((status, errors.as_str()), (0, ""), "{said}");
     assert!(
         said.starts_with("a: 12 files")
-            && said.contains("note: results/overlay holds pictures alone, of which nothing is recorded"),
+            && said.contains("note: results/overlay holds only pictures, without recorded results"),
         "{said}"
     );
     assert_eq!(
@@ -272,7 +272,7 @@ fn folders_of_pictures_are_passed_over() {
     let (status, _, errors) = verified(&workspace, "results/overlay");
     assert_eq!(status, 2);
     assert!(
-        errors.contains("there is nothing to verify: name folders of runs or studies"),
+        errors.contains("there is nothing to verify: give folders of runs or studies"),
         "{errors}"
     );
     workspace.write("results/overlay/notes.txt", "");

@@ -708,8 +708,8 @@ fn an_axis_that_changes_nothing_is_pointed_out() {
     let axes = "[[axes]]\nkey = 'load.pressure'\nlist = ['50 kPa', '100 kPa', '200 kPa']\n\
                 [[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2, 0.3]\n";
     let workspace = Workspace::with_study(&format!("base.slider.blocks = [30, 30]\n{axes}"));
-    let note = "note: the axis of `load.pressure` changes nothing but the units of results as long as `drive.v_star` is held: \
-                set `drive.speed` in its place";
+    let note = "note: the axis of `load.pressure` changes nothing but the units of results while `drive.v_star` is fixed: set \
+                `drive.speed` instead";
     let said = unwrapped(&workspace.succeed("study study.toml --dry-run"));
     assert_eq!(said.matches(note).count(), 1, "{said}");
     assert!(said.contains("9 points, 1 replicate: at most 9 runs"), "{said}");
