@@ -126,11 +126,11 @@ mod tests {
 
     /// Rest of half a second, with the zero of the load cell and without.
     #[test_case(0.0, ""; "zero")]
-    #[test_case(0.2, ", and `y_offset` takes away the "; "offset")]
+    #[test_case(0.2, ", and `y_offset` removes the "; "offset")]
     fn rest_is_told(offset: f64, words: &str) {
         let told = doubts_of(0.0, 0.005, |x| offset + slide(0.5)(x));
         assert!(
-            told[0].contains(" of rest, and the drive of the model begins at 0: `shift = \"-"),
+            told[0].contains(" of rest, but the drive of the model starts at 0: `shift = \"-"),
             "{told:?}"
         );
         assert!(

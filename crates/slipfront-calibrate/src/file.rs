@@ -610,7 +610,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            said.starts_with("the calibration takes") && said.contains("or `calibrate.runs`"),
+            said.starts_with("the calibration needs") && said.contains("or `calibrate.runs`"),
             "{said}"
         );
     }

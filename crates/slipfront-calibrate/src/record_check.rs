@@ -167,13 +167,16 @@ mod tests {
                     share: 0.05,
                 });
             },
-            "20 values of record 1, 5 % of them, are exactly its largest",
+            "20 values of record 1, 5 % of them, are exactly equal to its maximum",
         );
         refuse(
             |check| check.misfit.has_drift = true,
             "friction drifts by -1 to 2 %",
         );
-        refuse(|check| check.misfit.distance = 3.0, "they are 3 times as far");
+        refuse(
+            |check| check.misfit.distance = 3.0,
+            "their distance from the training runs is 3 times",
+        );
         refuse(
             |check| check.misfit.level = [9.0, 1.0, 3.0],
             "3 times the largest",

@@ -698,7 +698,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            said.starts_with("the design takes") && said.contains("lower `slider.blocks` or `design.runs`"),
+            said.starts_with("the design needs") && said.contains("reduce `slider.blocks` or `design.runs`"),
             "{said}"
         );
     }

@@ -439,7 +439,7 @@ mod tests {
         let slipless = run(1.0, 0.0);
         let said = least.deviation(&with, Some(&slipless)).unwrap_err();
         assert!(
-            said.contains("kinetic friction of the slider without texture is 0"),
+            said.contains("kinetic friction of the untextured slider is 0"),
             "{said}"
         );
         // A curve at half the speed takes twice the time.

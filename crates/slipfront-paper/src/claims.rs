@@ -368,7 +368,7 @@ mod tests {
         );
         assert_eq!(
             told(None),
-            "not reproduced as stated: it holds by what is measured now"
+            "not reproduced as stated: it holds by the present criterion"
         );
     }
 
@@ -400,7 +400,7 @@ mod tests {
             .judge(&BTreeMap::new())
             .unwrap_err()
             .to_string();
-        assert_eq!(error, "claim 1 is about `fig99.main`, which is not measured");
+        assert_eq!(error, "claim 1 needs `fig99.main`, which no figure measures");
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub(crate) fn after_run(
             )
         };
         warnings.push(format!(
-            "mu* exceeds {first} later: {:.4} at t* = {:.1}, {:.0} % above static_friction_star = {:.4}; {remedy}",
+            "mu* becomes larger than {first}: {:.4} at t* = {:.1}, {:.0} % above static_friction_star = {:.4}; {remedy}",
             peak.largest.mu_star,
             peak.largest.time_star,
             100.0 * (peak.largest.mu_star / peak.mu_star - 1.0),

@@ -294,7 +294,7 @@ mod tests {
             .collect();
         assert_eq!(
             failures,
-            [(1, "it diverged"), (3, "a fault of the program: out of bounds")]
+            [(1, "it diverged"), (3, "an error in the program: out of bounds")]
         );
         assert_eq!((found.runs.len(), recorded), (6, 6));
     }

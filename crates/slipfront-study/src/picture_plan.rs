@@ -293,7 +293,7 @@ mod tests {
         );
         assert!(names_of(many).is_empty());
         let why = why_no_curves(&axes_of(many)).unwrap();
-        let expected = "there are no pictures of curves: they would take 1001 pictures, more than 1000; points.csv has the values";
+        let expected = "there are no pictures of curves: they would need 1001 pictures, more than 1000; points.csv has the values";
         assert_eq!(why, expected);
     }
 
@@ -320,13 +320,13 @@ mod tests {
             assert_eq!(over(&axes), x, "{counts:?}");
             assert_eq!(why_no_curves(&axes).is_some(), x.is_none(), "{counts:?}");
         }
-        let expected = "there are no pictures of curves: a picture would have 10 of them, one for each level of `friction.r_star`, \
-                        and can have 9; the map shows the values";
+        let expected = "there are no pictures of curves: a picture would have 10 curves, one for each level of \
+                        `friction.r_star`, but at most 9; the map shows the values are possible";
         assert_eq!(why_no_curves(&two([10, 10])).unwrap(), expected);
         let names = "[[axes]]\nkey = 'slider.edges'\nlist = ['free', 'periodic']\n[[axes]]\nkey = 'friction.redraw'\nlist = [true, false]\n\
                      [[axes]]\nkey = 'load.redistribute'\nlist = [true, false]";
         let why = why_no_curves(&axes_of(names)).unwrap();
-        assert!(why.contains("none of its 3 axes has numbers"), "{why}");
+        assert!(why.contains("none of its 3 axes is numeric"), "{why}");
         assert!(why_no_curves(&[]).unwrap().contains("no axis"));
         assert!(why_no_curves(&axes_of("[[axes]]\nkey = 'slider.edges'\nlist = ['free']")).is_none());
     }

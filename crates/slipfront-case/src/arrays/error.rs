@@ -70,7 +70,7 @@ pub(super) fn broken(path: &Path, format: &str, detail: &str) -> ArrayError {
 pub(super) fn value_error(path: &Path, value: &str, at: [usize; 2], wanted: &str) -> ArrayError {
     let [row, column] = at;
     let problem = format!(
-        "has {value} in row {row}, column {column} (both counted from 0), but must have {wanted}; correct this value"
+        "has {value} in row {row}, column {column} (both counted from 0), but must be {wanted}; correct this value"
     );
     contents_error(path, problem)
 }

@@ -27,7 +27,7 @@ pub fn mask_npy(
     source: &mut (impl BufRead + Seek),
     slab: &Slab,
 ) -> Result<Vec<bool>, ArrayError> {
-    let wanted = "0 or 1, 1 as of a dark pixel,";
+    let wanted = "0 or 1 (1 is a dark pixel)";
     let values = values(path, source, slab, wanted, |value| ![0.0, 1.0].contains(&value))?;
     Ok(values.iter().map(|value| *value == 1.0).collect())
 }

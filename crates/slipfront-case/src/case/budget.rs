@@ -446,7 +446,7 @@ impl Budget {
         };
         let together = match self.ranks_on_node {
             1.0 => String::new(),
-            ranks => format!(", {} for the {ranks} ranks of this machine,", byte_size(on_node)),
+            ranks => format!(", {} for the {ranks} ranks of this machine", byte_size(on_node)),
         };
         let (cause, bytes) = self.most(Place::Memory);
         let (needed, most) = (byte_size(of_rank), cause.in_words(bytes));
@@ -620,7 +620,7 @@ mod tests {
             (
                 vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
                 "output.snapshots",
-                ["for 2674 snapshots of 5 fields", "raise `output.stride`"],
+                ["for 2674 snapshots of 5 fields", "increase `output.stride`"],
             ),
             (
                 vec!["output.series=0.1", "time.duration_star=1e6"],
@@ -632,7 +632,7 @@ mod tests {
             let refused = refusal(&case, &case.budget, 0.0, Some(2e8)).unwrap();
             // The place is the override of the key.
             assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
-            for word in ["where 190.7 MiB are available"].iter().chain(&words) {
+            for word in ["but 190.7 MiB are available"].iter().chain(&words) {
                 assert!(refused.contains(word), "{word}: {refused}");
             }
             assert!(!refused.contains("rank"), "{refused}");
@@ -674,7 +674,7 @@ mod tests {
         let refused = refusal(&cases[0], &budget, 1e6, Some(needed - 3e6)).unwrap();
         for word in [
             " of memory per rank (",
-            &format!(", {} for the 2 ranks of this machine, where ", byte_size(needed)),
+            &format!(", {} for the 2 ranks of this machine, but ", byte_size(needed)),
             ", or share it among more machines",
         ] {
             assert!(refused.contains(word), "{word}: {refused}");

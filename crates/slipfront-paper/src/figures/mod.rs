@@ -49,7 +49,7 @@ pub const FIGURES: [Figure; 20] = [
     Figure { name: "fig07", title: "Fig. 7: a fast slider", measure: fig07::measure },
     Figure { name: "fig08", title: "Fig. 8: static friction against speed", measure: fig08::measure },
     Figure { name: "fig09", title: "Fig. 9: damping", measure: fig09::measure },
-    Figure { name: "fig10", title: "Fig. 10: ratio of kinetic to static friction", measure: fig10::measure },
+    Figure { name: "fig10", title: "Fig. 10: kinetic over static friction", measure: fig10::measure },
     Figure { name: "fig11", title: "Fig. 11: starting points of slip", measure: fig11::measure },
     Figure { name: "fig12", title: "Fig. 12: static friction against roughness", measure: fig12::measure },
     Figure { name: "fig13", title: "Fig. 13: shapes of cavities", measure: fig13::measure },

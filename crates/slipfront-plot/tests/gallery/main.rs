@@ -197,7 +197,7 @@ fn overlays() {
         .unwrap_err()
         .to_string();
     assert!(
-        said.starts_with("a height of 50 mm leaves no room for the curves beside letters of 8 pt"),
+        said.starts_with("a height of 50 mm leaves no room for curves with text of 8 pt"),
         "{said}"
     );
     overlay(

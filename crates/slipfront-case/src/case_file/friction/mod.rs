@@ -290,11 +290,11 @@ impl Friction {
         let draws = self.spreads().iter().any(|(_, sigma_star)| *sigma_star > 0.0);
         let drawn_by_block = self.correlation_length.is_none() && draws;
         let slip = falls_at_once.then_some(LengthOfABlock {
-            length: "the slip over which strength is lost",
+            length: "the slip-weakening distance",
             key: "friction.slip_weakening",
         });
         let coefficients = drawn_by_block.then_some(LengthOfABlock {
-            length: "the length over which coefficients are alike",
+            length: "the correlation length of the coefficients",
             key: "friction.correlation_length",
         });
         slip.into_iter().chain(coefficients)
