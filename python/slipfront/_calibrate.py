@@ -429,7 +429,7 @@ class CalibrationResults:
 
     @property
     def is_refused(self) -> bool:
-        """Whether the model cannot have made the records: then the intervals promise nothing."""
+        """Whether the model cannot reproduce the records; the intervals are then not valid."""
         return bool(self._found["is_refused"])
 
     @property
@@ -504,7 +504,7 @@ class CalibrationResults:
             return [key, f"{found.median:.4g} {unit}".strip(), interval, ", ".join(doubt for doubt, is_so in doubts.items() if is_so)]
 
         rows = [row(key, found) for key, found in self.intervals.items()]
-        refused = "<p>The model cannot reproduce these records: the intervals promise nothing.</p>" if self.is_refused else ""
+        refused = "<p>The model cannot reproduce these records, so the intervals are not valid.</p>" if self.is_refused else ""
         return refused + table(["key", "median", "90 % interval", ""], rows)
 
     def __reduce__(self) -> tuple[Any, ...]:

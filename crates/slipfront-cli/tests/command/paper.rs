@@ -71,7 +71,11 @@ fn what_cannot_be_done_is_said_before_anything_is_written() {
     refused(&workspace, "fig19", "the paper has no `fig19`");
     assert!(!workspace.exists("paper"));
     workspace.write("paper/notes.txt", "mine");
-    refused(&workspace, "fig13", "contains files other than figures of the paper");
+    refused(
+        &workspace,
+        "fig13",
+        "contains files other than figures of the paper",
+    );
     assert_eq!(std::fs::read_dir(workspace.path("paper")).unwrap().count(), 1);
 }
 

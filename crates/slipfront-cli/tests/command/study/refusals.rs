@@ -63,7 +63,10 @@ fn bad_studies_are_refused_with_a_sentence() {
             axis("zip = { 'drive.v_star' = [0.1], 'friction.r_star' = [0.5, 0.6] }"),
             "equally long",
         ),
-        (axis("zip = { drive.v_star = [0.1] }"), "write keys with a dot in quotes"),
+        (
+            axis("zip = { drive.v_star = [0.1] }"),
+            "write keys with a dot in quotes",
+        ),
         (
             axis("name = 'mean'\nvariants = { a = {} }"),
             "have a column `mean` already",
@@ -129,7 +132,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (
             study("until = { key = 'mu_s', half_width = 0.1, max = 9 }"),
-            "`mu_s` is not a number of the summary",
+            "`mu_s` is not a quantity of the summary",
         ),
         (
             study("until = { key = 'static_friction_star', half_width = 0.1, mim = 2, max = 9 }"),
