@@ -223,7 +223,7 @@ class Calibration:
         Warns
         -----
         UserWarning
-            When the model does not make such records, and about lines without numbers at the end of a record.
+            When the model cannot reproduce these records, and about lines without numbers at the end of a record.
         """
         temporary = TemporaryFolder()
         path = temporary.path / self.name if folder is None else Path(folder)
@@ -233,7 +233,7 @@ class Calibration:
         notes = self._watched(records, temporary, progress, threads, partial(self._native.execute, (path, force), kept))
         results = CalibrationResults.read(path, None if folder is None else path)
         if results.is_refused:
-            notes.append("the model does not make such records, and the intervals promise nothing: `text` says why, and what to look at")
+            notes.append("the model cannot reproduce these records, so the intervals are not valid: `text` gives the reasons, and what to check")
         for note in notes:
             warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
         return results
@@ -429,7 +429,7 @@ class CalibrationResults:
 
     @property
     def is_refused(self) -> bool:
-        """Whether the model cannot have made the records: then the intervals promise nothing."""
+        """Whether the model cannot reproduce the records; the intervals are then not valid."""
         return bool(self._found["is_refused"])
 
     @property
@@ -504,7 +504,7 @@ class CalibrationResults:
             return [key, f"{found.median:.4g} {unit}".strip(), interval, ", ".join(doubt for doubt, is_so in doubts.items() if is_so)]
 
         rows = [row(key, found) for key, found in self.intervals.items()]
-        refused = "<p>The model does not make such records: the intervals promise nothing.</p>" if self.is_refused else ""
+        refused = "<p>The model cannot reproduce these records, so the intervals are not valid.</p>" if self.is_refused else ""
         return refused + table(["key", "median", "90 % interval", ""], rows)
 
     def __reduce__(self) -> tuple[Any, ...]:

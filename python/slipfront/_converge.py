@@ -206,5 +206,5 @@ def converge(
     study.check_cost(_threads(threads), max_memory, max_time)
     found, _, _ = executed(study, Convergence, folder, force, progress, threads)
     if not found.quantities:
-        warnings.warn("no quantity has a value on every mesh: `runs` says what the runs found", stacklevel=2)
+        warnings.warn("no quantity has a value on every mesh: `runs` contains the results of the runs", stacklevel=2)
     return found

@@ -228,12 +228,12 @@ class Design:
         Raises
         ------
         CaseError
-            When no texture keeps the limits.
+            When no texture satisfies the limits.
 
         Warns
         -----
         UserWarning
-            When there is no verdict, since every texture that was judged is lost.
+            When there is no verdict, because every tested texture failed.
         """
         shown, watch = parted(progress)
         temporary = TemporaryFolder()
@@ -248,7 +248,7 @@ class Design:
             self._native.execute((path, force), runs, time, _threads(threads), show)
             results = DesignResults.read(path, None if folder is None else path)
         if results.to_dict()["design"]["lost"] is not None:
-            warnings.warn("every texture that was judged is lost on fresh surfaces: `text` says why", stacklevel=2)
+            warnings.warn("every tested texture failed on new surfaces: `text` gives the reasons", stacklevel=2)
         return results
 
     def _bytes(self, mask: npt.ArrayLike) -> bytes:

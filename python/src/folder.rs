@@ -150,7 +150,7 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
             return Ok(Running::start(&case.0, None, execution));
         };
         let resumed = loaded.resume(&case.0, execution).map_err(folder_error)?;
-        let foreign = || folder_error("its checkpoint is not one of a run of its case");
+        let foreign = || folder_error("its checkpoint does not belong to its case");
         resumed.ok_or_else(foreign)
     })??;
     Ok((case, Simulation::of(running)?))

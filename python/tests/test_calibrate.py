@@ -58,7 +58,7 @@ def test_a_calibration_has_the_bytes_of_the_command(tmp_path: Path) -> None:
 
 def test_what_promises_nothing_has_a_warning(tmp_path: Path) -> None:
     made, measured = calibration(), record()
-    with pytest.warns(UserWarning, match="the model does not make such records"):
+    with pytest.warns(UserWarning, match="the model cannot reproduce these records"):
         foreign = made.fit({**measured, "force_n": 100 * measured["force_n"]}, progress=False)
     assert foreign.is_refused
     path = tmp_path / "ended.csv"

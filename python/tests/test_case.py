@@ -328,7 +328,7 @@ def test_a_file_that_changes_does_not_change_the_case_in_silence(tmp_path: Path)
         "study": lambda: sf.Study(case, axes={"drive.v_star": [0.1]}),
     }
     for use in uses.values():
-        with pytest.raises(sf.CaseError, match="mask.npy has changed since the case was made of it: load the case anew") as raised:
+        with pytest.raises(sf.CaseError, match="mask.npy has changed since the case was prepared: load the case again") as raised:
             use()
         assert raised.value.line is None and raised.value.column is None
     assert sf.Case.load(tmp_path / "mine.toml") != case

@@ -54,7 +54,7 @@ def test_another_search_in_its_place() -> None:
     groove[:, 7:9] = True
     narrow = np.zeros((16, 16), dtype=bool)
     narrow[:, 0] = True
-    assert asked.illegal(narrow) == "a feature is 1 block wide, where 2 are the least"
+    assert asked.illegal(narrow) == "a feature is 1 block wide; the minimum is 2"
     by_hand = asked.evaluate([groove, narrow], surfaces=2, coarse=False)
     assert by_hand[1] == float("inf") and 0.5 < by_hand[0] < 1
     asked.tell([*masks, groove], [*losses, 0.0])

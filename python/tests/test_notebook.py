@@ -49,7 +49,7 @@ def test_meshes_designs_and_calibrations_are_tables() -> None:
         fit = calibration.fit((series["time_s"], 5 * series["friction_force_n"]), progress=False)
     header, *rows = cells(fit._repr_html_())
     assert header == ["key", "median", "90 % interval", ""] and [row[0] for row in rows] == list(unknowns)
-    assert rows[1][1].endswith(" kg/m^3") and "does not make such records" in fit._repr_html_()
+    assert rows[1][1].endswith(" kg/m^3") and "cannot reproduce these records" in fit._repr_html_()
 
 
 def test_a_study_is_a_dataset() -> None:

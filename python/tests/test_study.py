@@ -124,7 +124,7 @@ def test_blocks_that_are_too_coarse_are_told_once(small: sf.Case) -> None:
 
 def test_a_study_without_an_answer_has_a_warning(small: sf.Case) -> None:
     short = small.replace({"time.duration_star": 5})
-    with pytest.warns(UserWarning, match="no run has a value of static_friction_star, since none has a transition"):
+    with pytest.warns(UserWarning, match="no run has a value of static_friction_star, because none has a transition"):
         results = sf.Study(short, axes={"drive.v_star": [0.05, 0.1]}).run(progress=False)
     assert len(results.runs) == 2
 

@@ -119,7 +119,7 @@ pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
 /// With both numbers.
 pub fn expect_at_most(length: u64, most: u64) -> std::io::Result<()> {
     if length > most {
-        let sentence = format!("it has {length} bytes where at most {most} can be meant");
+        let sentence = format!("it has {length} bytes; at most {most} are expected");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
     Ok(())

@@ -28,7 +28,7 @@ pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, p
     let path = display_path(path);
     if mean < 0.0 {
         return vec![format!(
-            "the mean friction of {path} is negative: `y_factor = -1` turns its sign"
+            "the mean friction of {path} is negative: `y_factor = -1` changes its sign"
         )];
     }
     let (first, largest) = (values[0], values.iter().copied().fold(values[0], f64::max));
@@ -51,13 +51,13 @@ pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, p
     if rest > half - quarter && still.count() >= 3 && is_still && first.abs() < 0.5 * largest {
         let zero = match first.abs() > bound {
             true => format!(
-                ", and `y_offset` takes away the {} there",
+                ", and `y_offset` removes the {} there",
                 with_si_prefix(first, grid.friction().unit())
             ),
             false => String::new(),
         };
         return vec![format!(
-            "{path} begins with {} of rest, and the drive of the model begins at 0: `shift = \"{}\"` moves the record there{zero}",
+            "{path} begins with {} of rest, but the drive of the model starts at 0: `shift = \"{}\"` moves the record to 0{zero}",
             with_si_prefix(rest, unit),
             with_si_prefix(-rest_ends, unit)
         )];
@@ -67,8 +67,8 @@ pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, p
         return Vec::new();
     }
     vec![format!(
-        "{path} begins at 0 with {:.0} % of its largest friction, where the springs of the model are loose: if it begins within a slide, \
-         `shift` adds the {} of the drive up to there; if its zero is not that of the load cell, `y_offset` corrects it",
+        "{path} begins at 0 with {:.0} % of its largest friction, but the springs of the model start unloaded. If the record \
+         begins during sliding, add the previous {} of the drive with `shift`; if it has an offset, correct it with `y_offset`",
         100.0 * record.y[0] / largest,
         match unit {
             "s" => "time",
@@ -126,11 +126,11 @@ mod tests {
 
     /// Rest of half a second, with the zero of the load cell and without.
     #[test_case(0.0, ""; "zero")]
-    #[test_case(0.2, ", and `y_offset` takes away the "; "offset")]
+    #[test_case(0.2, ", and `y_offset` removes the "; "offset")]
     fn rest_is_told(offset: f64, words: &str) {
         let told = doubts_of(0.0, 0.005, |x| offset + slide(0.5)(x));
         assert!(
-            told[0].contains(" of rest, and the drive of the model begins at 0: `shift = \"-"),
+            told[0].contains(" of rest, but the drive of the model starts at 0: `shift = \"-"),
             "{told:?}"
         );
         assert!(

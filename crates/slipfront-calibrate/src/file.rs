@@ -36,15 +36,15 @@ pub(crate) static CALIBRATION: ProjectKind = ProjectKind {
     journal: RUN_JOURNAL,
     given: &[(RECORD, "A measured record")],
     found: &[
-        ("band-", "A record, and the band of the calibrated model"),
+        ("band-", "A record, with the band of the calibrated model"),
         (
             "calibration.",
-            "The unknown keys with their intervals, and how far to trust them",
+            "The unknown keys with their intervals and their reliability",
         ),
         ("case.toml", "The case with the median of every unknown key"),
         (
             "posterior.csv",
-            "Points that are drawn from the joint estimate of the unknown keys",
+            "Samples of the joint estimate of the unknown keys",
         ),
     ],
 };
@@ -107,9 +107,9 @@ key_rows! {
         /// begins at 0.
         shift: Option<String> = key("", KeyKind::Special("")).without("0"),
         /// Time or displacement after the shift with which the part begins that counts, such as `"2 s"`.
-        from: Option<String> = key("", KeyKind::Special("")).without("that of the first line"),
+        from: Option<String> = key("", KeyKind::Special("")).without("value in the first line"),
         /// Time or displacement after the shift with which the part ends that counts.
-        to: Option<String> = key("", KeyKind::Special("")).without("that of the last line"),
+        to: Option<String> = key("", KeyKind::Special("")).without("value in the last line"),
         /// A list of tables, one for each record: `set` has the keys whose values differ from those of the
         /// case, such as `{ set = { drive.speed = "2 um/s" } }`; `y_factor`, `y_offset`, `shift`, `from` and
         /// `to` are of this record alone.
@@ -245,7 +245,7 @@ impl CalibrationFile {
         let refuse = |key: &str, sentence: String| Err(self.project.error(key, sentence));
         if !(keys.noise > 0.0 && keys.noise < 1.0) {
             let sentence = format!(
-                "`noise` = {} must lie between 0 and 1: it is the standard deviation of the noise as a share of the mean \
+                "`noise` = {} must lie between 0 and 1: it is the standard deviation of the noise relative to the mean \
                  friction, such as 0.01",
                 keys.noise
             );
@@ -265,7 +265,7 @@ impl CalibrationFile {
         }
         if keys.unknowns.is_empty() {
             let sentence =
-                "`unknowns` names no key: give one with its range, such as \"friction.r_star\" = [0.3, 0.9]";
+                "`unknowns` has no key: give one with its range, such as \"friction.r_star\" = [0.3, 0.9]";
             return refuse("unknowns", sentence.to_owned());
         }
         self.check_names_of_instrument()?;
@@ -303,7 +303,7 @@ impl CalibrationFile {
         let expected = self.keys.records.len();
         if paths.is_empty() || (expected > 0 && expected != paths.len()) {
             let sentence = format!(
-                "the file tells how {} measured, and {} given: name one file for each, in their order",
+                "the file describes how {} measured, but {} given: give one file for each, in the same order",
                 are(expected.max(1), "record"),
                 are(paths.len(), "record"),
             );
@@ -365,7 +365,7 @@ impl CalibrationFile {
         measured.correct(&self.correction(number, along)?);
         let grid = SamplePoints::of(&measured).ok_or_else(|| {
             let sentence = format!(
-                "{} has {} values: a record needs {MIN_VALUES} at the least, which do not all stand at one place",
+                "{} has {} values: a record needs at least {MIN_VALUES}, not all at the same position",
                 path.display(),
                 measured.x.len()
             );
@@ -535,8 +535,9 @@ impl CalibrationFile {
     /// The error of a record that takes too many steps.
     fn too_long(&self, case: &Case, steps: u64) -> CaseError {
         let sentence = format!(
-            "a record takes {steps} steps of the case, more than {MAX_STEPS}: a step lasts {}. Records of rigs that move so slowly are compared \
-             against displacement, with a drive that is held while blocks slide: `against = \"displacement\"` and `drive.loading = \"held\"`",
+            "a record takes {steps} steps of the case, more than {MAX_STEPS}: a step lasts {}. For slow rigs compare against \
+             displacement, with a drive that stops while blocks slide: `against = \"displacement\"` and `drive.loading = \
+             \"held\"`",
             with_si_prefix(case.time_plan.dt_star * case.scales.time(), "s")
         );
         self.project.error("x", sentence)
@@ -628,7 +629,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            said.starts_with("the calibration takes") && said.contains("or `calibrate.runs`"),
+            said.starts_with("the calibration needs") && said.contains("or `calibrate.runs`"),
             "{said}"
         );
     }

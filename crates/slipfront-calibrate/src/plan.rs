@@ -74,8 +74,8 @@ impl ExperimentPlan {
         let mut text = table(&head, &rows);
         let mut say = |sentence: String| text += &format!("{}\n", wrapped(&sentence, COLUMNS));
         say(format!(
-            "Expected widths of the intervals of 90 %, as shares of the ranges, from {} simulated records of each experiment; the \
-             calibration, with more runs, has narrower ones.",
+            "Expected widths of the 90 % intervals relative to the ranges, from {} simulated records of each experiment. The \
+             calibration has more runs and narrower intervals.",
             self.runs
         ));
         for (number, key) in self.unknowns.iter().enumerate() {
@@ -103,7 +103,7 @@ impl ExperimentPlan {
             determine.filter(|experiment| width(experiment).is_some_and(|found| found < UNDETERMINED));
         let names: Vec<&str> = determine.map(|experiment| experiment.name.as_str()).collect();
         let remedy = match names.as_slice() {
-            [] => "nor does any other experiment of the table".to_owned(),
+            [] => "nor does any other experiment in the table".to_owned(),
             names => format!("these would: {}", names.join(", ")),
         };
         Some(format!("The planned record does not determine {key}; {remedy}."))
@@ -126,7 +126,7 @@ impl CalibrationFile {
         let end = along.parse(until).map_err(refuse)?;
         let grid = SamplePoints::planned(along, end, values).ok_or_else(|| {
             refuse(format!(
-                "a planned record until {until:?} with {values} values: it needs {MIN_VALUES} at the least, and an end after 0"
+                "a planned record until {until:?} with {values} values: it needs at least {MIN_VALUES} values, and an end after 0"
             ))
         })?;
         Ok(vec![grid; self.keys.n_records()])

@@ -35,8 +35,8 @@ impl RecordCheck {
         let mut reasons = Vec::new();
         if let Some(clipped) = &self.clipped {
             reasons.push(format!(
-                "{} values of record {}, {} % of them, are exactly its largest, as those of a sensor at the end of its range, \
-                 which `range` in [instrument] describes",
+                "{} values of record {}, {} % of them, are exactly equal to its maximum, as for a saturated sensor: set `range` \
+                 in [instrument]",
                 clipped.values,
                 clipped.record + 1,
                 four_digits(100.0 * clipped.share)
@@ -49,7 +49,7 @@ impl RecordCheck {
         }
         if self.misfit.distance > 1.0 {
             reasons.push(format!(
-                "they are {} times as far from the training runs as 99.5 % of these are from each other",
+                "their distance from the training runs is {} times the distance that contains 99.5 % of these runs",
                 four_digits(self.misfit.distance)
             ));
         }
@@ -88,7 +88,7 @@ fn differences(closest: &Closest) -> String {
         share => format!(" over the first {} of the records", one_over(share)),
     };
     let size = format!(
-        "the closest curve that was found{} differs{part} by {:.1} times the noise",
+        "the closest curve{} differs{part} by {:.1} times the noise",
         at_step(closest),
         closest.noise_ratio
     );
@@ -167,13 +167,16 @@ mod tests {
                     share: 0.05,
                 });
             },
-            "20 values of record 1, 5 % of them, are exactly its largest",
+            "20 values of record 1, 5 % of them, are exactly equal to its maximum",
         );
         refuse(
             |check| check.misfit.has_drift = true,
             "friction drifts by -1 to 2 %",
         );
-        refuse(|check| check.misfit.distance = 3.0, "they are 3 times as far");
+        refuse(
+            |check| check.misfit.distance = 3.0,
+            "their distance from the training runs is 3 times",
+        );
         refuse(
             |check| check.misfit.level = [9.0, 1.0, 3.0],
             "3 times the largest",

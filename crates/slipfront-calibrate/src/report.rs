@@ -202,13 +202,13 @@ fn in_words(found: &Findings) -> String {
     let rows: Vec<Vec<String>> = found.unknowns.iter().map(row).collect();
     text += &table(&["key", "median", "from", "to", "range"], &rows);
     text += &paragraph(&format!(
-        "Each interval holds the value with 90 %: so it did for training runs that were left out of {}, with noise of {} % of the mean \
-         friction.",
+        "Each interval contains the true value with a probability of 90 %. This was checked with training runs left out of {}, \
+         with noise of {} % of the mean friction.",
         count(found.runs, "run"),
         four_digits(100.0 * found.noise)
     ));
     for told in found.unknowns.iter().filter(|told| !told.is_determined) {
-        text += &paragraph(&format!("The records do not tell {}.", told.key));
+        text += &paragraph(&format!("The records do not determine {}.", told.key));
     }
     for pair in &found.pairs {
         let [one, other] = &pair.keys;
@@ -218,7 +218,7 @@ fn in_words(found: &Findings) -> String {
             "smaller"
         };
         text += &paragraph(&format!(
-            "The records tell {one} and {other} only together: where one is larger, the other is {way} (correlation {:.2}).",
+            "The records determine {one} and {other} only in combination: if one is larger, the other is {way} (correlation {:.2}).",
             pair.correlation
         ));
     }
@@ -228,7 +228,7 @@ fn in_words(found: &Findings) -> String {
     text += &paragraph(&instrument(found));
     for (number, percent) in found.within_band_percent.iter().enumerate() {
         text += &paragraph(&format!(
-            "{:.0} % of the values of record {} lie within the band that holds 90 % of the runs of the calibrated model.",
+            "{:.0} % of the values of record {} lie within the 90 % band of the calibrated model.",
             percent,
             number + 1
         ));
@@ -267,9 +267,9 @@ fn row(told: &UnknownEstimate) -> Vec<String> {
 /// Reasons for which the records are none of the model.
 fn refusal(found: &Findings) -> String {
     format!(
-        "The model does not make such records: {}. Of its own records it refuses some 4 %. Correct a drift of the sensor, describe its filter \
-         in [instrument], look whether law, units, mount and noise are those of the experiment, and widen the ranges; the intervals below \
-         promise nothing.",
+        "The model cannot reproduce these records: {}. The test rejects about 4 % of the model's own records. Correct a drift \
+         of the sensor, describe its filter in [instrument], check law, units, mount and noise, and widen the ranges. The \
+         intervals below are not valid.",
         found.check.reasons().join("; ")
     )
 }
@@ -285,12 +285,12 @@ fn accepted(found: &Findings) -> String {
             closest.correlation
         ),
         None => format!(
-            "they are as near to runs of the calibrated model as these are to each other (of which {:.0} % are farther away)",
+            "they agree with runs of the calibrated model as well as these runs agree with each other ({:.0} % of the runs are farther away)",
             100.0 * found.check.comparison.rank
         ),
     };
     format!(
-        "Nothing speaks against the model: a drift of friction over the records lies between {low} and {high} %, and {closest}."
+        "The model is consistent with the records: the drift of friction over the records is between {low} and {high} %, and {closest}."
     )
 }
 
@@ -306,12 +306,14 @@ fn instrument(found: &Findings) -> String {
             "The instrument passes friction up to {}",
             with_si_prefix(*hertz, "Hz")
         ),
-        None => "No filter is assumed between friction and the records: the file has none in [instrument]"
-            .to_owned(),
+        None => {
+            "No filter is assumed between friction and records, because the file has none in [instrument]"
+                .to_owned()
+        }
     };
     let fastest = match fastest_swing_hz {
         Some(hertz) => format!(
-            "; friction changes as fast as in a swing of {}",
+            "; friction changes as fast as an oscillation of {}",
             with_si_prefix(*hertz, "Hz")
         ),
         None => String::new(),
@@ -340,10 +342,10 @@ fn at_finer_step(found: &Findings) -> String {
         divisor => format!("1/{divisor} of the time step"),
     };
     paragraph(&if moved.is_empty() {
-        format!("At {step} every median lies within its interval.")
+        format!("With {step} every median is within its interval.")
     } else {
         format!(
-            "At {step} these leave their intervals: {}. Lower `time.step` of the case until they stay.",
+            "With {step} these medians are outside their intervals: {}. Reduce `time.step` of the case until all are inside.",
             moved.join(", ")
         )
     })
@@ -352,10 +354,10 @@ fn at_finer_step(found: &Findings) -> String {
 fn on_finer_blocks(found: &Findings) -> String {
     match &found.finer {
         OnFinerBlocks::NotAskedFor => {
-            paragraph("Blocks of half the size were not looked at: `finer_runs` is 0.")
+            paragraph("Blocks of half the size were not tested, because `finer_runs` is 0.")
         }
         OnFinerBlocks::Impossible(reason) => {
-            paragraph(&format!("Blocks of half the size were not looked at: {reason}"))
+            paragraph(&format!("Blocks of half the size were not tested: {reason}"))
         }
         OnFinerBlocks::Runs(runs) => {
             let moved: Vec<String> = found
@@ -366,11 +368,11 @@ fn on_finer_blocks(found: &Findings) -> String {
                 .collect();
             let runs = count(*runs, "run");
             paragraph(&if moved.is_empty() {
-                format!("On blocks of half the size ({runs}) every median lies within its interval.")
+                format!("With blocks of half the size ({runs}) every median is within its interval.")
             } else {
                 format!(
-                    "On blocks of half the size ({runs}) these leave their intervals: {}. They are values of a block of this size, and not of the \
-                     material.",
+                    "With blocks of half the size ({runs}) these medians are outside their intervals: {}. They depend on the \
+                     block size, and are not properties of the material.",
                     moved.join(", ")
                 )
             })
@@ -394,7 +396,7 @@ fn further(found: &Findings) -> String {
     };
     let rows: Vec<Vec<String>> = found.unknowns.iter().enumerate().map(row).collect();
     format!(
-        "\nWidths of the intervals with a further experiment, over those without:\n{}",
+        "\nWidths of the intervals with a further experiment, relative to those without:\n{}",
         table(&header, &rows)
     )
 }

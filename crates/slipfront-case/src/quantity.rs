@@ -127,13 +127,13 @@ impl fmt::Display for Dimension {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum QuantityError {
-    #[error("{value} has no unit; {wanted} is written as a string with its unit, such as {example:?}")]
+    #[error("{value} has no unit; write {wanted} as a string with its unit, such as {example:?}")]
     NoUnit {
         value: String,
         wanted: &'static str,
         example: &'static str,
     },
-    #[error("{text:?} does not begin with a number; {wanted} is wanted, such as {example:?}")]
+    #[error("{text:?} does not begin with a number; give {wanted}, such as {example:?}")]
     NoNumber {
         text: String,
         wanted: &'static str,
@@ -147,7 +147,7 @@ pub enum QuantityError {
     },
     #[error("the unit of {text:?} cannot be read: {why}")]
     Unit { text: String, why: &'static str },
-    #[error("{text:?} is {given} ({dimension}); {wanted} is wanted, such as {example:?}")]
+    #[error("{text:?} is {given} ({dimension}); give {wanted}, such as {example:?}")]
     Dimension {
         text: String,
         given: &'static str,
@@ -155,9 +155,9 @@ pub enum QuantityError {
         wanted: &'static str,
         example: &'static str,
     },
-    #[error("{text:?} is too {what} a number to compute with")]
+    #[error("{text:?} is too {what} for a computation")]
     Range { text: String, what: &'static str },
-    #[error("a text of {bytes} bytes is too long for a quantity such as {example:?}")]
+    #[error("a string of {bytes} bytes is too long for a quantity such as {example:?}")]
     TooLong { bytes: usize, example: &'static str },
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn hindrance() -> Option<String> {
         && pages != addresses
     {
         return Some(format!(
-            "{pages} opens HTML files on this system, and not the browser, {addresses}"
+            "{pages} opens HTML files on this system, but the browser is {addresses}"
         ));
     }
     let named = env::var("BROWSER").unwrap_or_default();

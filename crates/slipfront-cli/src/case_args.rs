@@ -22,13 +22,13 @@ const STDIN: &str = "standard input";
 /// The case file and the changes of it that the command line asks for.
 #[derive(Args)]
 pub(crate) struct CaseArgs {
-    /// Case file, or - for standard input; without one, the embedded baseline: Fig. 3 of the paper
+    /// Case file, or - for standard input [default: the embedded baseline, Fig. 3 of the paper]
     #[arg(value_name = "CASE.toml")]
     case: Option<PathBuf>,
-    /// Sets a key of the case file, such as drive.v_star=0.05 or texture.0.coverage=5; repeatable
+    /// Set a key of the case file, such as drive.v_star=0.05 or texture.0.coverage=5; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Seed of the random friction coefficients: short for --set friction.seed=N
+    /// Seed of the random friction coefficients, as --set friction.seed=N
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<String>,
 }
@@ -77,7 +77,7 @@ fn name_in_results(case: &Path) -> Option<String> {
 fn read_stdin(ranks: &CommandRanks) -> Result<String, Failure> {
     if ranks.size() > 1 {
         return Err(Failure::input(anyhow::anyhow!(
-            "ranks share no standard input: name the file of the case in the place of -"
+            "ranks have no common standard input: give a case file instead of -"
         )));
     }
     read_text_from(std::io::stdin().lock(), Path::new(STDIN)).map_err(Failure::input)

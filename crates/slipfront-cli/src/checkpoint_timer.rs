@@ -106,7 +106,7 @@ impl CheckpointTimer {
             return Err(self.stop(signal, running).into());
         }
         if asked && !self.interval.saves() {
-            progress.note("warning: no checkpoint is saved, since --checkpoint is off");
+            progress.note("warning: no checkpoint is saved, because --checkpoint is off");
         } else if asked || is_due {
             let began = Instant::now();
             let step = running.snapshot().step;
@@ -118,11 +118,11 @@ impl CheckpointTimer {
                 Ok(()) => {}
                 Err(error) => {
                     let kept = self.checkpoints.saved_step().map_or_else(
-                        || "there is none before it".to_owned(),
-                        |step| format!("that of step {step} is kept"),
+                        || "there is no earlier one".to_owned(),
+                        |step| format!("the checkpoint of step {step} is kept"),
                     );
                     progress.note(&format!(
-                        "warning: cannot save a checkpoint of step {step} in {}: {error}; the run goes on, and {kept}",
+                        "warning: cannot save a checkpoint of step {step} in {}: {error}; the run continues, and {kept}",
                         self.checkpoints.folder().display()
                     ));
                 }
@@ -144,13 +144,13 @@ impl CheckpointTimer {
         let (step, last_step) = (running.snapshot().drive_steps, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
         if !self.interval.saves() {
-            let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");
+            let sentence = format!("{stopped}; nothing is saved, because --checkpoint is off");
             return Failure::Stopped(signal, anyhow::anyhow!(sentence));
         }
         match self.save(running) {
             Ok(()) => {
                 let sentence = format!(
-                    "{stopped}, which is saved: `{}` goes on",
+                    "{stopped}; the state is saved, and `{}` resumes the run",
                     self.ranks.resume_command(self.checkpoints.folder())
                 );
                 Failure::Stopped(signal, anyhow::anyhow!(sentence))
@@ -159,7 +159,7 @@ impl CheckpointTimer {
             Err(error) => {
                 let (folder, remedy) = (self.checkpoints.folder().display(), self.remedy());
                 Failure::running(anyhow::anyhow!(
-                    "{stopped}, which cannot be saved in {folder}: {error}; {remedy}"
+                    "{stopped}; the state cannot be saved in {folder}: {error}; {remedy}"
                 ))
             }
         }
@@ -172,7 +172,7 @@ impl CheckpointTimer {
             .checkpoints
             .saved_step()
             .map_or("from the start".to_owned(), |step| format!("from step {step}"));
-        format!("`{command}` goes on {from} when that is mended")
+        format!("after a correction `{command}` resumes {from}")
     }
 }
 

@@ -14,7 +14,7 @@ pub(crate) enum DeviceChoice {
     /// On the cores of this machine
     #[default]
     Cpu,
-    /// On its first NVIDIA GPU; on the cores what is not a plain lattice of at most 4000 blocks
+    /// On the first NVIDIA GPU; lattices that are not plain or have more than 4000 blocks, on the cores
     Gpu,
     /// On the GPU if there is one
     Auto,
@@ -60,6 +60,6 @@ fn open_gpu() -> Result<(Arc<dyn Device>, String), DeviceError> {
 
 #[cfg(not(feature = "gpu"))]
 fn open_gpu() -> Result<(Arc<dyn Device>, String), DeviceError> {
-    let message = "this program is built without the feature `gpu`: leave `--device` out, the CPU gives the same results";
+    let message = "this program was built without the feature `gpu`: leave `--device` out; the CPU gives the same results";
     Err(DeviceError(message.to_owned()))
 }

@@ -24,7 +24,7 @@ pub(crate) fn divided_override(args: &[OsString]) -> Option<String> {
         } else if first.contains('=') {
             whole_value(first, rest).map(|meant| {
                 format!(
-                    "--set {}: the shell has divided the value at a blank: put it in quotes, --set {}",
+                    "--set {}: the shell has split the value at a blank: put it in quotes, --set {}",
                     truncated(first),
                     quoted(&meant)
                 )

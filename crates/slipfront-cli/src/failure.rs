@@ -9,12 +9,12 @@ use crate::wrap::for_stderr;
 
 /// Table of the exit statuses of all commands, in lines that a terminal of 80 columns does not wrap.
 pub(crate) const STATUSES: &str = "Exit status:
-  0        done, and the answer is there
-  1        the work failed, or its answer is no: a run failed, a disk is full, a
-           file is not as it was written, a claim or an exact answer is missed, no
-           run has the quantity of the study, the model does not make such records
-  2        the input or the command line is wrong: the sentence says what to change
-  128 + N  stopped by the signal N: 129, 130, 143 by SIGHUP, SIGINT, SIGTERM";
+  0        success
+  1        failure: a run failed, a disk is full, a file was changed after it was
+           written, a claim or an exact answer is missed, no run has the quantity
+           of the study, or the model cannot reproduce the records
+  2        wrong input or command line: the message says what to change
+  128 + N  stopped by signal N: 129, 130, 143 for SIGHUP, SIGINT, SIGTERM";
 
 /// Reason for which a command failed.
 pub(crate) enum Failure {

@@ -3,16 +3,16 @@
 /// Groups of subcommands, each with its heading.
 const GROUPS: [(&str, &[&str]); 7] = [
     ("Run a case", &["run", "check", "lab"]),
-    ("Look and compare", &["plot", "movie"]),
-    ("Many runs", &["study", "converge"]),
-    ("From a wish or a record", &["design", "calibrate"]),
+    ("Pictures", &["plot", "movie"]),
+    ("Several runs", &["study", "converge"]),
+    ("Design and calibration", &["design", "calibrate"]),
     ("Exchange", &["texture", "export", "verify"]),
-    ("Exact answers and the paper", &["family", "paper"]),
-    ("The command itself", &["completions", "man", "licences", "help"]),
+    ("Validation", &["family", "paper"]),
+    ("About slipfront", &["completions", "man", "licences", "help"]),
 ];
 
 /// Help on the subcommand that clap adds.
-const HELP: &str = "Print this help, or that of a subcommand";
+const HELP: &str = "Print this help, or the help of a subcommand";
 
 /// Columns of the names of subcommands.
 const NAMES: usize = 12;

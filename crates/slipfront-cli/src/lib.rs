@@ -57,9 +57,9 @@ pub use crate::report::physics;
 #[command(help_template = help::template(&Command::augment_subcommands(clap::Command::new("slipfront"))))]
 #[command(after_help = "Examples:
   slipfront run                                   the embedded baseline (Fig. 3 of the paper)
-  slipfront run cases/circle.toml -o results/a    a case file, results in a folder of your choice
+  slipfront run cases/circle.toml -o results/a    a case file, with results in this folder
   slipfront run --set drive.v_star=0.05 --seed 7  any key of the case file, from the command line
-  slipfront plot results/a results/b -o both      friction curves of two runs over each other")]
+  slipfront plot results/a results/b -o both      friction curves of two runs in one picture")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -74,7 +74,7 @@ enum Command {
   slipfront run
   slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
   slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
-  slipfront run --resume results/baseline                      goes on with a run that was stopped
+  slipfront run --resume results/baseline                      resumes a run that was stopped
   slipfront run --no-pictures --json | jq .static_friction_star
 
 {CHECKPOINTS_HELP}"
@@ -99,8 +99,8 @@ enum Command {
     Licences(commands::licences::LicencesCommand),
 }
 
-/// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many:
-/// what `slipfront run` does, byte for byte.
+/// Friction of micro-textured surfaces, with one lattice divided over several processes on one or more
+/// machines; results are bit-identical to those of `slipfront run`.
 #[derive(Parser)]
 #[command(name = "slipfront-mpi", version, long_version = version_lines(), max_term_width = 100)]
 struct RanksCli {
@@ -114,8 +114,8 @@ enum RanksCommand {
         override_usage = "mpirun -n <RANKS> slipfront-mpi run [OPTIONS] [CASE.toml]
        mpirun -n <RANKS> slipfront-mpi run [OPTIONS] --resume <DIR>",
         after_help = format!(
-            "Each rank holds rows of the lattice, on one thread unless --threads says otherwise; there are as many ranks as rows at \
-most. A run goes on with any number of ranks, or with `slipfront run --resume`.
+            "Each rank computes some rows of the lattice, on one thread unless --threads is given. There are at most as many ranks as rows. \
+A run can be resumed with any number of ranks, or with `slipfront run --resume`.
 
 Examples:
   mpirun -n 8 slipfront-mpi run cases/circle.toml -o results/circle
@@ -305,7 +305,7 @@ fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
         let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
         return nearest(word, &names).map(|name| {
             format!(
-                "{word:?} is no subcommand: did you mean `slipfront {name}`? `slipfront --help` lists all"
+                "{word:?} is not a subcommand: did you mean `slipfront {name}`? `slipfront --help` lists all"
             )
         });
     }
@@ -317,7 +317,5 @@ fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
     } else {
         format!("`slipfront run {quoted}` or `slipfront check {quoted}`")
     };
-    Some(format!(
-        "{word} stands in the place of a subcommand: did you mean {meant}?"
-    ))
+    Some(format!("{word} is not a subcommand: did you mean {meant}?"))
 }

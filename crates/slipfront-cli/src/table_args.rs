@@ -6,13 +6,13 @@ use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 /// How a table is written, where it should not be found.
 #[derive(Args)]
 pub(crate) struct TableArgs {
-    /// Line of the record with the names of its columns, from 1; 0 if none has [default: found]
+    /// Line of the record with the column names, from 1; 0 if there is none [default: detected]
     #[arg(long, value_name = "LINE", requires = "data")]
     header_line: Option<u64>,
-    /// Decimal sign of the record [default: found]
+    /// Decimal sign of the record [default: detected]
     #[arg(long, value_name = "SIGN", requires = "data")]
     decimal: Option<Decimal>,
-    /// Separator of the fields of the record [default: found]
+    /// Field separator of the record [default: detected]
     #[arg(long, value_name = "NAME", requires = "data")]
     separator: Option<Separator>,
 }

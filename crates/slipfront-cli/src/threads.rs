@@ -32,8 +32,8 @@ pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
 pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
     match start_pool(threads, others, false)? {
         0 => Err(Failure::running(anyhow::anyhow!(
-            "runs take threads of their own, which the system refuses: raise the limit on processes (`ulimit -u`) or on \
-             addresses (`ulimit -v`)"
+            "the system refuses to start threads for the runs: raise the limit on processes (`ulimit -u`) or on addresses \
+             (`ulimit -v`)"
         ))),
         started => Ok(started),
     }
@@ -78,7 +78,7 @@ fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize,
     let working = started + usize::from(joins);
     if working < asked {
         print_stderr(&format!(
-            "note: {} of {asked} threads are used, since {why}",
+            "note: {} of {asked} threads are used, because {why}",
             working.max(1)
         ));
     }

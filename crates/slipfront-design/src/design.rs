@@ -106,11 +106,11 @@ impl Design {
             let illegal = limits.check(grid, textured).err()?;
             let named = Named::drawn(grid, name, textured);
             let made = match limits.texture(grid, &named.draft) {
-                Some(_) if self.shapes.is_some() => "what is legal of it is judged, and has its name here",
-                Some(_) => "the search begins with what is legal of it, which has its name here",
-                None => "nothing legal is left of it, and it was left out",
+                Some(_) if self.shapes.is_some() => "the part within the limits is tested, under this name",
+                Some(_) => "the search starts with the part within the limits, under this name",
+                None => "no part is within the limits, so it was left out",
             };
-            Some(format!("the {name} breaks a limit: {illegal}; {made}"))
+            Some(format!("the {name} violates a limit: {illegal}; {made}"))
         };
         self.drawn.iter().filter_map(note).collect()
     }

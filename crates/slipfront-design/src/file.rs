@@ -38,12 +38,12 @@ pub(crate) static DESIGN: ProjectKind = ProjectKind {
         ("case", "A case that has the texture"),
         (
             "design.",
-            "The verdict on the texture, and the textures that it was held against",
+            "The verdict on the texture, compared with other textures",
         ),
-        ("evaluations.csv", "A row for every draft that was tried"),
+        ("evaluations.csv", "One row per tested draft"),
         (
             "first_slips.",
-            "Picture: where the blocks slip first, with the texture and with others",
+            "Picture: first slip of blocks, with the texture and with others",
         ),
         (
             "friction.",
@@ -274,13 +274,13 @@ impl DesignFile {
         )?;
         let is_stack = !case.model.sheets().is_empty();
         if is_stack && matches!(case.file.load.redistribute, Redistribute::All(true)) {
-            let sentence = "what is designed has no pitch, within which a bulk body would bear the load of a textured part: give \
+            let sentence = "a designed texture has no pitch, which a bulk body needs to redistribute load: give \
                             `load.redistribute` = { within = \"...\" } in the base, about twice the width of a feature";
             return Err(self.project.error("base", sentence.to_owned()));
         }
         if is_stack && !self.keys.unknowns.is_empty() && case.file.slider.longest_wave.is_none() {
-            let sentence = "the sheets of a bulk body follow from the pitch of its texture, which is designed: give `slider.longest_wave` \
-                            in the base, the largest pitch, so that all drafts stand on one body";
+            let sentence = "the sheets of a bulk body follow from the pitch of its texture, which is unknown here: give \
+                            `slider.longest_wave` in the base, the largest pitch, so that all drafts have the same body";
             return Err(self.project.error("base", sentence.to_owned()));
         }
         Ok(case)
@@ -314,7 +314,7 @@ impl DesignFile {
     /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
     pub fn check(&self, runs: usize, threads: usize, is_timed: bool) -> Result<(), StudyError> {
         if is_timed && !self.keys.front.is_empty() {
-            let sentence = "a search that is cut short by a time has no time for a front: give a number of runs, or leave out `front`";
+            let sentence = "a search with a time limit has no time for a front: give a number of runs, or leave out `front`";
             return Err(self.project.error("front", sentence.to_owned()).into());
         }
         let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
@@ -360,8 +360,8 @@ impl DesignFile {
         let keys = &self.keys;
         let is_texture = |name: &String| name.split('.').next() == Some("texture");
         if keys.cases.iter().any(|set| set.keys().any(is_texture)) {
-            let sentence = "`cases` differ in keys other than `texture`: the texture is what is designed; a drawing from which to begin \
-                            belongs to `starts`"
+            let sentence = "`cases` differ in keys other than `texture`, because the texture is designed; put an initial \
+                            drawing into `starts`"
                 .to_owned();
             return Err(self.project.error("cases", sentence).into());
         }
@@ -376,7 +376,8 @@ impl DesignFile {
         }
         let limits = self.limits(&base, &grid, percent)?;
         if keys.wish.curve.is_some() && cases.len() > 1 {
-            let sentence = "a curve is that of one case: give `cases` one table, or leave it out".to_owned();
+            let sentence =
+                "a target curve belongs to one case: give `cases` one table, or leave it out".to_owned();
             return Err(self.project.error("cases", sentence).into());
         }
         let wished = cases.iter().map(|case| Ok((case, self.wish(case, &grid)?)));
@@ -404,7 +405,7 @@ impl DesignFile {
         let unknown = |(key, range): (&String, &Value)| {
             if !key.starts_with("texture.") {
                 return Err(refuse(format!(
-                    "the unknown `{key}` is no key of a texture: name one of the base as `--set` does, such as \"texture.0.lambda\""
+                    "the unknown `{key}` is not a key of a texture: give one of the base as in `--set`, such as \"texture.0.lambda\""
                 )));
             }
             Unknown::read(key, range).map_err(refuse)
@@ -492,8 +493,8 @@ impl DesignFile {
         let keys = &self.keys.wish;
         let tolerance = self.keys.tolerance.as_ref();
         if let (Some(_), None) = (tolerance, &keys.value) {
-            let sentence = "`tolerance` belongs to a wish for a value, such as { value = 0.3, of = \"static_friction\" }: \
-                            leave it out, or wish for one";
+            let sentence = "`tolerance` belongs to a target value, such as { value = 0.3, of = \"static_friction\" }: leave it \
+                            out, or give a value";
             return Err(self.project.error("tolerance", sentence.to_owned()).into());
         }
         match (keys.least, keys.largest, &keys.value, &keys.of, &keys.curve) {
@@ -507,7 +508,7 @@ impl DesignFile {
                     Ok(quantity) => quantity,
                     Err(names) => {
                         return refuse(&format!(
-                            "`of` must be {names}, also with _star for a share of mu_s"
+                            "`of` must be {names}, also with _star for values relative to mu_s"
                         ));
                     }
                 };
@@ -516,7 +517,7 @@ impl DesignFile {
                     Err(why) => return refuse(&format!("`value`: {why}")),
                     Ok((_, true)) if is_star => {
                         return refuse(
-                            "`value` is a force, and `of` with _star asks for a share of mu_s: leave out _star",
+                            "`value` is a force, but `of` with _star is relative to mu_s: leave out _star",
                         );
                     }
                     Ok((force, true)) => FrictionUnit::force(force, force_of_mu_s),
@@ -557,7 +558,7 @@ impl DesignFile {
     fn curve(&self, keys: &CurveKeys, case: &Case, load: f64) -> Result<Wish, StudyError> {
         if case.model.drive.program.is_some() {
             let sentence =
-                "a curve over the path of the drive asks for a drive of one speed: leave out `drive.program`"
+                "a curve against drive displacement needs a constant speed: leave out `drive.program`"
                     .to_owned();
             return Err(self.project.error("wish.curve", sentence).into());
         }
@@ -575,7 +576,7 @@ impl DesignFile {
         }
         if record.x.last().is_none_or(|&last| last <= 0.0) {
             let sentence =
-                "the curve ends before the drive has moved: its last path must be more than 0".to_owned();
+                "the curve ends before the drive moves: its last displacement must be more than 0".to_owned();
             return Err(self.project.error("wish.curve", sentence).into());
         }
         let mu_s = case.scales.mu_static_mean;
@@ -697,7 +698,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            said.starts_with("the design takes") && said.contains("lower `slider.blocks` or `design.runs`"),
+            said.starts_with("the design needs") && said.contains("reduce `slider.blocks` or `design.runs`"),
             "{said}"
         );
     }

@@ -43,7 +43,7 @@ impl Report<'_> {
                 String::new()
             } else {
                 note(
-                    "no texture keeps the limits at any coverage of `design.front`",
+                    "no texture satisfies the limits at any coverage of `design.front`",
                     COLUMNS,
                 )
             });
@@ -77,7 +77,7 @@ impl Report<'_> {
         let mut rows = Vec::new();
         for (limit, found) in front {
             let Some((searched, Outcome { verdict, shares, .. })) = found else {
-                let none = ["-", "-", "no texture keeps the limits"].map(str::to_owned);
+                let none = ["-", "-", "no texture satisfies the limits"].map(str::to_owned);
                 rows.push([vec![format!("{} %", four_digits(*limit))], none.to_vec()].concat());
                 continue;
             };
@@ -111,7 +111,7 @@ impl Report<'_> {
                 wish.loss_name(),
                 if wish.loss_unit().is_empty() { "" } else { " (%)" }
             ),
-            note: format!("95 % of {surfaces} fresh surfaces"),
+            note: format!("95 % of {surfaces} new surfaces"),
             curves: vec![curve],
             ..Responses::default()
         };

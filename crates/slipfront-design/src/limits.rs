@@ -45,19 +45,19 @@ impl Default for Limits {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum Illegal {
-    #[error("the texture covers {found:.2} % of the slider, where {least} to {most} % are allowed")]
+    #[error("the texture covers {found:.2} % of the slider; {least} to {most} % are allowed")]
     Coverage { found: f64, least: f64, most: f64 },
-    #[error("a feature is {} wide, where {least} are the least", count_of(*found, "block"))]
+    #[error("a feature is {} wide; the minimum is {least}", count_of(*found, "block"))]
     Feature { found: usize, least: usize },
-    #[error("a gap between features, or between one and an edge, is {} wide, where {least} are the least", count_of(*found, "block"))]
+    #[error("a gap between features, or between a feature and an edge, is {} wide; the minimum is {least}", count_of(*found, "block"))]
     Gap { found: usize, least: usize },
-    #[error("the texture is not the mirror image of itself about the middle of {axis}")]
+    #[error("the texture is not symmetric about the middle of {axis}")]
     Mirror { axis: char },
-    #[error("the {columns} x {rows} cells of the slider have not all one texture")]
+    #[error("the {columns} x {rows} cells of the slider do not all have the same texture")]
     Copies { columns: usize, rows: usize },
-    #[error("{} textured where texture is forbidden", are(*blocks, "block"))]
+    #[error("{} textured in an area where texture is forbidden", are(*blocks, "block"))]
     Forbidden { blocks: usize },
-    #[error("the texture has {found} features, where {most} are allowed")]
+    #[error("the texture has {found} features; at most {most} are allowed")]
     Features { found: usize, most: usize },
 }
 

@@ -44,7 +44,7 @@ impl FoundNumber {
         let is_near = self.value - from <= near || to - self.value <= near;
         is_near.then(|| {
             format!(
-                "`{}` lies at an end of its range, {} to {}: a wider range may have a better one",
+                "`{}` is at an end of its range, {} to {}: a wider range may contain a better value",
                 self.key,
                 self.with_unit(from),
                 self.with_unit(to)

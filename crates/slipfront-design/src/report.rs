@@ -246,13 +246,12 @@ impl Report<'_> {
         text += &on_fresh(wish, verdict);
         text += &if design.evaluator.scatters() {
             format!(
-                "\nOn {} not seen by the search; intervals of 95 %. {}\n",
+                "\nTested on {} not used by the search, with 95 % intervals. {}\n",
                 count(verdict.surfaces as usize, "surface"),
                 optimism(wish, verdict)
             )
         } else {
-            "\nCoefficients do not scatter, so that there is one surface, which the search has seen.\n"
-                .to_owned()
+            "\nCoefficients are not random, so the test uses the same surface as the search.\n".to_owned()
         };
         let unit = &design.evaluator.subjects[0].unit;
         text += &friction_of_parts(unit, wish, verdict).unwrap_or_default();
@@ -299,8 +298,8 @@ impl Report<'_> {
         if !lengths.is_empty() {
             let names: Vec<String> = lengths.iter().map(ToString::to_string).collect();
             let sentence = format!(
-                "the gain belongs to blocks of this size, since a block gives the material {}: give them as lengths of the material, and look \
-                 with `slipfront converge` at what is left",
+                "the gain depends on the block size, because the block size sets {}: give them as lengths of the material, and \
+                 estimate the mesh error with `slipfront converge`",
                 names.join(", ")
             );
             text += &note(&sentence, COLUMNS);
@@ -354,7 +353,7 @@ fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
     let n_drafts = drafts.clone().count();
     let of_search = drafts.take(1).map(|(number, why)| {
         format!(
-            "{} of the {} that the search tried count as lost, as {EVALUATIONS} says of each; the first, number {number}: {why}",
+            "{} of the {} tested by the search failed ({EVALUATIONS} has the reasons); the first, number {number}: {why}",
             n_drafts,
             count(tried.len(), "draft")
         )
@@ -362,11 +361,11 @@ fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
     let judged = std::iter::once(&verdict.design).chain(&verdict.others);
     let on_fresh = judged.filter_map(|found| {
         let why = found.lost.as_ref()?;
-        Some(format!("on fresh surfaces the {} is lost: {why}", found.name))
+        Some(format!("on new surfaces the {} fails: {why}", found.name))
     });
     let changed = verdict.sensitivity.changed.iter().filter_map(|changed| {
         let why = changed.lost.as_ref()?;
-        Some(format!("the design is lost at {}: {why}", changed.change))
+        Some(format!("the design fails at {}: {why}", changed.change))
     });
     of_search.into_iter().chain(on_fresh).chain(changed).collect()
 }
@@ -374,7 +373,7 @@ fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
 fn headline(design: &Design, verdict: &Verdict) -> String {
     let (wish, unit) = (design.evaluator.wish(), &design.evaluator.subjects[0].unit);
     if verdict.design.lost.is_some() {
-        return "no verdict: every texture that was judged is lost on fresh surfaces".to_owned();
+        return "no verdict: every tested texture failed on new surfaces".to_owned();
     }
     let design = &verdict.design;
     let loss = wish.told(design.loss);
@@ -394,7 +393,7 @@ fn headline(design: &Design, verdict: &Verdict) -> String {
     }
     if verdict.is_named {
         text += &format!(
-            ". It is the {}: nothing that the search found is better on fresh surfaces with 95 % confidence",
+            ". It is the {}: no texture of the search is better on new surfaces with 95 % confidence",
             verdict.design.name
         );
     }
@@ -517,7 +516,7 @@ fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
 
 fn optimism(wish: &Wish, verdict: &Verdict) -> String {
     format!(
-        "On the surfaces that it was chosen by, the design looked better by {}.",
+        "On the surfaces of the search the design was better by {}.",
         four_digits(wish.difference_told(verdict.optimism))
     )
 }
@@ -537,7 +536,7 @@ fn under_changes(design: &Design, verdict: &Verdict) -> String {
         header.extend([wish.quantity().name(), "scatter (1 s.d.)"]);
     }
     header.extend(within.as_deref());
-    header.extend([wish.loss_name(), "better than the best named by"]);
+    header.extend([wish.loss_name(), "better than the best named pattern by"]);
     let row = |changed: &Changed| {
         let mut row = vec![changed.change.clone()];
         if let Some(unit) = unit {

@@ -35,7 +35,7 @@ impl WithinTolerance {
             "the design passes".to_owned()
         } else {
             format!(
-                "the design fails, since at least {} % must",
+                "the design fails, because at least {} % must",
                 100.0 * PASSING_SHARE
             )
         };

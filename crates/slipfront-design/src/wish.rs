@@ -215,12 +215,12 @@ impl Wish {
         let is_told = |found: &Measured| found.get(quantity).is_finite();
         Err(if is_told(with) && without.is_none_or(is_told) {
             format!(
-                "the {} of the slider without texture is 0, so that nothing can be compared with it: wish for a value, or for another quantity",
+                "the {} of the untextured slider is 0, so a comparison is not possible: give a target value, or another quantity",
                 quantity.name()
             )
         } else {
-            "the run has no kinetic friction: no block slips, or the run ends before the window of kinetic friction begins; raise \
-             `time.duration_star` or lower `time.kinetic_from_star`"
+            "the run has no kinetic friction: no block slips, or the run ends before the kinetic window begins; increase \
+             `time.duration_star` or reduce `time.kinetic_from_star`"
                 .to_owned()
         })
     }
@@ -315,14 +315,14 @@ impl Wish {
         let of = self.quantity().name();
         match self {
             Self::Least(_) | Self::Largest(_) => format!(
-                "{} of {of}: {}{} against the slider without texture",
+                "{} of {of}: {}{} relative to the untextured slider",
                 self.loss_name(),
                 with_half_width(loss, half_width),
                 self.loss_unit()
             ),
             Self::Value(..) if found.is_empty() => {
                 format!(
-                    "value of {of} wished for: {} % from it over the cases",
+                    "target value of {of}: {} % difference over the cases",
                     four_digits(loss)
                 )
             }
@@ -333,15 +333,12 @@ impl Wish {
                     ""
                 };
                 format!(
-                    "{of} of {} wished for: {found} found, {} % from it{root}",
+                    "target {of} of {}: result {found}, {} % difference{root}",
                     target.unit.told(target.star),
                     four_digits(loss)
                 )
             }
-            Self::Curve(_) => format!(
-                "curve wished for: {} from it, as a root of the mean square of mu*",
-                four_digits(loss)
-            ),
+            Self::Curve(_) => format!("target curve: rms difference of {} in mu*", four_digits(loss)),
         }
     }
 
@@ -349,7 +346,7 @@ impl Wish {
     pub(crate) fn missed(&self, loss: f64) -> &'static str {
         match self {
             Self::Value(target) if target.tolerance_star.is_none() && loss > MISSED_PERCENT => {
-                ". The value is out of reach of these limits, or of this search: give more runs, or wider limits"
+                ". The value cannot be reached within these limits, or by this search: give more runs, or wider limits"
             }
             _ => "",
         }
@@ -442,7 +439,7 @@ mod tests {
         let slipless = run(1.0, 0.0);
         let said = least.deviation(&with, Some(&slipless)).unwrap_err();
         assert!(
-            said.contains("kinetic friction of the slider without texture is 0"),
+            said.contains("kinetic friction of the untextured slider is 0"),
             "{said}"
         );
         // A curve at half the speed takes twice the time.

@@ -325,9 +325,9 @@ fn parts_within_a_tolerance_are_counted() {
         .unwrap();
     let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
     for expected in [
-        "static friction of 9 uN wished for: ".to_owned(),
+        "target static friction of 9 uN: result ".to_owned(),
         format!(
-            "{within} of 64 parts lie within \u{b1} {tolerance} uN: the design fails, since at least 95 % must"
+            "{within} of 64 parts lie within \u{b1} {tolerance} uN: the design fails, because at least 95 % must"
         ),
     ] {
         assert!(words.contains(&expected), "{expected}\n{told}");
@@ -647,12 +647,12 @@ fn what_never_comes_to_rest_is_told() {
         text.split_whitespace().collect::<Vec<_>>().join(" ")
     };
     let text = find();
-    let remedy = "raise its kinetic friction or damping, or take constant loading";
-    let told = "note: on fresh surfaces the start 1 of the file is lost: ";
+    let remedy = "increase kinetic friction or damping, or use constant loading";
+    let told = "note: on new surfaces the start 1 of the file fails: ";
     let after = text.split(told).nth(1).unwrap_or_else(|| panic!("{text}"));
     assert!(after.contains(remedy), "{text}");
     assert!(
-        text.contains("count as lost, as evaluations.csv says of each"),
+        text.contains("failed (evaluations.csv has the reasons)"),
         "{text}"
     );
     assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
@@ -661,7 +661,7 @@ fn what_never_comes_to_rest_is_told() {
     let lost: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[4] == "inf").collect();
     assert!(!lost.is_empty() && lost.len() < rows.len());
     assert!(
-        text.contains("note: the design is lost at one block towards -x: "),
+        text.contains("note: the design fails at one block towards -x: "),
         "{text}"
     );
     assert!(lost.iter().all(|row| row[6].contains(remedy)));
@@ -677,7 +677,7 @@ fn what_never_comes_to_rest_is_told() {
     );
     let said = error.unwrap_err().to_string();
     assert!(
-        said.starts_with("nothing can be compared with the slider without texture") && said.contains(remedy),
+        said.starts_with("a comparison with the untextured slider is not possible") && said.contains(remedy),
         "{said}"
     );
 }
@@ -754,7 +754,7 @@ fn the_folder_has_the_cases_of_the_verdict() {
     let text = opened
         .find(&bounds(60, &AtomicBool::new(false)), &mut |_| {})
         .unwrap();
-    assert!(text.contains("no texture keeps the limits"), "{text}");
+    assert!(text.contains("no texture satisfies the limits"), "{text}");
 }
 
 /// A slider that is thick for the features of the design is told to be no sheet.
@@ -800,7 +800,7 @@ fn drawings_are_judged() {
         .unwrap();
     let told = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        !told.contains("not seen by the search"),
+        !told.contains("not used by the search"),
         "there is one surface: {text}"
     );
     let found: serde_json::Value =
@@ -815,11 +815,11 @@ fn drawings_are_judged() {
         );
     }
     assert!(
-        told.contains("note: the start 2 of the file breaks a limit: the texture covers 25.00 % of the slider, where 0 to 15 % are allowed"),
+        told.contains("note: the start 2 of the file violates a limit: the texture covers 25.00 % of the slider; 0 to 15 % are allowed"),
         "{text}"
     );
     assert!(
-        told.contains("note: the start 3 of the file breaks a limit: a feature is 1 block wide, where 2 are the least; nothing legal"),
+        told.contains("note: the start 3 of the file violates a limit: a feature is 1 block wide; the minimum is 2; nothing legal"),
         "{text}"
     );
 }
@@ -956,7 +956,7 @@ fn what_cannot_be_is_told_with_its_place() {
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\ncases = [{{ texture = [] }}]"),
-            "belongs to `starts`",
+            "into `starts`",
         ),
         (
             "wish = { value = '1 mN', of = 'static_friction_star' }\ncoverage = [0, 10]",
@@ -972,7 +972,7 @@ fn what_cannot_be_is_told_with_its_place() {
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\ntolerance = 0.01"),
-            "`tolerance` belongs to a wish for a value",
+            "`tolerance` belongs to a target value",
         ),
         (
             "wish = { value = 0.3, of = 'static_friction' }\ncoverage = [0, 10]\ntolerance = '1 uN'",

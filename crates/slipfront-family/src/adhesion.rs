@@ -27,7 +27,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             [1.0 + adhesion, found],
             (
                 0.375 * (0.03 * 0.01 + 0.03 * 0.03 / (2.0 * (0.5 + adhesion))),
-                "the pull of one step, and of what springs stretch until the slider is as fast as the drive",
+                "drive force of one step, and spring extension until the slider reaches the drive speed",
             ),
         ));
     }
@@ -43,11 +43,12 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let run = AnswerRun::of_case("adhesion on a groove", &text)?;
         let exact = (20.0 / 15.0 + adhesion) / groove_edge_factor(Facing::Across, 5);
         answers.push(Answer::new(
-            format!("pull k_s V t* at the first slip beside a groove, τ_a/(P μ̄_s) = {adhesion}"),
+            format!("k_s V t* at the first slip next to a groove, τ_a/(P μ̄_s) = {adhesion}"),
             [exact, 0.375 * 1e-3 * run.first_slip()],
             (
-                0.375 * 1e-3 * 0.5 + 2.5 * scales::damping(0.3) * 1e-3 / groove_edge_factor(Facing::Across, 5),
-                "the pull of one step, and the drag of the free rows, Ω V* each, half of which each edge bears",
+                0.375 * 1e-3 * 0.5
+                    + 2.5 * scales::damping(0.3) * 1e-3 / groove_edge_factor(Facing::Across, 5),
+                "drive force of one step, and drag Ω V* of each free row, half of it on each edge",
             ),
         ));
     }
@@ -57,7 +58,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/adhesion.md"),
         answers,
         picture: Some((
-            "Static friction of a smooth uniform surface against adhesion: the line is exact, the points are computed.",
+            "Static friction of a smooth uniform surface against adhesion. Line: exact; points: computed.",
             Responses {
                 x_title: "adhesion \u{3c4}\u{2090}/(P \u{27e8}\u{3bc}\u{209b}\u{27e9})".to_owned(),
                 y_title: "static friction \u{3bc}\u{209b}*".to_owned(),

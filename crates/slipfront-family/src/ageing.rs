@@ -27,21 +27,21 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         );
         let run = AnswerRun::of_case("ageing", &text)?;
         answers.push(Answer::seen_late(
-            format!("t* at which blocks break that were held until {hold}"),
+            format!("t* of slip after a hold until t* = {hold}"),
             [ageing_slip_time(&LAW, 0.0, hold, 0.375, V_STAR), run.first_slip()],
-            (DT_STAR, "it is seen at the next step"),
+            (DT_STAR, "slip is detected at the next step"),
         ));
         found.push(run.largest());
     }
     let fine: Vec<f64> = (0..=60).map(|k| libm::exp10(0.8 + 0.05 * f64::from(k))).collect();
     let peak = |hold: f64| 0.375 * V_STAR * (ageing_slip_time(&LAW, 0.0, hold, 0.375, V_STAR) - hold);
     Ok(Chapter {
-        title: "Friction that grows with age",
+        title: "Ageing of static friction",
         name: "ageing",
         text: include_str!("text/ageing.md"),
         answers,
         picture: Some((
-            "Static friction after a hold, against its duration.",
+            "Static friction after a hold against the duration of the hold.",
             Responses {
                 x_title: "hold t*".to_owned(),
                 log_x: true,

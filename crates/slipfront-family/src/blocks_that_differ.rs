@@ -18,12 +18,12 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     );
     let stiffest = 1.0 - 0.9 * 0.5 / 50.0;
     answers.push(Answer::seen_late(
-        "first slip of a slider graded from E to E/10, at its stiff edge: t*",
+        "t* of the first slip of a slider graded from E to E/10, at its stiff edge",
         [
             1.0 / (0.375 * 0.03 * stiffest),
             AnswerRun::of_case("graded", &text)?.first_slip(),
         ],
-        (0.01, "it is seen at the next step"),
+        (0.01, "slip is detected at the next step"),
     ));
     let text = format!(
         "{EQUAL}[slider]\nblocks = [30, 30]\noutline = \"disc\"\n[time]\nstep = 0.01\nstop = \"after_onset\""
@@ -33,7 +33,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         [1.0, AnswerRun::of_case("disc", &text)?.peak()],
         (
             0.375 * (0.03 * 0.01 + 0.03 * 0.03),
-            "the pull of one step, and of what springs stretch until the slider is as fast as the drive",
+            "drive force of one step, and spring extension until the slider reaches the drive speed",
         ),
     ));
     for viscosity_time in [0.05, 0.2] {
@@ -41,26 +41,26 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let rate = decay(viscosity_time, dt);
         let [_, against] = pair_modes([1.0; 2], [1.0; 2]);
         answers.push(Answer::new(
-            format!("decay rate of two blocks that swing against each other, τ_v = {viscosity_time}, in steps of {dt}"),
+            format!("decay rate of two blocks in antiphase, τ_v = {viscosity_time}, for Δt* = {dt}"),
             [lagged_decay_rate(against.omega_squared, viscosity_time, dt), rate],
             // Four amplitudes, of which each step rounds the last digit one way or the other.
             (
                 4.0 * (2.8_f64 / dt).sqrt() * f64::EPSILON,
-                "rounding of four amplitudes, a random walk of 280 steps of ε",
+                "rounding of four amplitudes: a random walk of 280 steps of ε",
             ),
         ));
         let exact = viscous_decay_rate(against.omega_squared, 0.0, viscosity_time);
         answers.push(Answer::new(
-            format!("the same without the error of the step, τ_v = {viscosity_time}"),
+            format!("decay rate of two blocks in antiphase, τ_v = {viscosity_time}, in the limit Δt* = 0"),
             [exact, rate],
             (
                 0.6 * exact * viscosity_time * 1.5 * dt,
-                "of first order: half of τ_v (ω² - k_s) Δt, relative, and a fifth of that for higher orders",
+                "first-order error, relative ½ τ_v (ω² - k_s) Δt, plus a fifth for higher orders",
             ),
         ));
     }
     Ok(Chapter {
-        title: "Heterogeneous blocks, and dampers between them",
+        title: "Heterogeneous blocks and dampers",
         name: "blocks",
         text: include_str!("text/blocks.md"),
         answers,
@@ -68,7 +68,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     })
 }
 
-/// Decay rate of two equal blocks without friction that swing against each other.
+/// Decay rate of two equal blocks in antiphase, without friction.
 fn decay(viscosity_time: f64, dt_star: f64) -> f64 {
     let lattice = Lattice::free(2, 1);
     let surface = Surface::uniform(&lattice, 0.0, 0.0);

@@ -59,12 +59,12 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let tolerance = if exact > WEAK {
             (
                 share * scales::damping(OMEGA_STAR) * V_STAR + rise,
-                "the drag of the zone that slides, f Ω V*, and the pull of one step",
+                "drag f Ω V* of the sliding zone, and drive force of one step",
             )
         } else {
-            (rise, "the pull of one step: it is the weak zone that slips")
+            (rise, "drive force of one step, when the weak zone slips")
         };
-        let quantity = format!("largest μ* of {weak_rows} tenths at 0.5 and the rest at 1");
+        let quantity = format!("largest μ*, f = 0.{weak_rows}, μ_1 = 0.5, μ_2 = 1");
         answers.push(Answer::new(quantity, [exact, peak], tolerance).at_most_below(rounding(exact)));
         shares.push(share);
         found.push(peak);
@@ -76,9 +76,9 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/composite.md"),
         answers,
         picture: Some((
-            "Largest friction of a surface of two zones whose blocks do not pull at each other, against the share of the weak one.",
+            "Largest friction of a surface with two zones and uncoupled blocks, against the fraction of the weak zone.",
             Responses {
-                x_title: "share of the weak zone".to_owned(),
+                x_title: "fraction of the weak zone".to_owned(),
                 y_title: "largest friction \u{3bc}*".to_owned(),
                 curves: vec![
                     Response::of_formula("exact", &fine, |share| composite_peak(share, [WEAK, 1.0], R_STAR)),

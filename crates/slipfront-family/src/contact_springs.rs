@@ -69,12 +69,12 @@ fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
     if redrawn {
         (
             exact * (peak / (1.0 - w) + cut + scatter),
-            "the pull lags by Ω/k_s and is read once a step; 40 cycles cut off, of thresholds that scatter",
+            "the drive force lags by Ω/k_s and is sampled once per step; mean over 40 cycles, the last incomplete; scatter of thresholds",
         )
     } else {
         (
             exact * (peak / (1.0 - w) + cut),
-            "the pull lags by Ω/k_s and is read once a step; 40 cycles cut off",
+            "the drive force lags by Ω/k_s and is sampled once per step; mean over 40 cycles, the last incomplete",
         )
     }
 }
@@ -141,22 +141,22 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             after_break: AfterBreak::Slides,
         };
         answers.push(Answer::new(
-            format!("front speed v/c, k_t = {softness} K, a prestress of {prestress}"),
+            format!("front speed v/c, k_t = {softness} K, prestress {prestress}"),
             [
                 expected,
                 front_speed_in_a_chain(0.0, prestress, law.into(), FRONT_DT_STAR)?,
             ],
             (
                 0.5 * K_STRAIGHT.sqrt() * FRONT_DT_STAR * expected * expected,
-                "a spring breaks at a whole step, up to half a step from its time l/v after the one before",
+                "springs break at whole steps, up to half a step from the interval l/v",
             ),
         ));
     }
-    for (redraw, which) in [(None, "kept"), (Some(5), "drawn anew")] {
+    for (redraw, which) in [(None, "kept"), (Some(5), "redrawn")] {
         for w in [0.05, 0.1, 0.2] {
             let exact = static_over_kinetic_of_springs(w, redraw.is_some());
             answers.push(Answer::new(
-                format!("static over kinetic friction of a rigid slider, w = {w}, thresholds {which}"),
+                format!("ratio of static to kinetic friction of a rigid slider, w = {w}, thresholds {which}"),
                 [exact, ratio(w, redraw)?],
                 tolerance(w, exact, redraw.is_some()),
             ));
@@ -165,16 +165,16 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     for n in [1, 2, 5, 20] {
         let exact = chain_slip_force(n, K_STRAIGHT, 0.1);
         answers.push(Answer::new(
-            format!("pull at which the first of {n} springs of a chain breaks, k_t = 0.1"),
+            format!("F_T at the first break in a chain of {n} contact springs, k_t = 0.1"),
             [exact, pull(n, 0.1)],
             (
                 CHAIN_V_STAR * (CHAIN_DAMPING * exact + K_DRIVE * CHAIN_DT_STAR),
-                "drag of all blocks, Ω V* times their displacements over that of the first, and the pull of one step",
+                "drag Ω V* Σu_i/u_1, and drive force of one step",
             ),
         ));
     }
     Ok(Chapter {
-        title: "Contacts that are springs",
+        title: "Contact springs",
         name: "contact-springs",
         text: include_str!("text/contact_springs.md"),
         answers,

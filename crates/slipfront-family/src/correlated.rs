@@ -1,4 +1,4 @@
-//! Coefficients that are alike over a length.
+//! Spatially correlated coefficients.
 
 use std::f64::consts::PI;
 
@@ -50,21 +50,21 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     for length in [0.25, 1.0, 5.0] {
         let field = CorrelatedField::new(&Lattice::free(25, 25), length);
         answers.push(Answer::new(
-            format!("variance of means over blocks, ξ = {length} l"),
+            format!("variance of block means, ξ = {length} l"),
             [deviation_along(length).powi(4), field.variance_of_blocks()],
             (
                 2e-9,
-                "it swings by 2 exp(-9π²/4) along each axis within the pitch of the nodes",
+                "oscillation by 2 exp(-9π²/4) along each axis within the node spacing",
             ),
         ));
     }
     for length in [0.25, 1.0, 5.0] {
         answers.push(Answer::new(
-            format!("largest difference of a block from the mean of its parts, ξ = {length} l"),
+            format!("largest difference between a block mean and the mean of its parts, ξ = {length} l"),
             [0.0, apart(length)],
             (
                 1e-13,
-                "some 700 differences of error functions, rounded to 1e-16 of 1, are added",
+                "sum of about 700 differences of error functions, each rounded to 1e-16",
             ),
         ));
     }
@@ -80,16 +80,16 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let exact = covariance(f64::from(n)) / covariance(0.0);
         let found = product / f64::from(SEEDS) / covariance(0.0).powi(2);
         answers.push(Answer::new(
-            format!("correlation of means over blocks {n} l apart, ξ = {LENGTH} l"),
+            format!("correlation of block means at a distance of {n} l, ξ = {LENGTH} l"),
             [exact, found],
             (
                 5.0 * ((1.0 + exact * exact) / f64::from(SEEDS)).sqrt(),
-                "five standard errors of products of normals, over the seeds 0 to 9999",
+                "five standard errors of a product of normal variates over the seeds 0 to 9999",
             ),
         ));
     }
     Ok(Chapter {
-        title: "Coefficients that are alike over a length",
+        title: "Spatially correlated coefficients",
         name: "correlated",
         text: include_str!("text/correlated.md"),
         answers,

@@ -135,13 +135,13 @@ impl Chain {
             };
             answers.push(Answer::new(
                 format!(
-                    "{n} blocks, θ = {slope}, steps of {dt_star}: relative error of F_T after {} events, rms",
+                    "{n} blocks, θ = {slope}, Δt* = {dt_star}: relative error of F_T, rms over {} events",
                     errors.len()
                 ),
                 [0.0, rms(0)],
                 (
                     rms(1),
-                    "the threshold of the block ahead of the tip, and what the driven one gains before it slips again",
+                    "force of the block ahead of the tip, and reloading of the driven block",
                 ),
             ));
             for error in errors {
@@ -155,21 +155,21 @@ impl Chain {
             }
         }
         answers.push(Answer::new(
-            format!("{n} blocks, θ = {slope}: largest of all these errors"),
+            format!("{n} blocks, θ = {slope}: largest relative error of F_T in all runs"),
             [0.0, largest[0]],
             (
                 largest[2],
-                "of that event: the same, and what the drive added during it",
+                "force of the same two blocks, and motion of the drive during the event",
             ),
         ));
         let [first, last] = [1.0 - slope, 1.0 + slope];
         let crossing = 2.0 * KAPPA * self.v_star / K_STRAIGHT.sqrt();
         answers.push(Answer::new(
-            format!("{n} blocks, θ = {slope}: F_T/F_N, of the largest of each run the farthest from μ_k"),
+            format!("{n} blocks, θ = {slope}: largest F_T/F_N, in the run with the largest error"),
             [KINETIC, highest],
             (
                 (STATIC * (last + crossing) + (STATIC - KINETIC) * first) / f64::from(n),
-                "the same at the far end, and the drive while sound goes there and back",
+                "force of the same two blocks, and motion of the drive while sound crosses the chain and returns",
             ),
         ));
         let finest = runs.into_iter().next_back().map(|(longer, _)| longer);
@@ -208,9 +208,9 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/edge_drive.md"),
         answers,
         picture: Some((
-            "Load after each event that reached farther than all before, against its length, of 100 blocks under three profiles of pressure.",
+            "Load after each event that is longer than all earlier ones, against its length, for 100 blocks and three pressure profiles.",
             Responses {
-                x_title: "length of the event over that of the chain".to_owned(),
+                x_title: "event length over chain length".to_owned(),
                 y_title: "load F_T/F_N".to_owned(),
                 curves,
                 ..Responses::default()

@@ -73,11 +73,11 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             for (prestress, found) in PRESTRESSES.into_iter().zip(&found) {
                 let exact = front_speed(1.0, prestress);
                 answers.push(Answer::new(
-                    format!("v/c at a prestress of {prestress}"),
+                    format!("front speed v/c, prestress {prestress}"),
                     [exact, *found],
                     (
                         0.5 * K_STRAIGHT.sqrt() * DT_STAR * exact * exact,
-                        "a block starts at a whole step, up to half a step from its time l/v after the one before",
+                        "blocks start at whole steps, up to half a step from the interval l/v",
                     ),
                 ));
             }
@@ -90,7 +90,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/fronts.md"),
         answers,
         picture: Some((
-            "Speed of slip fronts along a chain, over that of sound. Drive springs slow them down most under a low prestress.",
+            "Speed of slip fronts along a chain relative to the speed of sound. Drive springs slow fronts most at low prestress.",
             Responses {
                 x_title: "prestress \u{3c4}".to_owned(),
                 y_title: "front speed v/c".to_owned(),

@@ -45,31 +45,31 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let of_the_step = K_DRIVE * DT_STAR * DT_STAR;
         let step = v_star * DT_STAR;
         answers.push(Answer::new(
-            name("mu* of the first jump"),
+            name("mu* at the first slip"),
             [STATIC, peak],
-            (K_DRIVE * step, "the path grows by V dt a step"),
+            (K_DRIVE * step, "path increment V dt of a step"),
         ));
         let [stopped, rest] = step_until(&mut simulation, false);
         answers.push(Answer::new(
-            name("path of the drive while blocks slide"),
+            name("drive path during the slip"),
             [0.0, stopped - path],
-            (0.0, "the path is a count of steps"),
+            (0.0, "the path is a whole number of increments"),
         ));
         answers.push(Answer::new(
-            name("mu* where they have come to rest"),
+            name("mu* after the slip"),
             [2.0 * KINETIC - peak, rest],
             (
                 (peak - KINETIC) * 2.0 * of_the_step,
-                "a stop between two steps, of the order of k_s dt^2 of the slip",
+                "blocks stop between two steps: of the order of k_s dt^2 times the slip",
             ),
         ));
         let [next, _] = step_until(&mut simulation, true);
         answers.push(Answer::new(
-            name("path from one jump to the next"),
+            name("drive path from the first slip to the second"),
             [2.0 * (peak - KINETIC) / K_DRIVE, next - path],
             (
                 2.0 * (peak - KINETIC) / K_DRIVE * of_the_step + step,
-                "the error of the slip, and V dt of the path",
+                "error of the slip, and path increment V dt",
             ),
         ));
     }

@@ -20,9 +20,9 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         // The least pressure is that of the outermost blocks, half a block from the edge.
         let least: f64 = 1.0 - f64::abs(slope) * (1.0 - 1.0 / 25.0);
         answers.push(Answer::seen_late(
-            format!("first slip, slope {slope} along {along}: t*"),
+            format!("t* of the first slip, slope {slope} along {along}"),
             [least / (0.375 * V_STAR), run.first_slip()],
-            (0.01, "it is seen at the next step"),
+            (0.01, "slip is detected at the next step"),
         ));
         let text = format!(
             "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nslider.omega_star = 1\n[load]\n\
@@ -30,7 +30,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
              [time]\nduration_star = 200\nstep = 0.1"
         );
         answers.push(Answer::new(
-            format!("level of steady sliding at V* = 0.2, slope {slope} along {along}"),
+            format!("steady level at V* = 0.2, slope {slope} along {along}"),
             [
                 0.5 + scales::damping(1.0) * 0.2,
                 AnswerRun::of_case("whole load", &text)?.mu_star_at(200.0),
@@ -39,7 +39,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         ));
     }
     Ok(Chapter {
-        title: "Load that is not the same everywhere",
+        title: "Non-uniform load",
         name: "load",
         text: include_str!("text/load.md"),
         answers,

@@ -126,20 +126,20 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         if weakening == 0.1 {
             for (n, load) in QUASI_STATIC {
                 answers.push(Answer::new(
-                    format!("W = {weakening}: load over 1 at which a patch of {n} blocks grows"),
+                    format!("W = {weakening}: excess load at which a patch of {n} blocks grows"),
                     [load, loads[n / 2 + 1][0]],
                     (
                         0.05 * load,
-                        "near the instability slip grows as slowly as the load: the delay goes with the rate to 2/3",
+                        "slip grows slowly near the instability: the delay scales with the loading rate to the power 2/3",
                     ),
                 ));
             }
         }
         let [size, load] = Line::runaway(loads, critical);
         answers.push(Answer::new(
-            format!("W = {weakening}: load over 1 from which the next block follows within 40 t*"),
+            format!("W = {weakening}: excess load from which the next block slips within 40 t*"),
             [largest, load],
-            (0.05 * largest, "the delay of growth that is as slow as the load"),
+            (0.05 * largest, "delay of slow growth near the instability"),
         ));
         weakenings.push(weakening);
         sizes.push(size);
@@ -152,10 +152,10 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/rupture_nucleation.md"),
         answers,
         picture: Some((
-            "Size in blocks from which slip runs away, against the fall of strength per slip. The runs show the patch whose next block follows \
-             within 40 t*: the load goes on rising, slowly, while it grows from the critical size.",
+            "Patch size in blocks at which slip runs away, against the rate of weakening W. For the runs it is the size at which the next block slips \
+             within 40 t*. The load continues to rise slowly while the patch grows from its critical size.",
             Responses {
-                x_title: "fall of strength per slip W".to_owned(),
+                x_title: "rate of weakening W".to_owned(),
                 y_title: "blocks".to_owned(),
                 curves: vec![
                     Response::of_values("runs", &weakenings, &sizes),

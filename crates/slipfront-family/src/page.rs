@@ -85,7 +85,7 @@ impl Book {
             let _ = write!(text, "\n## {}\n\n{}\n", chapter.title, chapter.text);
             let _ = writeln!(
                 text,
-                "| answer | {} | computed | apart | at most | because |\n|---|---:|---:|---:|---:|---|",
+                "| quantity | {} | computed | error | tolerance | source of error |\n|---|---:|---:|---:|---:|---|",
                 self.compared
             );
             for answer in &chapter.answers {
@@ -111,10 +111,14 @@ fn row(answer: &Answer) -> String {
         tolerance,
     } = answer;
     let quantity = quantity.replace('|', "\\|");
-    let apart = (found - exact).abs();
-    let verdict = if answer.holds() { "" } else { " **too far**" };
+    let error = (found - exact).abs();
+    let verdict = if answer.holds() {
+        ""
+    } else {
+        " **out of tolerance**"
+    };
     format!(
-        "| {quantity} | {} | {} | {apart:.1e}{verdict} | {:.1e} | {} |",
+        "| {quantity} | {} | {} | {error:.1e}{verdict} | {:.1e} | {} |",
         digits(*exact),
         digits(*found),
         tolerance.distance,
@@ -132,14 +136,14 @@ fn digits(value: f64) -> String {
     format!("{value:.*}", places.clamp(0, 12) as usize)
 }
 
-/// One line per chapter, and one for every answer that is too far from the value it is compared with.
+/// One line per chapter, and one for every answer out of its tolerance.
 pub fn summary(books: &[Book]) -> String {
     let mut text = String::new();
     for chapter in books.iter().flat_map(|book| &book.chapters) {
         let within = chapter.answers.iter().filter(|answer| answer.holds()).count();
         let _ = writeln!(
             text,
-            "{}: {within} of {} answers",
+            "{}: {within} of {} within tolerance",
             chapter.title,
             chapter.answers.len()
         );
@@ -152,7 +156,7 @@ pub fn summary(books: &[Book]) -> String {
             } = answer;
             let _ = writeln!(
                 text,
-                "  {quantity}: {found}, compared with {exact}, farther than {}: {}",
+                "  {quantity}: computed {found}, expected {exact}, tolerance {} ({})",
                 answer.most(),
                 tolerance.reason
             );

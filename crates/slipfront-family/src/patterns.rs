@@ -30,13 +30,9 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         (
             false,
             0.7,
-            "that stays on the blocks that touch: grooves of 6, 4 and 1 columns, and one within another, cover 30 %",
+            "not redistributed; grooves of 6, 4 and 1 columns, one inside another, cover 30 %",
         ),
-        (
-            true,
-            1.0,
-            "that is redistributed: the whole, whatever the pattern",
-        ),
+        (true, 1.0, "redistributed; independent of the pattern"),
     ] {
         let text = format!(
             "slider.blocks = [60, 60]\nslider.omega_star = 1\nload.redistribute = {redistribute}\n\
@@ -46,13 +42,13 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let run = AnswerRun::of_case("grooves of three widths", &text)?;
         let damping = scales::damping(1.0) * 0.2;
         answers.push(Answer::new(
-            format!("load {what}, by the level of steady sliding"),
+            format!("load on the blocks in contact, from the steady level: {what}"),
             [load, (run.mu_star_at(200.0) - damping) / 0.5],
             (2.0 * rounding(200.0 * 0.2), ROUNDING),
         ));
     }
     Ok(Chapter {
-        title: "Patterns of several scales",
+        title: "Hierarchical patterns",
         name: "patterns",
         text: include_str!("text/patterns.md"),
         answers,

@@ -16,7 +16,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let run = AnswerRun::of_case("speeds", &text)?;
     for (time, v_star, path) in [(299.0, 0.05, 15.0), (449.0, 0.2, 45.0), (699.0, 0.05, 57.5)] {
         answers.push(Answer::new(
-            format!("level of steady sliding at V* = {v_star}, t* = {time}"),
+            format!("steady level at V* = {v_star}, t* = {time}"),
             [0.5 + f64::sqrt(0.75) * v_star, run.mu_star_at(time)],
             (rounding(path), ROUNDING),
         ));
@@ -27,9 +27,9 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     );
     let run = AnswerRun::of_case("hold", &text)?;
     answers.push(Answer::seen_late(
-        "first slip after a hold of 50 at V* = 0.05, 0, 0.1: t*",
+        "t* of the first slip at V* = 0.05, 0 (a hold of 50), 0.1",
         [70.0 + (1.0 / 0.375 - 1.0) / 0.1, run.first_slip()],
-        (0.01, "it is seen at the next step"),
+        (0.01, "slip is detected at the next step"),
     ));
     let energies = run.rows.last().map(|row| row.energies).unwrap_or_default();
     let is_sliding = |row: &CurveRow| row.point.n_sliding > 0;
@@ -39,15 +39,15 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         .filter(|pair| is_sliding(&pair[0]) != is_sliding(&pair[1]));
     let missing = (0.5_f64 * 0.01).powi(2) / 2.0 * run.model.n_blocks() as f64;
     answers.push(Answer::new(
-        "relative error of the balance of energy over the same run",
+        "relative error of the energy balance in the same run",
         [0.0, energies.error()],
         (
             (turns.count() + 1) as f64 * missing / energies.work,
-            "½(μ_k F_n Δt)² of each block, at every start and stop and at the end",
+            "½(μ_k F_n Δt)² per block, at every start, every stop and the end",
         ),
     ));
     Ok(Chapter {
-        title: "Programs of speeds",
+        title: "Drive programs",
         name: "program",
         text: include_str!("text/program.md"),
         answers,

@@ -8,7 +8,7 @@ use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
-use crate::runs::{Experiment, growth_of_disturbance};
+use crate::runs::{Experiment, growth_of_perturbation};
 
 const LAW: RateAndState = RateAndState {
     a: 0.01,
@@ -24,7 +24,7 @@ const DT_STAR: f64 = 0.05;
 /// Stiffness of the drive over the critical one.
 const RATIOS: [f64; 6] = [0.7, 0.85, 0.95, 1.05, 1.2, 1.5];
 
-/// Growth rate of a small disturbance of steady sliding of blocks that move as one.
+/// Growth rate of a small perturbation of steady sliding of blocks that move as one.
 fn computed(k_drive: f64, damping: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let drive = Drive {
@@ -33,7 +33,7 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
     };
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, drive, damping, 0.0, Friction::RateAndState(LAW));
-    growth_of_disturbance(model, DT_STAR, 60.0, 36.0)
+    growth_of_perturbation(model, DT_STAR, 60.0, 36.0)
 }
 
 /// Mass of a block in steps of [`DT_STAR`]: friction is that of the speed half a step later,
@@ -104,11 +104,11 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         // Size of d mu/dx at this slip.
         let slope = LAW.b * left.abs() / (LAW.d_c * (1.0 + left));
         answers.push(Answer::new(
-            format!("μ - μ_ss after a step of speed by {ratio} and a slip of {slip}"),
+            format!("μ - μ_ss after a velocity step by a factor of {ratio} and a slip of {slip}"),
             [friction_after_speed_step(&LAW, V_1, v_2, slip), after_step(v_2)],
             (
                 slope / STIFF * (LAW.b * libm::log(ratio).abs() + LAW.a + STIFF_DAMPING * v_2),
-                "the spring yields by Δμ/k, at a speed of V/k dμ/dx, which a and Ω feel",
+                "spring extension Δμ/k and its rate V/k dμ/dx, which changes the terms in a and Ω",
             ),
         ));
     }
@@ -121,33 +121,33 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let zero = |[below, above]: [f64; 2]| 0.95 + 0.1 * below / (below - above);
     let shift = MASS * HEAVIER.critical_stiffness(1.0, damping / MASS, V_STAR) / critical - 1.0;
     answers.push(Answer::new(
-        "stiffness over k_c at which nothing grows, on the line through the rates at 0.95 and 1.05",
+        "k/k_c at zero growth rate, interpolated between 0.95 and 1.05",
         [1.0, zero([found[2], found[3]])],
         (
             1.2 * shift.abs() + (zero([exact(0.95), exact(1.05)]) - 1.0).abs(),
-            "of first order, and a fifth of that for higher orders: the mass m + σaΔt/2V in k_c; and the line is a chord",
+            "first-order error, the mass m + σaΔt/2V in k_c, plus a fifth for higher orders; linear interpolation",
         ),
     ));
     for (ratio, found) in RATIOS.into_iter().zip(found) {
         answers.push(Answer::new(
-            format!("growth rate on a drive of {ratio} k_c"),
+            format!("growth rate at k = {ratio} k_c"),
             [exact(ratio), found],
             (
                 1.2 * (in_steps(ratio) - exact(ratio)).abs(),
-                "of first order, and a fifth of that for higher orders: the mass m + σaΔt/2V in the cubic",
+                "first-order error, the mass m + σaΔt/2V in the cubic equation, plus a fifth for higher orders",
             ),
         ));
     }
     let fine: Vec<f64> = (0..=50).map(|k| 0.6 + 0.02 * f64::from(k)).collect();
     Ok(Chapter {
-        title: "Rate and state",
+        title: "Rate-and-state friction",
         name: "rate-and-state",
         text: include_str!("text/rate_and_state.md"),
         answers,
         picture: Some((
-            "Growth rate of a small disturbance of steady sliding against the stiffness of the drive: softer than k_c it grows into stick-slip.",
+            "Growth rate of a small perturbation of steady sliding against the drive stiffness. At a drive stiffness below k_c it grows into stick-slip.",
             Responses {
-                x_title: "stiffness of the drive over k_c".to_owned(),
+                x_title: "drive stiffness over k_c".to_owned(),
                 y_title: "growth rate".to_owned(),
                 curves: vec![
                     Response::of_formula("exact", &fine, exact),

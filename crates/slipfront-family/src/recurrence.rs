@@ -56,15 +56,15 @@ const RADAU: Cycle = [2481.2248, 0.368_505, 0.670_089_9, 0.427_003_4];
 pub(crate) fn cycle_chapter() -> Result<Chapter, FamilyError> {
     let (coarse, fine) = rayon::join(|| cycle(0.1), || cycle(0.05));
     let (coarse, fine) = (coarse?, fine?);
-    let names = ["period", "largest speed", "largest force", "least force"];
+    let names = ["period", "largest speed", "largest force", "smallest force"];
     let answers = names.iter().enumerate().map(|(k, name)| {
         let extrapolated = 2.0 * fine[k] - coarse[k];
         Answer::new(
-            format!("{name}, from steps of 0.1 and 0.05"),
+            format!("{name}, extrapolated from Δt* = 0.1 and 0.05"),
             [RADAU[k], extrapolated],
             (
                 5e-4 * RADAU[k],
-                "the scheme is of first order: two steps leave an error of second",
+                "the scheme is first-order accurate, so the extrapolation has a second-order error",
             ),
         )
     });
@@ -125,16 +125,16 @@ pub(crate) fn catalogue_chapter() -> Result<Chapter, FamilyError> {
     let answers = vec![Answer::new(
         format!("exponent of {} events, -7 < ln M < -2", moments.len()),
         [1.0, found],
-        (0.15, "the spread over windows of a catalogue of 26 668 events"),
+        (0.15, "scatter between windows of a catalogue of 26 668 events"),
     )];
     let moment: Vec<f64> = x.iter().map(|&x| libm::exp(x)).collect();
     Ok(Chapter {
-        title: "The catalogue of a train of blocks",
+        title: "Event catalogue of a train of blocks",
         name: "catalogue",
         text: include_str!("text/rupture_catalogue.md"),
         answers,
         picture: Some((
-            "Number of events in bins of half a unit of ln M, and a line that falls as 1/M.",
+            "Number of events in bins of ln M of width 0.5, and a line proportional to 1/M.",
             Responses {
                 x_title: "moment M".to_owned(),
                 y_title: "events".to_owned(),

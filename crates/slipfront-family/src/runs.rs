@@ -151,7 +151,7 @@ impl Experiment {
 
 /// Reason for the distance that [`rounding`] allows for the level of steady sliding with Omega* = 1, in steps
 /// of 0.1.
-pub(crate) const ROUNDING: &str = "rounding of displacements, ε X/2 a step, which swings forget in 2/Ω; of these exp(-Ω t/2) is left, nothing";
+pub(crate) const ROUNDING: &str = "rounding of displacements by ε X/2 per step within the decay time 2/Ω; the initial oscillation has decayed";
 
 /// Rounding of mu* in steady sliding with Omega* = 1, in steps of 0.1, when the far ends have gone this far:
 /// `k_s (eps X/2)` of each of the last `2/(Omega dt)` steps.
@@ -159,9 +159,9 @@ pub(crate) fn rounding(path: f64) -> f64 {
     K_DRIVE * f64::EPSILON * path / (scales::damping(1.0) * 0.1)
 }
 
-/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on, as
+/// Growth rate of a small perturbation of steady sliding of blocks that move as one, from `t* = first` on, as
 /// for [`oscillation_growth`].
-pub(crate) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
+pub(crate) fn growth_of_perturbation(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
     let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
     let behind = model.steady_level(&Alone) / model.drive.k_drive;
     let along_x = |x: f64| VectorField {

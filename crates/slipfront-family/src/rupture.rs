@@ -180,15 +180,15 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         .iter()
         .map(|(excess, speeds)| ("", excess, speeds, of(*excess)));
     let of_lines = NUMPY_LINE.iter().zip(&along_lines);
-    let of_lines = of_lines.map(|((excess, speeds), found)| ("a line, ", excess, speeds, &found[..]));
+    let of_lines = of_lines.map(|((excess, speeds), found)| ("line, ", excess, speeds, &found[..]));
     for (place, excess, speeds, found) in of_numpy.chain(of_lines) {
         for (&reference, &[distance, speed]) in speeds.iter().zip(found) {
             answers.push(Answer::new(
-                format!("{place}S = {excess}: v/c_S at {distance} blocks, against NumPy"),
+                format!("{place}S = {excess}: v/c_S at {distance} blocks, reference: NumPy"),
                 [reference, speed],
                 (
                     2.0 * STEP / 24.0 * C_S_SQUARE.sqrt() * reference * reference,
-                    "both ends of the 25 blocks are passed at whole steps",
+                    "slip times at both ends of the 25 blocks are whole steps",
                 ),
             ));
         }
@@ -203,7 +203,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             [C_R, fastest],
             (
                 0.01 * C_R,
-                "1 % for the dispersion of a cohesive zone of six blocks; slower is right",
+                "1 % for dispersion with six blocks in the cohesive zone; any lower speed passes",
             ),
         );
         answers.push(bound.at_most_below(f64::INFINITY));
@@ -215,7 +215,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         Answer::new(
             "S = 0.9: v/c_S at 8 L_c, at least √2",
             [SQRT_2, late.map_or(f64::NAN, |[_, speed]| *speed)],
-            (f64::INFINITY, "beyond the speed √2 c_S, faster is right"),
+            (f64::INFINITY, "any speed above √2 c_S passes"),
         )
         .at_most_below(0.0),
     );
@@ -234,8 +234,8 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/rupture_speed.md"),
         answers,
         picture: Some((
-            "Speed of the front over that of shear waves, against the distance over L_c. Between c_R = 0.919 and 1 no front runs steadily: it \
-             stays below, or jumps over.",
+            "Front speed relative to shear waves against distance over L_c. No front runs steadily between c_R = 0.919 and 1: a front stays below \
+             this range or jumps across it.",
             Responses {
                 x_title: "distance/L_c".to_owned(),
                 y_title: "front speed v/c_S".to_owned(),

@@ -39,24 +39,27 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let [middle, half] = [0.5 * (mu_static + mu_kinetic), 0.5 * (mu_static - mu_kinetic)];
     let answers = vec![
         Answer::new(
-            "\u{3bc}* at which the first block slips",
+            "\u{3bc}* at the first slip",
             [FIRST_SLIP.0, first.mu_star_before],
-            (rise, "the pull rises by so much in a step"),
+            (rise, "increase of the drive force in one step"),
         ),
         Answer::new(
-            "column of that block",
+            "column of the first block to slip",
             [FIRST_SLIP.1, f64::from(first.nucleation[0])],
-            (0.0, "it is one block and no other"),
+            (0.0, "a whole number, no error"),
         ),
         Answer::new(
-            "precursors that run farther than the one before, of those after the first",
+            "number of precursors longer than the one before, without the first",
             [(precursors.len().max(1) - 1) as f64, grow.count() as f64],
-            (0.0, "all of them do"),
+            (0.0, "every precursor must be longer"),
         ),
         Answer::new(
-            "largest F_T/F_N, between the coefficients of the blocks",
+            "largest F_T/F_N, compared with (\u{3bc}_s + \u{3bc}_k)/2",
             [middle, mu_static * largest],
-            (half, "not all blocks bear their static friction at once"),
+            (
+                half,
+                "(\u{3bc}_s - \u{3bc}_k)/2, since not all blocks carry static friction at once",
+            ),
         ),
     ];
     let upto = whole.map_or(events.len(), |at| at + 1);
@@ -71,16 +74,16 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             .collect(),
     ];
     Ok(Chapter {
-        title: "A plate that is pushed at its side",
+        title: "Plate pushed at its side",
         name: "side",
         text: include_str!("text/rupture_side.md"),
         answers,
         picture: Some((
-            "Share of the interface that slips in a precursor, against the force F_T over F_N at which it begins, up to the first event that \
+            "Fraction of the interface that slips in a precursor, against F_T/F_N at the start of the precursor, up to the first event that \
              crosses the interface.",
             Responses {
                 x_title: "F_T/F_N".to_owned(),
-                y_title: "share of the interface".to_owned(),
+                y_title: "fraction of the interface".to_owned(),
                 curves: vec![Response::of_values("precursors", &ratio, &length)],
                 ..Responses::default()
             },

@@ -78,13 +78,13 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             [exact, found],
             (
                 6.0 * FAST * DT_STAR,
-                "the drive stops two steps beyond the threshold at most, which the jump makes up to three times as far",
+                "the drive stops up to two steps beyond the threshold; the jump amplifies this up to three times",
             ),
         ));
         answers.push(Answer::new(
-            format!("energy that weakening takes of it, W = {weakening}"),
+            format!("weakening energy of the jump, W = {weakening}"),
             [0.5 * DROP * DROP / weakening, energy],
-            (1e-15, "exact, but for rounding"),
+            (1e-15, "rounding"),
         ));
     }
     let (weakening, damping, speed) = (0.25, 0.5, 1e-5);
@@ -92,16 +92,16 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     for slip in [0.5, 1.0, 1.5] {
         let path = (1.0 + (K_DRIVE - weakening) * slip) / K_DRIVE;
         answers.push(Answer::new(
-            format!("slip at X = {path:.4} without a jump, W = {weakening}"),
+            format!("stable slip at X = {path:.4}, W = {weakening}"),
             [slip, followed(weakening, damping, speed, path)],
             (
                 1.2 * damping * speed * K_DRIVE * softness * softness,
-                "damping holds the block back by Ω V k_s/(k_s - W)², and a fifth of that for the steps",
+                "lag due to damping, Ω V k_s/(k_s - W)², plus a fifth for the time step",
             ),
         ));
     }
     Ok(Chapter {
-        title: "Strength that falls with slip",
+        title: "Slip weakening",
         name: "slip_weakening",
         text: include_str!("text/slip_weakening.md"),
         answers,

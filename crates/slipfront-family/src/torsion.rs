@@ -87,12 +87,12 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let exact = torsion_first_slip(&radii(&run.model));
     let rise = exact * 0.375 * 0.03 * 0.02;
     answers.push(Answer::seen_late(
-        "torque at the first slip of a disc of 20 blocks across, over that of the whole load",
+        "T/T_full at the first slip of a disc with a diameter of 20 blocks",
         [
             exact,
             run.first_sliding().map_or(f64::NAN, |row| row.point.mu_star),
         ],
-        (rise, "the torque of one step"),
+        (rise, "increase of the torque in one step"),
     ));
     let mut curves = Vec::new();
     let shares: Vec<f64> = (30..=100).map(|k| 0.01 * f64::from(k)).collect();
@@ -104,11 +104,11 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let found = experiment.values(times, |now| now.point.mu_star);
         for (stuck, found) in STUCK.into_iter().zip(found) {
             let answer = Answer::new(
-                format!("torque while blocks within {stuck} of the radius stick, R* = {r_star}"),
+                format!("T/T_full while blocks within ρ = {stuck} r_max stick, R* = {r_star}"),
                 [torsion_of_decoupled_blocks(&radii, stuck, r_star), found],
                 (
                     excess(&radii, stuck, r_star),
-                    "drag of blocks that slide, what is left of the swing of those that slipped last, and half a step",
+                    "drag of sliding blocks, decaying force of blocks that slipped recently, and half a step",
                 ),
             );
             answers.push(answer.at_most_below(HALF_A_STEP));
@@ -126,10 +126,10 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/torsion.md"),
         answers,
         picture: Some((
-            "Torque of a disc whose blocks do not pull at each other, while those within a share of its radius still stick: the lines are of a continuous disc, the points of 40 blocks across.",
+            "Torque of a disc of uncoupled blocks against the radius of the stuck part. Lines: continuous disc; points: 40 blocks across.",
             Responses {
-                x_title: "radius of the stuck part over that of the disc".to_owned(),
-                y_title: "torque over that of the whole load".to_owned(),
+                x_title: "radius of the stuck part over disc radius".to_owned(),
+                y_title: "torque over full torque".to_owned(),
                 curves,
                 ..Responses::default()
             },

@@ -107,9 +107,9 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let transition = front.transition((SUSTAINED * length) as usize);
         let distance = transition.map_or(f64::INFINITY, |at| at as f64 / length);
         let answer = Answer::new(
-            format!("S = {excess}: distance over L_c at which the front outruns shear waves, at most 40"),
+            format!("S = {excess}: distance over L_c at which the front speed exceeds c_S, at most 40"),
             [FARTHEST, distance],
-            (0.0, "nearer is right"),
+            (0.0, "any shorter distance passes"),
         );
         answers.push(answer.at_most_below(f64::INFINITY));
         let every = front.speeds().step_by((0.25 * length) as usize);
@@ -127,7 +127,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         text: include_str!("text/transition_speed.md"),
         answers,
         picture: Some((
-            "Speed of the front over that of shear waves, over 20 blocks, against the distance over L_c, until it has outrun them for 3 L_c.",
+            "Front speed relative to shear waves, averaged over 20 blocks, against distance over L_c. Curves end once it has exceeded c_S for 3 L_c.",
             Responses {
                 x_title: "distance/L_c".to_owned(),
                 y_title: "front speed v/c_S".to_owned(),

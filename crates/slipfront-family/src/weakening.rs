@@ -7,7 +7,7 @@ use slipfront_plot::{Response, Responses};
 
 use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
-use crate::runs::growth_of_disturbance;
+use crate::runs::growth_of_perturbation;
 
 const LAW: Weakening = Weakening {
     critical_speed: 0.1,
@@ -17,7 +17,7 @@ const V_STAR: f64 = 0.2;
 const DT_STAR: f64 = 0.01;
 const DAMPINGS: [f64; 5] = [0.0, 0.2, 0.3, 0.4, 0.6];
 
-/// Growth rate of a small disturbance of steady sliding of blocks that move as one.
+/// Growth rate of a small perturbation of steady sliding of blocks that move as one.
 fn computed(damping: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let friction = Friction::Coulomb(Coulomb {
@@ -26,7 +26,7 @@ fn computed(damping: f64) -> f64 {
     });
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);
-    growth_of_disturbance(model, DT_STAR, 0.0, 2.4)
+    growth_of_perturbation(model, DT_STAR, 0.0, 2.4)
 }
 
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
@@ -34,23 +34,23 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     let found = DAMPINGS.map(computed);
     let answers = DAMPINGS.into_iter().zip(found).map(|(damping, found)| {
         Answer::new(
-            format!("growth rate of a disturbance of steady sliding at V* = 0.2, Ω = {damping}"),
+            format!("growth rate at V* = 0.2, Ω = {damping}"),
             [exact(damping), found],
             // Without damping the rate is -(dF/dv)/2.
             (
                 0.6 * 2.0 * exact(0.0) * DT_STAR * exact(damping).abs(),
-                "of first order: half of -dF/dv Δt, relative, and a fifth of that for higher orders",
+                "first-order error, relative ½ |dF/dv| Δt, plus a fifth for higher orders",
             ),
         )
     });
     let fine: Vec<f64> = (0..=60).map(|k| 0.01 * f64::from(k)).collect();
     Ok(Chapter {
-        title: "Friction that falls with speed",
+        title: "Velocity weakening",
         name: "weakening",
         text: include_str!("text/weakening.md"),
         answers: answers.collect(),
         picture: Some((
-            "Growth rate of a small disturbance of steady sliding against damping: below the zero of the line it grows into stick-slip.",
+            "Growth rate of a small perturbation of steady sliding against damping. A positive rate leads to stick-slip.",
             Responses {
                 x_title: "damping \u{3a9}".to_owned(),
                 y_title: "growth rate".to_owned(),

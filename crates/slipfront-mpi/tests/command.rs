@@ -185,7 +185,7 @@ fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 
 }
 
 /// Message of a run that has saved its state where it was stopped.
-const SAVED: &str = "which is saved: `slipfront-mpi run --resume stopped` goes on";
+const SAVED: &str = "the state is saved, and `slipfront-mpi run --resume stopped` resumes the run";
 
 /// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status
 /// 1 whatever theirs is. mpirun itself reports that a rank was killed.

@@ -255,7 +255,7 @@ fn copy(from: &Path, to: &Path) {
 #[rstest]
 #[case::other_step("", "the step of the checkpoint is 55 on rank 1 and 50 on rank 0")]
 #[case::other_case("", "`drive.v_star` is 0.2 on rank 1 and 0.1 on rank 0")]
-#[case::no_run("rm -r k", "rank 1: k is no folder of a run to go on with")]
+#[case::no_run("rm -r k", "rank 1: k is not the folder of a run that can be resumed")]
 #[case::no_checkpoint(
     "rm k/.slipfront/*.bin",
     "checkpoint.bin is missing on rank 1 and there on rank 0"
@@ -270,7 +270,7 @@ fn copy(from: &Path, to: &Path) {
 )]
 #[case::damaged(
     "printf x | dd of=k/.slipfront/checkpoint.bin bs=1 seek=900 conv=notrunc",
-    "its checksum does not fit"
+    "its checksum is wrong"
 )]
 #[case::equal("true", "rank 1: the folder k is not the folder k of rank 0")]
 fn another_folder_is_not_resumed(#[case] change: &str, #[case] sentence: &str) {

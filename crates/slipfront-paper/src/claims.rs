@@ -10,11 +10,11 @@ use crate::error::PaperError;
 use crate::number::MeasuredNumber;
 
 /// Text on gaps in the numbers of claims.
-pub(super) const NUMBERING: &str = "A claim keeps its number: 2 and 62 are not used, since the paper does not say what they said, and \
-                                    those from 82 on were found later and stand where the text makes them.";
+pub(super) const NUMBERING: &str = "Claims keep their numbers. 2 and 62 are not used, because the paper does not make these claims. \
+                                    Claims from 82 on were found later and are listed in the order of the paper.";
 /// Text on the meaning of [`Claim::revised`].
-pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} tells what of a claim's wording or criterion was settled only after a measurement: such a claim is \
-                                  not reproduced as stated, and what is measured now is what does hold of it.";
+pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} marks a claim with a wording or criterion that was fixed only after a measurement. Such a claim counts as \
+                                  not reproduced as stated; the measured number supports the part of the claim that holds.";
 
 /// A claim of the paper, and the rule by which it is judged.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -240,7 +240,8 @@ impl ClaimResult {
         let why = match self.verdict {
             ClaimVerdict::HoldsWithCondition => words_of(&claim.condition),
             ClaimVerdict::NotAsStated => {
-                let told = words_of(&claim.condition).unwrap_or_else(|| "by what is measured now".to_owned());
+                let told =
+                    words_of(&claim.condition).unwrap_or_else(|| "by the present criterion".to_owned());
                 Some(format!("it holds {told}"))
             }
             ClaimVerdict::Misprint => words_of(&claim.correction),
@@ -367,7 +368,7 @@ mod tests {
         );
         assert_eq!(
             told(None),
-            "not reproduced as stated: it holds by what is measured now"
+            "not reproduced as stated: it holds by the present criterion"
         );
     }
 
@@ -399,7 +400,7 @@ mod tests {
             .judge(&BTreeMap::new())
             .unwrap_err()
             .to_string();
-        assert_eq!(error, "claim 1 is about `fig99.main`, which is not measured");
+        assert_eq!(error, "claim 1 needs `fig99.main`, which no figure measures");
     }
 
     #[test]

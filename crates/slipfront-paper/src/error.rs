@@ -12,9 +12,9 @@ use slipfront_study::project_folder::VerifyStudyError;
 
 /// Reason for which the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
-#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+#[expect(missing_docs, reason = "the error sentence describes each variant")]
 pub enum PaperError {
-    #[error("the paper has no `{given}`: take {known}, or all")]
+    #[error("the paper has no `{given}`: choose {known}, or all")]
     Figure { given: String, known: String },
     #[error(transparent)]
     Case(#[from] CaseError),
@@ -24,11 +24,11 @@ pub enum PaperError {
     Run { name: String, source: RunError },
     #[error("a run of {study} failed: {reason}")]
     StudyRun { study: String, reason: String },
-    #[error("{file} gave no {what}")]
+    #[error("the run of {file} produced no {what}")]
     Lacks { file: String, what: String },
-    #[error("a file of the paper's cases cannot be read: {0}")]
+    #[error("a case file of the paper cannot be read: {0}")]
     Text(#[from] toml::de::Error),
-    #[error("claim {number} is about `{quantity}`, which is not measured")]
+    #[error("claim {number} needs `{quantity}`, which no figure measures")]
     Unmeasured { number: u32, quantity: String },
     #[error("cannot draw {name}: {source}")]
     Picture { name: String, source: PictureError },

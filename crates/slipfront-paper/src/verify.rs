@@ -67,8 +67,8 @@ fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(),
         }
     }
     verdict.not_derived = Some(format!(
-        "the pictures and tables in {} were not made again: not all of their data stand in {FIGURE_CACHE}/, or another program has \
-         measured them",
+        "the pictures and tables in {} were not recomputed: their data in {FIGURE_CACHE}/ are incomplete or come from another \
+         program",
         folder.display()
     ));
     Ok(())

@@ -212,7 +212,7 @@ mod tests {
         );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),
-            "map `2 x 3`, values, has 7 values where 6 are wanted"
+            "map `2 x 3`, values, has 7 values instead of 6"
         );
     }
 }

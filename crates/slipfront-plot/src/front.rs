@@ -66,7 +66,7 @@ pub struct FrontMap {
     pub nucleations: Vec<[f64; 2]>,
 }
 
-/// Share of the sliding blocks against place and time.
+/// Share of the sliding blocks against position and time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpaceTime {
     /// Quantity of the places; its unit is added.
@@ -108,7 +108,7 @@ pub fn front(map: &FrontMap, space_time: &SpaceTime, size: PictureSize) -> Resul
     canvas.widened(size).finish()
 }
 
-/// Draws the share of the sliding blocks against place and time alone, usually as wide as a journal's text
+/// Draws the share of the sliding blocks against position and time alone, usually as wide as a journal's text
 /// (175 mm).
 ///
 /// # Errors
@@ -574,17 +574,17 @@ mod tests {
         );
         assert_eq!(
             error(&|map, _| map.textured.clear()),
-            "the texture has 0 values where 6 are wanted"
+            "the texture has 0 values instead of 6"
         );
         assert_eq!(
             error(&|map, _| map.first_slips.push(0.0)),
-            "the map of first slips has 7 values where 6 are wanted"
+            "the map of first slips has 7 values instead of 6"
         );
         assert_eq!(error(&|_, it| it.shares.clear()), "there is no instant to draw");
         assert_eq!(error(&|_, it| it.columns = 0), "there is no instant to draw");
         assert_eq!(
             error(&|_, it| it.shares.push(0.0)),
-            "what slides has 9 values where 8 are wanted"
+            "what slides has 9 values instead of 8"
         );
     }
 }

@@ -516,7 +516,7 @@ mod tests {
         assert_eq!(said(&|m| m.nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");
         assert_eq!(
             said(&|m| m.frames[1].values.push(0.0)),
-            "the map at t* = 10 has 7 values where 6 are wanted"
+            "the map at t* = 10 has 7 values instead of 6"
         );
     }
 }

@@ -26,14 +26,14 @@ pub enum PictureError {
     Lattice { nx: usize, ny: usize },
     #[error("a block size of {0} m cannot be drawn")]
     BlockSize(String),
-    #[error("{what} has {found} values where {expected} are wanted")]
+    #[error("{what} has {found} values instead of {expected}")]
     Blocks {
         what: String,
         found: usize,
         expected: usize,
     },
     #[error(
-        "a {side} of {mm} mm leaves no room for the curves beside letters of {font_pt} pt: at least {least_mm} mm are needed"
+        "a {side} of {mm} mm leaves no room for curves with text of {font_pt} pt: use at least {least_mm} mm"
     )]
     TooSmall {
         side: &'static str,
@@ -41,9 +41,7 @@ pub enum PictureError {
         least_mm: f64,
         font_pt: f64,
     },
-    #[error(
-        "maps have the shape of the slider, from which the height of their picture follows: give a width alone"
-    )]
+    #[error("the height of a map follows from the shape of the slider: give only a width")]
     HeightOfMaps,
     #[error("the PNG could not be written: {0}")]
     Png(String),

@@ -383,7 +383,7 @@ mod tests {
         assert_eq!(error(&|m| m.maps.clear()), "there is no map to draw");
         assert_eq!(
             error(&|m| m.textured.clear()),
-            "the texture has 0 values where 6 are wanted"
+            "the texture has 0 values instead of 6"
         );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),

@@ -17,12 +17,12 @@ pub enum FolderError {
     )]
     NotEmpty { path: PathBuf },
     #[error(
-        "the folder {path} holds a run that was interrupted: go on with it by `{}`, choose another with --out, or begin again \
+        "the folder {path} contains an interrupted run: resume it with `{}`, choose another folder with --out, or start again \
          with --force",
         resume_command("slipfront", path)
     )]
     Interrupted { path: PathBuf },
-    #[error("{path} is no folder of a run to go on with: {why}")]
+    #[error("{path} is not the folder of a run that can be resumed: {why}")]
     NoRun { path: PathBuf, why: &'static str },
     #[error("another process is running in the folder {path}: wait for it, or choose another folder")]
     Busy { path: PathBuf },
@@ -32,21 +32,21 @@ pub enum FolderError {
     )]
     Foreign { path: PathBuf },
     #[error(
-        "{} was changed after the run had written it: move it away, or choose another folder",
+        "{} was changed after the run wrote it: move it away, or choose another folder",
         display_path(path)
     )]
     Edited { path: PathBuf },
     #[error("{0}; move it away, or choose another folder")]
     Manifest(#[from] ManifestError),
-    #[error("cannot write to the folder {path}: {source}; make it writable, or choose another")]
+    #[error("cannot write to the folder {path}: {source}; make it writable, or choose another folder")]
     Unwritable { path: PathBuf, source: std::io::Error },
     #[error(
-        "cannot write {}: {source}; the folder is left without manifest.json, as incomplete",
+        "cannot write {}: {source}; the folder is incomplete and has no manifest.json",
         display_path(path)
     )]
     Write { path: PathBuf, source: std::io::Error },
     #[error(
-        "cannot copy {} to {}: {source}; what is there is whole, and the command may be repeated",
+        "cannot copy {} to {}: {source}; the files copied so far are complete, and the command can be repeated",
         display_path(from),
         display_path(to)
     )]
@@ -56,13 +56,13 @@ pub enum FolderError {
         source: std::io::Error,
     },
     #[error(
-        "{} was changed while the run went on, so that it does not tell what was run; the folder is left without \
-         manifest.json, as incomplete: put the file back as it was",
+        "{} was changed during the run, so it no longer describes the run; the folder is incomplete and has no manifest.json: \
+         restore the file",
         display_path(path)
     )]
     Changed { path: PathBuf },
     #[error(
-        "{} is no longer what it was when the case was made: run it again, and leave this file as it is meanwhile",
+        "{} was changed after the case was prepared: run the case again, and do not change this file during the run",
         display_path(path)
     )]
     InputChanged { path: PathBuf },

@@ -29,7 +29,7 @@ pub struct Leg {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ChangeError {
     #[error(
-        "a change keeps the blocks: their number and size are those of the slider that moves, {} and not {}; begin such a run from rest",
+        "a change cannot alter the blocks: the moving slider has {}, not {}; start such a run from rest",
         blocks(*.moving),
         blocks(*.wanted)
     )]
@@ -37,20 +37,18 @@ pub enum ChangeError {
         moving: ([usize; 2], f64),
         wanted: ([usize; 2], f64),
     },
-    #[error(
-        "a change keeps the blocks: which of them exist is as in the slider that moves; begin such a run from rest"
-    )]
+    #[error("a change cannot alter the outline of the moving slider; start such a run from rest")]
     OtherOutline,
     #[error(
-        "contacts under this law of friction remember more than a displacement and a velocity: begin such a run from rest"
+        "contacts under this law of friction have a state in addition to displacement and velocity; start such a run from rest"
     )]
     Memory,
     #[error(
-        "a bulk body is a stack of sheets, of which a change keeps the motion of the lowest alone: begin such a run from rest"
+        "a bulk body is a stack of sheets, and a change keeps only the motion of the lowest; start such a run from rest"
     )]
     Stack,
     #[error(
-        "a displacement or a velocity is no finite number in the units of the new case: the run diverges, or a unit is too small; begin such a run from rest"
+        "a displacement or a velocity is not finite in the units of the new case: the run diverges, or a unit is too small; start such a run from rest"
     )]
     NotFinite,
 }

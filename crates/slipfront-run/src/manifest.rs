@@ -99,7 +99,7 @@ pub struct ManifestFile {
 fn way_to_go_on(folder: &Path) -> String {
     if folder.join(CASE).exists() {
         let command = resume_command("slipfront", folder);
-        format!("; if it did not, `{command}` goes on with it")
+        format!("; if it did not, `{command}` resumes it")
     } else {
         String::new()
     }
@@ -121,7 +121,7 @@ pub struct RunTimes {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
     #[error(
-        "{path} holds no manifest.json: it is no run folder, or its run did not end{}",
+        "{path} has no manifest.json: it is not a run folder, or its run did not finish{}",
         way_to_go_on(path)
     )]
     Missing { path: PathBuf },
@@ -235,9 +235,9 @@ impl Manifest {
             return Ok(manifest);
         }
         let why = if manifest.checksum.is_empty() {
-            "it has no seal, by which changes of it are seen"
+            "it has no seal, so changes cannot be detected"
         } else {
-            "its seal does not fit, so that it was changed after the run"
+            "its seal is wrong: it was changed after the run"
         };
         Err(damaged(why.to_owned()))
     }

@@ -223,7 +223,7 @@ impl MeasuredRecord {
             (_, None) => {}
             (_, Some((first, lines))) => {
                 record.footer = Some(format!(
-                    "{} ends with {} without numbers, from line {} on",
+                    "{} ends with {} without numbers, starting at line {}",
                     display_path(path),
                     count(lines, "line"),
                     first.line
@@ -268,7 +268,7 @@ impl MeasuredRecord {
         self.x = bins.values().map(|[x, _, n]| x / n).collect();
         self.y = bins.values().map(|[_, y, n]| y / n).collect();
         self.averaged = Some(format!(
-            "displacements go back by up to {}, as those of a sensor with noise: {} are averaged over bins of this width to {}",
+            "displacements decrease by up to {}, like sensor noise: {} are averaged over bins of this width to {}",
             with_si_prefix(back, "m"),
             count(points, "point"),
             self.x.len()
@@ -534,7 +534,7 @@ mod tests {
         }
         let note = record.notes().last().unwrap();
         assert!(
-            note.starts_with("displacements go back by up to 500 nm"),
+            note.starts_with("displacements decrease by up to 500 nm"),
             "{note}"
         );
         let refused = [with_noise(60.0), of(&|x, _| 970.0 - (x - 970.0).abs())];
@@ -598,7 +598,7 @@ mod tests {
     )]
     #[test_case("time_s,force\n0,1\n1,2\n", ["time", "force"], "give it with --y-unit, such as `--y-unit N`"; "unit")]
     #[test_case(
-        "time_s,force_mn\n0,1\n1,2\n", ["time", "force"], "nothing tells the unit of column `force_mn`"
+        "time_s,force_mn\n0,1\n1,2\n", ["time", "force"], "column `force_mn` of"
         ; "ambiguous"
     )]
     #[test_case("time_s,force_n\n0,1\n1,two\n", ["time", "force"], "line 3 of"; "number")]
@@ -634,7 +634,7 @@ mod tests {
         assert_eq!(record.x, [0.0, 1.0]);
         let footer = record.footer.unwrap();
         let told = format!(
-            "ends with {} without numbers, from line {from} on",
+            "ends with {} without numbers, starting at line {from}",
             count(lines, "line")
         );
         assert!(footer.ends_with(&told), "{footer}");

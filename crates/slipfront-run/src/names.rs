@@ -8,7 +8,7 @@ pub const MANIFEST: &str = "manifest.json";
 pub const SUMMARY: &str = "summary.json";
 /// The curve of a run, row by row.
 pub const SERIES: &str = "series.csv";
-/// The share of sliding blocks against place and time.
+/// The share of sliding blocks against position and time.
 pub const KYMOGRAPH: &str = "kymograph.nc";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
@@ -82,9 +82,9 @@ impl RunPicture {
         match self {
             Self::Friction => "friction and sliding blocks against time",
             Self::Stress => "maps of the contact stress",
-            Self::Front => "first slips, and sliding against place and time",
-            Self::Precursors => "how far events of slip reach under the load",
-            Self::Events => "sizes of the events of slip, and times between them",
+            Self::Front => "first slip times, and sliding against position and time",
+            Self::Precursors => "length of slip events against load",
+            Self::Events => "sizes of slip events, and times between them",
         }
     }
 

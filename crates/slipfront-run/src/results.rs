@@ -408,7 +408,7 @@ mod tests {
         let (written, copy) = write("other");
         let said = written.unwrap_err().to_string();
         assert!(
-            said.contains("mu.csv is no longer what it was when the case was made"),
+            said.contains("mu.csv was changed after the case was prepared"),
             "{said}"
         );
         assert!(!copy.exists());

@@ -28,17 +28,17 @@ pub(crate) fn after_run(
     let mut warnings = Vec::new();
     if energies.error().abs() > LARGE_ENERGY_ERROR {
         warnings.push(format!(
-            "{:.0} % of the energy put in is unaccounted for: the time step is too coarse for this case",
+            "{:.0} % of the input energy is missing from the balance: the time step is too coarse for this case",
             100.0 * energies.error().abs()
         ));
     }
     if !peak.ended {
         let rises = kinetic.is_some_and(|kinetic| kinetic.window_star[0] <= peak.drive_time_star);
         warnings.push(format!(
-            "mu* did not fall half-way to its steady level in the time of a transition: there was none, and static_friction_star is the \
-             largest mu* of the run{}",
+            "after its peak, mu* did not drop at least half-way to the steady level within the time of a transition: there is \
+             no transition, and static_friction_star is the largest mu* of the run{}",
             if rises {
-                "; the kinetic window begins before it, so that kinetic_friction_star may have a part of the rise"
+                "; the kinetic window begins before this maximum, so kinetic_friction_star may include part of the rise"
             } else {
                 ""
             }
@@ -46,8 +46,8 @@ pub(crate) fn after_run(
     }
     if let Some(kinetic) = kinetic.filter(|_| is_kept_up(peak, kinetic)) {
         warnings.push(format!(
-            "mu* slides on at {:.4} after a first peak of {:.4}, with less between them than a twentieth of what friction can lose: there was no \
-             transition, and static_friction_star is the largest mu* of the run",
+            "sliding continues at mu* = {:.4} after a first peak of {:.4}, a drop of less than a twentieth of the possible \
+             drop: there is no transition, and static_friction_star is the largest mu* of the run",
             kinetic.mu_star, peak.mu_star
         ));
     }
@@ -55,16 +55,16 @@ pub(crate) fn after_run(
         let (first, remedy) = if is_held {
             (
                 "before the kinetic window",
-                "set time.kinetic_from_star after it to count it as static friction",
+                "to count it as static friction, set time.kinetic_from_star to a later time",
             )
         } else {
             (
                 "at its first peak",
-                "slow loading by drive.loading = \"held\" takes the largest",
+                "slow loading with drive.loading = \"held\" uses the largest",
             )
         };
         warnings.push(format!(
-            "mu* is larger later than {first}: {:.4} at t* = {:.1}, {:.0} % above static_friction_star = {:.4}; {remedy}",
+            "mu* becomes larger than {first}: {:.4} at t* = {:.1}, {:.0} % above static_friction_star = {:.4}; {remedy}",
             peak.largest.mu_star,
             peak.largest.time_star,
             100.0 * (peak.largest.mu_star / peak.mu_star - 1.0),
@@ -73,8 +73,7 @@ pub(crate) fn after_run(
     }
     if first_slip.is_none() {
         warnings.push(
-            "no block in contact slipped before the run ended: kinetic_friction_star is empty; lengthen \
-             time.duration_star"
+            "no block in contact slipped before the run ended: kinetic_friction_star is empty; increase time.duration_star"
                 .to_owned(),
         );
         return warnings;
@@ -82,8 +81,8 @@ pub(crate) fn after_run(
     match kinetic.map(|kinetic| kinetic.uncertainty) {
         None if reason == StopReason::Onset => {}
         None => warnings.push(
-            "the run ended before the kinetic window began: kinetic_friction_star is empty; lengthen \
-             time.duration_star or set time.kinetic_from_star"
+            "the run ended before the kinetic window began: kinetic_friction_star is empty; increase time.duration_star or set \
+             time.kinetic_from_star"
                 .to_owned(),
         ),
         Some(Err(NoUncertainty::TooShort { needed_time_star })) => warnings.push(format!(
@@ -91,11 +90,11 @@ pub(crate) fn after_run(
             needed_time_star.ceil()
         )),
         Some(Err(NoUncertainty::SpeedChanges)) => {
-            warnings.push("no uncertainty can be estimated for mu_k*, since the drive changes its speed".to_owned());
+            warnings.push("no uncertainty can be estimated for mu_k*, because the drive speed changes".to_owned());
         }
         Some(Err(NoUncertainty::Drift { needed_time_star })) => warnings.push(format!(
-            "no uncertainty could be estimated for mu_k*, since mu* still drifts: set time.duration_star to {needed_time_star:.0}, \
-             or begin the mean later by time.kinetic_from_star"
+            "no uncertainty could be estimated for mu_k*, because mu* still drifts: set time.duration_star to \
+             {needed_time_star:.0}, or start the average later with time.kinetic_from_star"
         )),
         Some(Ok(_)) => {}
     }

@@ -38,18 +38,18 @@ pub struct Verdict {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum VerifyError {
-    #[error("{path} is no folder: name the folder of a run or a study")]
+    #[error("{path} is not a folder: give the folder of a run or a study")]
     NotAFolder { path: PathBuf },
     #[error(transparent)]
     Manifest(#[from] ManifestError),
     #[error(
-        "{difference}: pictures of it would not show what was run; run its case again, or remove {manifest} to draw the files \
-        as they are"
+        "{difference}: pictures would not show the original run; run its case again, or remove {manifest} to draw the changed \
+        files"
     )]
     Changed { difference: String, manifest: PathBuf },
     #[error(transparent)]
     Folder(#[from] FolderError),
-    #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
+    #[error("cannot create a temporary folder for the comparison: {0}; set TMPDIR to a writable folder")]
     Temporary(std::io::Error),
 }
 
@@ -92,7 +92,7 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
         }
     };
     verdict.what = format!(
-        "{} as {} wrote them, finished {}",
+        "{} unchanged since {} wrote them, finished {}",
         count(manifest.files.len(), "file"),
         manifest.program(),
         truncated(&manifest.finished)
@@ -124,7 +124,7 @@ pub fn description_in(folder: &Path, seal: &str) -> (Option<&'static str>, Optio
     let is_current = seal.is_empty() || text.windows(seal.len()).any(|bytes| bytes == seal);
     let outdated = || {
         single_line(&format!(
-            "{} describes other results than the folder holds: `slipfront export --ro-crate --force` writes it anew",
+            "{} does not describe the results in the folder: `slipfront export --ro-crate --force` writes it again",
             path.display()
         ))
     };
@@ -186,11 +186,14 @@ fn unresolved(run: &Inspection) -> Option<String> {
         // One that cannot be read is among the differences already.
         Ok(_) | Err(CaseDefect::Unreadable(_)) => None,
         Err(CaseDefect::NotResolved(_)) => {
-            Some(format!("{} is not the resolved case that it was", path.display()))
+            Some(format!("{} is not the original resolved case", path.display()))
         }
         Err(CaseDefect::Invalid(error)) => {
             let line = first_line(error);
-            Some(format!("{} is no case for this version: {line}", path.display()))
+            Some(format!(
+                "{} is not a valid case for this version: {line}",
+                path.display()
+            ))
         }
     }
 }

@@ -199,16 +199,16 @@ impl DirectedPoints<'_> {
             .max();
         let most = most.unwrap_or(0);
         let parts = [
-            (without > 0).then(|| format!("{} left out that had no transition", are(without, "run"))),
+            (without > 0).then(|| format!("{} left out for lack of a transition", are(without, "run"))),
             (directions < all.len()).then(|| {
                 format!(
-                    "{directions} of {} count, those in which at least half of the runs have a value",
+                    "{directions} of {} are used, those with values from at least half of the runs",
                     count(all.len(), "direction")
                 )
             }),
             (replicates < most).then(|| {
                 format!(
-                    "{replicates} of {} count, those with a value in each of the directions",
+                    "{replicates} of {} are used, those with a value in every direction",
                     count(most, "replicate")
                 )
             }),
@@ -221,12 +221,12 @@ impl DirectedPoints<'_> {
 /// Result for the values of replicates in these directions, without friction across the drive.
 fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Result<OverDirections, String> {
     if degrees.len() < 2 {
-        return Err("anisotropy needs values in two directions or more".to_owned());
+        return Err("anisotropy needs values in at least two directions".to_owned());
     }
     let too_few = || {
         format!(
-            "anisotropy cannot be told from chance with {} that {} a value in every direction: it takes {MIN_REPLICATES} or more \
-             (`study.replicates`)",
+            "with {} that {} a value in every direction anisotropy cannot be distinguished from scatter: use {MIN_REPLICATES} \
+             or more (`study.replicates`)",
             count(values.len(), "replicate"),
             if values.len() == 1 { "has" } else { "have" },
         )
@@ -431,7 +431,7 @@ mod tests {
     #[test]
     fn too_few_directions_or_replicates_give_a_sentence() {
         let one = over_directions(&[0.0], &vec![vec![0.8]; 6], 0.95).unwrap_err();
-        assert!(one.contains("two directions or more"), "{one}");
+        assert!(one.contains("at least two directions"), "{one}");
         let values = planted([0.8; 12], 2, 1);
         let two = over_directions(&TWELVE, &values, 0.95).unwrap_err();
         assert!(two.contains("with 2 replicates that have a value"), "{two}");
@@ -474,8 +474,8 @@ mod tests {
         };
         let found = &anisotropies(&plan, &results)[0];
         assert_eq!((found.directions, found.replicates), (2, 3), "{found:?}");
-        let expected = "4 runs are left out that had no transition; 2 of 4 directions count, those in which at least half of the runs have \
-                        a value; 3 of 4 replicates count, those with a value in each of the directions";
+        let expected = "4 runs are left out for lack of a transition; 2 of 4 directions are used, those with values from \
+                        at least half of the runs; 3 of 4 replicates are used, those with a value in every direction";
         assert_eq!(found.left_out.as_deref(), Some(expected));
         let numbers = found.found.as_ref().unwrap();
         assert_eq!(

@@ -73,7 +73,7 @@ key_rows! {
         linspace: Option<Vec<Value>> = key("", KeyKind::Special(
             "two numbers, or two quantities such as `\"50 kPa\"` and `\"1 MPa\"`; count 2 to 100 000")),
         /// `[from, to, count]`: values in equal ratios, both ends included.
-        logspace: Option<Vec<Value>> = key("", KeyKind::Special("the same, ends above 0")),
+        logspace: Option<Vec<Value>> = key("", KeyKind::Special("as `linspace`, with ends above 0")),
         /// A table of lists, equally long; keys with a dot stand in quotes.
         zip: Option<toml::Table> = key("", KeyKind::Special("")),
         /// Name of the axis, which is the name of its column in the tables.
@@ -98,7 +98,7 @@ impl Axis {
         let all = keys.key.iter().chain(keys.zip.iter().flat_map(toml::Table::keys));
         if let Some(long) = all.into_iter().find(|key| key.len() > MAX_KEY) {
             return Err(format!(
-                "the key `{}` of an axis has {} bytes, more than {MAX_KEY}: name one of a case, such as drive.v_star",
+                "the key `{}` of an axis has {} bytes, more than {MAX_KEY}: give a key of a case, such as drive.v_star",
                 truncated(long),
                 long.len()
             ));
@@ -136,8 +136,8 @@ impl Axis {
                 unit: None,
             }),
             _ => Err(
-                "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with \
-                 `variants`: nothing else together"
+                "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with `variants`: no other \
+                 combination"
                     .to_owned(),
             ),
         }
@@ -180,13 +180,11 @@ impl Axis {
         }
         for key in self.keys() {
             if key.contains(char::is_whitespace) {
-                return Err(format!(
-                    "the key `{key}` of an axis has a blank in it: take it out"
-                ));
+                return Err(format!("the key `{key}` of an axis contains a blank: remove it"));
             }
             if key == "output" || key.starts_with("output.") {
                 return Err(format!(
-                    "`{key}` changes what is written and nothing that a run finds: set it in the base, and not on an axis"
+                    "`{key}` changes only the output, not the results of a run: set it in the base, not on an axis"
                 ));
             }
         }
@@ -194,7 +192,7 @@ impl Axis {
             let count = level.overrides.len();
             if count > MAX_KEYS {
                 return Err(format!(
-                    "the level {} sets {count} keys, more than {MAX_KEYS}: put what all levels share into the base",
+                    "the level {} sets {count} keys, more than {MAX_KEYS}: move the keys that all levels share to the base",
                     truncated(&level.labels.join(", "))
                 ));
             }
@@ -202,7 +200,7 @@ impl Axis {
             for key in level.overrides.iter().map(Override::key) {
                 if let Some(other) = conflict(key, &earlier) {
                     return Err(format!(
-                        "the level {} sets `{key}` and `{other}`, of which one leaves nothing of the other: keep one of them",
+                        "the level {} sets `{key}` and `{other}`, and one overwrites the other: keep one of them",
                         truncated(&level.labels.join(", "))
                     ));
                 }
@@ -223,7 +221,7 @@ impl Axis {
         if let Some(twice) = self.levels.iter().find(|level| !seen.insert(values(level))) {
             let labels = twice.labels.join(", ");
             return Err(format!(
-                "the level {labels} stands twice on the axis of `{columns}`: keep one"
+                "the level {labels} is twice on the axis of `{columns}`: keep one"
             ));
         }
         Ok(())
@@ -305,7 +303,7 @@ fn zipped_lists(zip: toml::Table) -> Result<Vec<(String, Vec<Value>)>, String> {
     let list = |(key, values)| match values {
         Value::Array(values) => Ok((key, values)),
         _ => Err(format!(
-            "`{key}` in `zip` must be a list; keys with a dot stand in quotes: \"drive.v_star\""
+            "`{key}` in `zip` must be a list; write keys with a dot in quotes: \"drive.v_star\""
         )),
     };
     let lists = zip.into_iter().map(list).collect::<Result<Vec<_>, _>>()?;
@@ -465,7 +463,7 @@ impl SpacingRange {
         };
         let Some((from, to, count)) = parts else {
             return Err(wrong(
-                "it must be [from, to, count], two ends and how many values, such as [0.01, 0.2, 6]",
+                "it must be [from, to, count], with two ends and the number of values, such as [0.01, 0.2, 6]",
             ));
         };
         let (ends, unit) = match (quantity(from), quantity(to)) {
@@ -496,7 +494,7 @@ impl SpacingRange {
         } = self;
         if !(2..=MAX_LEVELS).contains(&count) {
             return Err(format!(
-                "a spacing of {count} values cannot be: give 2 to {MAX_LEVELS}"
+                "a spacing of {count} values is not possible: give 2 to {MAX_LEVELS}"
             ));
         }
         if !(from.is_finite() && to.is_finite()) {

@@ -50,7 +50,7 @@ pub fn execute_on_device(
 ) -> Result<StudyResults, StudyError> {
     assert!(
         !plan.settings.keeps_all_runs(),
-        "a device makes no folders of runs"
+        "a device cannot write folders of runs"
     );
     let (to_scheduler, finished) = mpsc::channel::<TaskResult>();
     let (to_device, tasks) = mpsc::channel::<Task>();
@@ -244,7 +244,7 @@ mod tests {
     fn a_study_ends_with_the_sentence_of_a_device_that_fails() {
         for (panics, sentence) in [
             (false, "too hot"),
-            (true, "a fault of the program: out of bounds"),
+            (true, "an error in the program: out of bounds"),
         ] {
             let error = executed(STUDY, Some(&Broken { panics })).unwrap_err().to_string();
             assert!(error.contains(sentence), "{error}");

@@ -29,13 +29,12 @@ pub enum StudyError {
     Point { point: String, source: CaseError },
     #[error("the reference of the point {point} is not a valid case: {source}")]
     ReferencePoint { point: String, source: CaseError },
-    #[error("the study has {runs} runs, more than {limit}: give --yes if that is meant")]
+    #[error("the study has {runs} runs, more than {limit}: confirm with --yes")]
     Large { runs: u64, limit: u64 },
-    #[error("the axes of the study multiply to more than {limit} points: take fewer levels")]
+    #[error("the axes of the study give more than {limit} points: use fewer levels")]
     TooLarge { limit: usize },
     #[error(
-        "{} at once take about {needed} of memory where {available} are available to this process: give \
-        --threads {fit}",
+        "{} at a time need about {needed} of memory, but {available} are available to this process: use --threads {fit}",
         count(*threads, "run")
     )]
     Memory {
@@ -45,8 +44,8 @@ pub enum StudyError {
         fit: usize,
     },
     #[error(
-        "a run of the point {point} takes about {needed} of memory where {available} are available to this process: \
-        lower `slider.blocks`, or keep no run folders (`study.keep`)"
+        "a run of the point {point} needs about {needed} of memory, but {available} are available to this process: reduce \
+        `slider.blocks`, or keep no run folders (`study.keep`)"
     )]
     PointMemory {
         point: String,
@@ -54,23 +53,23 @@ pub enum StudyError {
         available: String,
     },
     #[error(
-        "the design takes about {needed} of memory where {available} are available to this process, one run at a time: \
-        lower `slider.blocks` or `design.runs`"
+        "the design needs about {needed} of memory with one run at a time, but {available} are available to this process: \
+        reduce `slider.blocks` or `design.runs`"
     )]
     DesignMemory { needed: String, available: String },
     #[error(
-        "the calibration takes about {needed} of memory where {available} are available to this process, one run at a time: \
-        lower `slider.blocks` of the case, or `calibrate.runs`"
+        "the calibration needs about {needed} of memory with one run at a time, but {available} are available to this process: \
+        reduce `slider.blocks` of the case, or `calibrate.runs`"
     )]
     CalibrationMemory { needed: String, available: String },
     #[error(
-        "the tables and pictures of the study take about {needed} of memory where {available} are available to this \
-        process: give it more, in a queue for example with `--mem`"
+        "the tables and pictures of the study need about {needed} of memory, but {available} are available to this process: \
+        allow more, in a queue for example with `--mem`"
     )]
     ResultsMemory { needed: String, available: String },
     #[error(
-        "the runs still to be done take about {needed} where {free} are free in {path}: keep fewer run folders \
-        (`study.keep`), or choose another folder with --out"
+        "the remaining runs need about {needed}, but {free} are free in {path}: keep fewer run folders (`study.keep`), or \
+        choose another folder with --out"
     )]
     Disk {
         needed: String,
@@ -79,14 +78,14 @@ pub enum StudyError {
     },
     #[error(transparent)]
     Folder(#[from] FolderError),
-    #[error("the folder {path} holds other things than a {what}: choose another with --out")]
+    #[error("the folder {path} is not the folder of a {what}: choose another with --out")]
     OtherThings { what: &'static str, path: PathBuf },
     #[error(
-        "the folder {path} holds another {what}, or this one before it was changed: choose another with --out"
+        "the folder {path} contains another {what}, or an earlier version of this one: choose another with --out"
     )]
     Changed { what: &'static str, path: PathBuf },
     #[error(
-        "the folder {path} of a {of} holds files that were edited since they were written, or that are not slipfront's: {}; move them away, \
+        "the folder {path} of a {of} contains files that were edited, or were not written by slipfront: {}; move them away, \
         choose another folder with --out, or replace them with --force",
         single_line(&names.join(", "))
     )]
@@ -96,15 +95,15 @@ pub enum StudyError {
         names: Vec<String>,
     },
     #[error(
-        "{} is damaged: {why}; it says which files are slipfront's, so that none is replaced: put it back as it was, choose another folder \
-        with --out, or give --force",
+        "{} is damaged: {why}; it lists the files written by slipfront, so no file was replaced: restore it, choose another \
+        folder with --out, or give --force",
         display_path(path)
     )]
     Checksums { path: PathBuf, why: String },
     #[error(transparent)]
     Training(#[from] TrainingError),
     #[error(
-        "--training {} is the folder of the results, which keeps training runs without it: leave out --training, or name another folder",
+        "--training {} is the results folder, which contains training runs by default: leave out --training, or give another folder",
         display_path(path)
     )]
     TrainingInResults { path: PathBuf },
@@ -113,7 +112,7 @@ pub enum StudyError {
     #[error("another slipfront is running in {path}: wait for it, or choose another folder with --out")]
     Busy { path: PathBuf },
     #[error(
-        "cannot {action} {path}: {source}; finished runs are safe, and the same command goes on from there"
+        "cannot {action} {path}: {source}; finished runs are safe, and the same command resumes from there"
     )]
     Journal {
         action: &'static str,
@@ -121,44 +120,43 @@ pub enum StudyError {
         source: std::io::Error,
     },
     #[error(
-        "cannot write {}: {source}; finished runs are safe, and the same command goes on from there",
+        "cannot write {}: {source}; finished runs are safe, and the same command resumes from there",
         display_path(path)
     )]
     Write { path: PathBuf, source: std::io::Error },
     #[error("{path} is not a journal of runs")]
     NotJournal { path: PathBuf },
     #[error(
-        "{path} holds runs of another kind of work: put back the file that was there, or choose another folder"
+        "{path} contains runs of another kind of task: restore the original file, or choose another folder"
     )]
     OtherJournal { path: PathBuf },
     #[error(
-        "cannot keep the folder of a run: {0}; finished runs are safe, and the same command goes on from there"
+        "cannot keep the folder of a run: {0}; finished runs are safe, and the same command resumes from there"
     )]
     Keep(#[from] RunPictureError),
     #[error(
-        "{} in none of the shards{}: finish them, or run the rest with `slipfront study` on the study.toml of the united \
-        folder, with --out the folder itself",
+        "{} in none of the shards{}: finish the shards, or run the rest with `slipfront study` on the study.toml of the merged \
+        folder, with this folder as --out",
         are(*runs, "run"),
         of_others(*others)
     )]
     Missing { runs: usize, others: usize },
-    #[error("{other} belongs to another study than {first}: merge shards of one study only")]
+    #[error("{other} and {first} belong to different studies: merge only shards of the same study")]
     Foreign { first: PathBuf, other: PathBuf },
-    #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
+    #[error("invalid shard `{given}`: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard { given: String, why: String },
     #[error("cannot draw {name}: {source}")]
     Picture { name: String, source: PictureError },
     #[error(
-        "{levels} meshes cannot be: give from {fewest} to {most} levels, the second of which is the mesh of the case"
+        "{levels} meshes are not possible: give {fewest} to {most} levels; the second level is the mesh of the case"
     )]
     Levels { levels: i64, fewest: u8, most: u8 },
     #[error(
-        "on blocks of {block_size} no block is textured: begin with finer blocks, by `slider.blocks` and `slider.block_size`"
+        "with blocks of {block_size} no block is textured: start with finer blocks, with `slider.blocks` and `slider.block_size`"
     )]
     Bare { block_size: String },
     #[error(
-        "the runs need {needed} of memory, {threads} at once: more than --max-memory {most} allows; take fewer --levels or \
-        --threads"
+        "the runs need {needed} of memory, {threads} at a time: more than --max-memory {most}; use fewer --levels or --threads"
     )]
     MemoryLimit {
         needed: String,
@@ -166,7 +164,7 @@ pub enum StudyError {
         most: f64,
     },
     #[error(
-        "the runs are estimated to take {estimated:#} at least, longer than --max-time {most:#} allows: take fewer --levels or \
+        "the runs are estimated to take at least {estimated:#}, longer than --max-time {most:#}: use fewer --levels or \
         --replicates"
     )]
     TimeLimit {
@@ -174,7 +172,7 @@ pub enum StudyError {
         most: SignedDuration,
     },
     #[error(
-        "{failed} of {} failed, the others stand in the tables; the first, replicate {replicate} of the point {point}: {reason}",
+        "{failed} of {} failed; the tables contain the others. First failure, replicate {replicate} of the point {point}: {reason}",
         count(*runs, "run")
     )]
     Failed {
@@ -185,9 +183,9 @@ pub enum StudyError {
         reason: String,
     },
     #[error(
-        "no run has a value of {quantity}{}: the tables hold the other numbers",
+        "no run has a value of {quantity}{}: the tables contain the other quantities",
         if *needs_transition {
-            ", since none has a transition from static to kinetic friction. Lengthen `time.duration_star` of the base if the runs end before it"
+            ", because none has a transition from static to kinetic friction. Increase `time.duration_star` of the base if the runs end before the transition"
         } else {
             ""
         }
@@ -197,27 +195,27 @@ pub enum StudyError {
         needs_transition: bool,
     },
     #[error(
-        "no quantity has a value on every mesh: {} says what the runs found. Lengthen `time.duration_star` if they end before a transition",
+        "no quantity has a value on every mesh: {} contains the results of the runs. Increase `time.duration_star` if they end before a transition",
         display_path(path)
     )]
     NotOnMeshes { path: PathBuf },
     #[error(
-        "the model does not make such records, and the intervals promise nothing: {} says why, and what to look at",
+        "the model cannot reproduce these records, so the intervals are not valid: {} gives the reasons, and what to check",
         display_path(path)
     )]
     Refused { path: PathBuf },
     #[error(
-        "there is no verdict, since every texture that was judged is lost on fresh surfaces: {} says why",
+        "there is no verdict, because every tested texture failed on new random surfaces: {} gives the reasons",
         display_path(path)
     )]
     NoVerdict { path: PathBuf },
     #[error(
-        "no texture keeps these limits: widen `design.coverage`, lower `design.feature` or `design.gap`, or allow more features"
+        "no texture satisfies these limits: widen `design.coverage`, reduce `design.feature` or `design.gap`, or allow more features"
     )]
     NoDesign,
-    #[error("nothing can be compared with the slider without texture: {why}")]
+    #[error("a comparison with the untextured slider is not possible: {why}")]
     Reference { why: String },
-    #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
+    #[error("stopped by a signal: finished runs are safe, and the same command resumes from there")]
     Interrupted,
 }
 
@@ -242,8 +240,8 @@ pub enum TrainingError {
     #[error("the unknowns {point}: {source}; narrow the ranges")]
     Run { point: String, source: RunError },
     #[error(
-        "the unknowns {point}: the run ends before record {record} does, or its friction is no force along the drive: \
-         set `time.duration` to the length of the record"
+        "the unknowns {point}: the run ends before record {record}, or its friction is not a force along the drive: set \
+         `time.duration` to the duration of the record"
     )]
     Short { point: String, record: usize },
 }
@@ -253,7 +251,7 @@ pub(crate) fn of_others(runs: usize) -> String {
     match runs {
         0 => String::new(),
         _ => format!(
-            ", and {} of another program than {}, or of a study that was changed since",
+            ", and {} from another program than {}, or from a study that was changed since",
             are(runs, "recorded run"),
             program::this_program()
         ),

@@ -114,7 +114,7 @@ fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<TaskResult
 pub(crate) fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
     let message = panic.downcast_ref::<String>().map(String::as_str);
     let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
-    format!("a fault of the program: {}", message.unwrap_or("unknown"))
+    format!("an error in the program: {}", message.unwrap_or("unknown"))
 }
 
 /// Runs the case of a run, and writes its folder to `runs` if the study keeps it.
@@ -294,7 +294,7 @@ mod tests {
             .collect();
         assert_eq!(
             failures,
-            [(1, "it diverged"), (3, "a fault of the program: out of bounds")]
+            [(1, "it diverged"), (3, "an error in the program: out of bounds")]
         );
         assert_eq!((found.runs.len(), recorded), (6, 6));
     }

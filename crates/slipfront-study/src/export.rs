@@ -29,10 +29,10 @@ use crate::summary_values::{AFTER_AXES, BEFORE_AXES};
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ExportFolderError {
-    #[error("the {what} in {path} was not finished: run it again to go on with it, and export it then")]
+    #[error("the {what} in {path} is not finished: run it again to resume it, and then export it")]
     Unfinished { what: &'static str, path: PathBuf },
     #[error(
-        "{path} holds the figures of `slipfront paper`, which makes them again: name folders of runs or studies"
+        "{path} contains figures of `slipfront paper`, which can be computed again: give folders of runs or studies"
     )]
     Figures { path: PathBuf },
     #[error(transparent)]

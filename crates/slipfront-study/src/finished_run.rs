@@ -40,7 +40,7 @@ impl Outcome {
         let json = serde_json::to_string(&self).unwrap_or_default();
         match serde_json::from_str::<Self>(&json) {
             Ok(read_back) if read_back == self => self,
-            _ => Self::Failed("a number of its summary is not finite".to_owned()),
+            _ => Self::Failed("a value in its summary is not finite".to_owned()),
         }
     }
 }

@@ -84,10 +84,10 @@ impl StudyFolder {
     pub fn notes(&self) -> Vec<String> {
         let damaged = (self.records.damaged > 0).then(|| {
             let lines = count(self.records.damaged, "damaged line");
-            format!("the journal has {lines}, passed over: its runs count as not run")
+            format!("the journal has {lines}, which are ignored: their runs count as not run")
         });
         let changed =
-            "the study has changed since this folder was last used; runs that still belong to it are kept";
+            "the study was changed after this folder was last used; runs that still belong to it are kept";
         damaged
             .into_iter()
             .chain(self.changed.then(|| changed.to_owned()))
@@ -229,10 +229,7 @@ mod tests {
         let out = StudyFolder::open(&folder.path().join("out"), &file, false).unwrap();
         std::fs::write(&original, table(0.8)).unwrap();
         let said = plan.case(run, &mut |_| true).unwrap_err().to_string();
-        assert!(
-            said.contains("no longer what it was when the study began"),
-            "{said}"
-        );
+        assert!(said.contains("was changed after the study began"), "{said}");
         let plan = plan.reading_copies(&out.study);
         let case = plan.case(run, &mut |_| true).unwrap();
         assert_eq!(case.inputs[0].hash, blake3::hash(table(0.9).as_bytes()));

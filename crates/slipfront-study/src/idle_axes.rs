@@ -116,15 +116,15 @@ fn digest(case: &Case) -> blake3::Hash {
 fn sentence(axis: &Axis) -> String {
     let keys = axis.keys();
     let why = if keys.iter().any(|key| UNITS_OF_SPEED.contains(key)) {
-        "but the units of results as long as `drive.v_star` is held: set `drive.speed` in its place"
+        "but the units of results while `drive.v_star` is fixed: set `drive.speed` instead"
     } else if keys.contains("slider.block_size") {
-        "but the units of results as long as no other length has one: vary `slider.blocks`"
+        "but the units of results while no other length is given: vary `slider.blocks`"
     } else if keys.contains("friction.seed") || keys.contains("friction.correlation_length") {
-        "as long as no coefficient is random: raise `friction.sigma_static_star`"
+        "because no coefficient is random: increase `friction.sigma_static_star`"
     } else if keys.iter().any(|key| key.starts_with("texture")) {
-        "since all its levels cover the same blocks: take more of them by `slider.blocks`"
+        "because all its levels cover the same blocks: use more blocks (`slider.blocks`)"
     } else {
-        "with the other keys as they are: change those"
+        "with the present values of the other keys: change those"
     };
     let columns = axis.columns.join("`, `");
     format!("the axis of `{columns}` changes nothing {why}, or leave the axis out")
@@ -156,8 +156,8 @@ mod tests {
             axis("drive.v_star", "[0.02, 0.03, 0.05]"),
         );
         let said = idle(&format!("{pressure}{speed}"));
-        let expected = "the axis of `load.pressure` changes nothing but the units of results as long as `drive.v_star` is \
-                        held: set `drive.speed` in its place, or leave the axis out";
+        let expected = "the axis of `load.pressure` changes nothing but the units of results while `drive.v_star` is fixed: set \
+                        `drive.speed` instead, or leave the axis out";
         assert_eq!(said, [expected]);
         // As the remedy says, and so do they change what is computed with sizes that have a unit.
         assert!(idle(&format!("base.drive.speed = '0.1 mm/s'\n{pressure}")).is_empty());

@@ -57,7 +57,7 @@ impl MeasuredColumns {
                 example,
                 ..
             } => format!(
-                "nothing tells the unit of column `{column}` of {}: give it as a key, such as {axis}_unit = \"{example}\"",
+                "column `{column}` of {} has no unit: give it as a key, such as {axis}_unit = \"{example}\"",
                 path.display()
             ),
             error => error.to_string(),

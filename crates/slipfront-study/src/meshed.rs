@@ -64,7 +64,7 @@ impl MeshedCoverage {
             all => format!(", as are {}", count(all - 1, "more pair")),
         };
         Some(format!(
-            "`{}` = {one} and {other} are meshed to one coverage{more}: take more blocks to tell them apart",
+            "`{}` = {one} and {other} have the same coverage on this mesh{more}: use more blocks to distinguish them",
             axis.title()
         ))
     }

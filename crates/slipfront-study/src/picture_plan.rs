@@ -35,8 +35,8 @@ pub(crate) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String
         Ok((over, combinations(axes, &others)))
     } else {
         Err(format!(
-            "there is no polar picture: it would have {} curves, two for each combination of the levels of the other axes, and can have \
-             {MOST_CURVES}; anisotropy.csv has what it would show",
+            "there is no polar picture: it would have {} curves, two for each combination of the levels of the other axes, but \
+             at most {MOST_CURVES} are possible; anisotropy.csv contains the values",
             2 * count
         ))
     })
@@ -82,7 +82,7 @@ pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<S
     let missing = QUANTITIES.into_iter().filter(expected);
     let missing = missing.filter(|quantity| !measured.contains(quantity));
     missing
-        .map(|quantity| format!("there is no picture of {quantity}: no run has a value of it"))
+        .map(|quantity| format!("there is no picture of {quantity}: no run has a value"))
         .collect()
 }
 
@@ -124,7 +124,7 @@ impl ChartKind {
             (None, 0) => Self::Nothing("the study has no axis".to_owned()),
             (None, 1 | 2) => Self::Bars,
             (None, count) => Self::Nothing(format!(
-                "none of its {count} axes has numbers, and bars are drawn for one axis or two"
+                "none of its {count} axes is numeric, and bars need one or two axes"
             )),
             (Some((x, Ok(split))), _) => Self::Curves { x, split },
             // Over another axis there may be fewer of them.
@@ -191,13 +191,13 @@ fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     }
     if held > MOST_CURVES {
         return Err(format!(
-            "a picture would have {held} of them, one for each level of `{}`, and can have {MOST_CURVES}",
+            "a picture would have {held} curves, one for each level of `{}`, but at most {MOST_CURVES} are possible",
             axes[others[split]].columns.join(" ")
         ));
     }
     match count / held {
         pictures if pictures > MOST_PICTURES => Err(format!(
-            "they would take {pictures} pictures, more than {MOST_PICTURES}"
+            "they would need {pictures} pictures, more than {MOST_PICTURES}"
         )),
         _ => Ok(split),
     }
@@ -293,7 +293,7 @@ mod tests {
         );
         assert!(names_of(many).is_empty());
         let why = why_no_curves(&axes_of(many)).unwrap();
-        let expected = "there are no pictures of curves: they would take 1001 pictures, more than 1000; points.csv has the values";
+        let expected = "there are no pictures of curves: they would need 1001 pictures, more than 1000; points.csv has the values";
         assert_eq!(why, expected);
     }
 
@@ -320,13 +320,13 @@ mod tests {
             assert_eq!(over(&axes), x, "{counts:?}");
             assert_eq!(why_no_curves(&axes).is_some(), x.is_none(), "{counts:?}");
         }
-        let expected = "there are no pictures of curves: a picture would have 10 of them, one for each level of `friction.r_star`, \
-                        and can have 9; the map shows the values";
+        let expected = "there are no pictures of curves: a picture would have 10 curves, one for each level of \
+                        `friction.r_star`, but at most 9; the map shows the values are possible";
         assert_eq!(why_no_curves(&two([10, 10])).unwrap(), expected);
         let names = "[[axes]]\nkey = 'slider.edges'\nlist = ['free', 'periodic']\n[[axes]]\nkey = 'friction.redraw'\nlist = [true, false]\n\
                      [[axes]]\nkey = 'load.redistribute'\nlist = [true, false]";
         let why = why_no_curves(&axes_of(names)).unwrap();
-        assert!(why.contains("none of its 3 axes has numbers"), "{why}");
+        assert!(why.contains("none of its 3 axes is numeric"), "{why}");
         assert!(why_no_curves(&[]).unwrap().contains("no axis"));
         assert!(why_no_curves(&axes_of("[[axes]]\nkey = 'slider.edges'\nlist = ['free']")).is_none());
     }

@@ -425,7 +425,7 @@ fn note_on_intervals(confidence: f64, counts: &[usize], without_transition: usiz
 fn intervals(confidence: f64, counts: &[usize]) -> String {
     let [least, most] = [counts.iter().min(), counts.iter().max()].map(|count| count.copied().unwrap_or(0));
     if most < 2 {
-        return "no intervals: one run at each point".to_owned();
+        return "no intervals: one run per point".to_owned();
     }
     let count = if least == most {
         most.to_string()
@@ -475,7 +475,7 @@ mod tests {
         );
         assert_eq!(
             note_on_intervals(0.95, &[1, 1], 0),
-            "no intervals: one run at each point"
+            "no intervals: one run per point"
         );
         assert_eq!(
             note_on_intervals(0.95, &[4, 5], 6),

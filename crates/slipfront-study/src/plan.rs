@@ -362,8 +362,8 @@ impl Plan {
             return Ok(());
         }
         let sentence = format!(
-            "`friction.seed` = {seed} is too large for {replicates} replicates, which take the seeds from there on: the last must be \
-             at most {MAX_SEED}"
+            "`friction.seed` = {seed} is too large for {replicates} replicates, which use this and the following seeds: the \
+             last must be at most {MAX_SEED}"
         );
         Err(file.source.error("friction.seed", sentence))
     }
@@ -384,8 +384,7 @@ impl Plan {
             let originals = case.inputs.iter().map(|input| display_path(&input.original));
             let names: Vec<String> = originals.collect();
             let sentence = format!(
-                "a file that a run reads is no longer what it was when the study began: run the study again, and leave {} as it \
-                 is meanwhile",
+                "a file that a run reads was changed after the study began: run the study again, and do not change {} meanwhile",
                 names.join(", ")
             );
             return Err(case.file.source.error("", sentence));

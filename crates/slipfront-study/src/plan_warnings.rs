@@ -61,6 +61,6 @@ pub fn note_on_seeds(case: &Case) -> Option<&'static str> {
              are the same for every seed",
         )
     } else {
-        Some("every seed gives the same run: no coefficient is random, so that one seed is enough")
+        Some("every seed gives the same run, because no coefficient is random: one seed is enough")
     }
 }

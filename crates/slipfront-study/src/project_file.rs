@@ -258,7 +258,7 @@ pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Resul
             })
         }
         _ => {
-            let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";
+            let sentence = "`base` must be the path of a case file, or a table [base] with its keys";
             Err(tables.source.error_at(span, sentence))?
         }
     }

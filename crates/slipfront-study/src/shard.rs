@@ -24,9 +24,9 @@ impl Shard {
     fn of_slurm(given: &str) -> Result<Self, StudyError> {
         let read = |name: &str| -> Result<usize, StudyError> {
             let value = std::env::var(name)
-                .map_err(|_| refused(given, format!("{name} is not set: this is no array task")))?;
+                .map_err(|_| refused(given, format!("{name} is not set: this is not an array task")))?;
             let number = value.parse();
-            number.map_err(|_| refused(given, format!("{name} = {value} is no number")))
+            number.map_err(|_| refused(given, format!("{name} = {value} is not a number")))
         };
         // The first index of an array may be any number.
         let first = read("SLURM_ARRAY_TASK_MIN").unwrap_or(1);

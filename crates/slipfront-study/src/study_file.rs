@@ -27,13 +27,10 @@ pub(crate) static STUDIES: ProjectKind = ProjectKind {
     journal: RUN_JOURNAL,
     given: &[],
     found: &[
-        (
-            TABLES[0],
-            "A row for every run: its levels, seed, outcome and numbers",
-        ),
+        (TABLES[0], "One row per run with levels, seed, status and results"),
         (TABLES[1], "The statistics of every quantity at every point"),
         (TABLES[2], "Friction over the directions of the drive"),
-        ("convergence.", "Every number with the error of the mesh"),
+        ("convergence.", "Every result with its mesh error"),
         (
             "friction_polar.",
             "Picture: friction over the directions of the drive",
@@ -147,7 +144,7 @@ impl Settings {
         let mut reference = self.reference.iter().flat_map(axis::overrides);
         if reference.any(|set| set.key() == "friction.seed") {
             let sentence =
-                "a reduction is that against the same surface: leave `friction.seed` out of the reference";
+                "a reduction refers to the same surface: leave `friction.seed` out of the reference";
             return refuse("reference", sentence.to_owned());
         }
         let Some(until) = &self.until else {
@@ -174,17 +171,17 @@ impl Settings {
         }
         if !(2..=*max).contains(min) || *max > MAX_REPLICATES {
             let sentence = format!(
-                "`min` = {min} and `max` = {max} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval"
+                "`min` = {min} and `max` = {max} must increase from 2 to at most {MAX_REPLICATES}: a single run has no interval"
             );
             return refuse("until.min", sentence);
         }
         if key == REDUCTION && self.reference.is_none() {
-            let sentence = format!("`{key}` needs a `reference` to be reduced from");
+            let sentence = format!("`{key}` needs a `reference`");
             return refuse("until.key", sentence);
         }
         if !known().contains(key) {
             let sentence = format!(
-                "`{key}` is not a number of the summary: take one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
+                "`{key}` is not a quantity of the summary: use one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
             );
             return refuse("until.key", sentence);
         }
@@ -280,7 +277,7 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
     };
     let name = key.get_ref().as_ref();
     let sentence = if names_of::<Settings>().contains(&name) {
-        format!("`{name}` stands outside its table: it belongs in [study]")
+        format!("`{name}` is outside its table: it belongs in [study]")
     } else if CASE_TABLES.contains(&name) {
         let [key, below] = ["", "base."].map(|above| header_below(above, name));
         format!(
@@ -307,7 +304,7 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
     };
     if values.len() > MAX_AXES {
         let sentence = format!(
-            "the study has {} axes, more than {MAX_AXES}: an axis of one level belongs to the base",
+            "the study has {} axes, more than {MAX_AXES}: move axes with one level to the base",
             values.len()
         );
         Err(tables.source.error_at(span, sentence))?;
@@ -348,14 +345,14 @@ fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
                 ));
             }
             if !columns.insert(column) {
-                return refuse(format!("`{column}` stands on two axes: keep one of them"));
+                return refuse(format!("`{column}` is on two axes: keep one of them"));
             }
         }
         for key in axis.keys() {
             if let Some(earlier) = axis::replaced_key(key, &keys) {
                 return refuse(format!(
-                    "this axis sets `{key}`, which leaves nothing of `{earlier}` of an axis before it: put it before \
-                     that one, or keep one of them"
+                    "this axis sets `{key}`, which overwrites `{earlier}` of an earlier axis: put it before that axis, or keep \
+                     one of them"
                 ));
             }
         }

@@ -50,16 +50,16 @@ enum Number {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum UnknownError {
-    #[error("the range of `{key}` goes from {from} to {to}: give two finite numbers, the smaller one first")]
+    #[error("the range of `{key}` is {from} to {to}: give two finite numbers, the smaller one first")]
     Order { key: String, from: f64, to: f64 },
     #[error(
-        "the range of `{key}` goes from {from:e} to {to:e}: the difference of its ends, on a logarithmic scale their ratio, is \
-         above the largest number, 1.8e308; narrow it"
+        "the range of `{key}` is {from:e} to {to:e}: the difference of its ends, or their ratio on a logarithmic scale, exceeds \
+         the largest number, 1.8e308; reduce it"
     )]
     Width { key: String, from: f64, to: f64 },
-    #[error("the range of `{key}` begins at {from}: a range on a logarithmic scale begins above 0")]
+    #[error("the range of `{key}` begins at {from}: a range on a logarithmic scale must begin above 0")]
     Logarithm { key: String, from: f64 },
-    #[error("`friction.seed` numbers the surfaces that training draws: it is no unknown")]
+    #[error("`friction.seed` selects the random surfaces of the training: it cannot be an unknown")]
     Seed,
 }
 
@@ -112,7 +112,7 @@ impl Unknown {
         };
         let [(from, unit), (to, other)] = ends.map(Number::parted);
         let (Some(from), Some(to)) = (from, to) else {
-            return Err(format!("the range of `{key}` has ends that are no numbers"));
+            return Err(format!("the range of `{key}` has ends that are not numbers"));
         };
         if unit != other {
             return Err(format!("the ends of the range of `{key}` differ in their units"));
@@ -224,7 +224,7 @@ mod tests {
         assert!(refused(0.9, 0.3, false).contains("from 0.9 to 0.3"));
         assert!(refused(f64::NAN, 0.3, false).contains("NaN"));
         assert!(refused(0.0, 0.3, true).contains("begins at 0"));
-        assert!(refused(-1e308, 1e308, false).contains("above the largest number"));
+        assert!(refused(-1e308, 1e308, false).contains("exceeds the largest number"));
         assert!(refused(1e-300, 1e300, true).contains("from 1e-300 to 1e300"));
         assert!(Unknown::new("friction.seed", 1.0, 2.0, false).is_err());
     }

@@ -48,7 +48,7 @@ pub fn verify(
         let (verdict, _) = verify_checksums(folder, &[RunJournal::FILE, FIGURE_CACHE], stop)?;
         Verdict {
             not_derived: Some(format!(
-                "the figures in {} were not drawn again: `slipfront verify` does so",
+                "the figures in {} were not drawn again: `slipfront verify` draws them",
                 folder.display()
             )),
             ..verdict
@@ -91,7 +91,7 @@ fn derive_study(
         Ok(made) => made,
         Err(error) => {
             let (path, line) = (folder.join("study.toml"), first_line(&error));
-            let difference = format!("{} is no study for this version: {line}", path.display());
+            let difference = format!("{} is not a valid study for this version: {line}", path.display());
             verdict.differences.push(difference);
             return Ok(None);
         }

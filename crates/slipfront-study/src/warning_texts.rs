@@ -18,7 +18,7 @@ pub fn warning_texts(plan: &Plan) -> Vec<String> {
     if all.len() > MAX_WARNINGS {
         let more = all.len() - MAX_WARNINGS;
         told.push(format!(
-            "and {more} more of the kind, which `slipfront check` tells for a case"
+            "and {more} similar notes, which `slipfront check` prints for a case"
         ));
     }
     told

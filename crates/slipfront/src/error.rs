@@ -7,8 +7,8 @@ use thiserror::Error;
 pub enum RunError {
     /// Displacements or speeds have become infinite or too large to compute with.
     #[error(
-        "the displacement of block ({i}, {j}) is {value:.3e} at step {step}, t* = {time_star:.4}: the run has diverged; \
-         lower the load's strain epsilon or the time step"
+        "the displacement of block ({i}, {j}) is {value:.3e} at step {step}, t* = {time_star:.4}: the run has diverged; reduce \
+         the strain epsilon of the load or the time step"
     )]
     NotFinite {
         /// Step at which the run was found to diverge.
@@ -24,8 +24,9 @@ pub enum RunError {
     },
     /// Under a drive that is held some block has slid for too long.
     #[error(
-        "{n_slipping} blocks in contact still slide at step {step}, t* = {time_star:.1}, after the drive has stood still for {standing} steps: \
-         friction takes too little for the slider to come to rest; raise its kinetic friction or damping, or take constant loading"
+        "{n_slipping} blocks in contact still slide at step {step}, t* = {time_star:.1}, after the drive has been stopped for \
+         {standing} steps: friction dissipates too little for the slider to come to rest; increase kinetic friction or damping, \
+         or use constant loading"
     )]
     NoRest {
         /// Step at which the limit on sliding was passed.
@@ -39,8 +40,8 @@ pub enum RunError {
     },
     /// A run under a drive that is held has taken more steps than can be counted.
     #[error(
-        "the run has taken {step} steps, the most that there may be, in {drive_steps} of which the held drive has moved: raise the speed of the \
-         drive or the time step, or shorten the run"
+        "the run has reached the maximum of {step} steps; the held drive moved in {drive_steps} of them: increase the drive \
+         speed or the time step, or shorten the run"
     )]
     TooManySteps {
         /// Number of steps done.
@@ -58,8 +59,7 @@ pub enum RunError {
 pub enum SurfaceError {
     /// Every block is textured.
     #[error(
-        "the texture covers all {n_blocks} blocks, so that nothing is left in contact to carry the load: \
-         reduce its coverage"
+        "the texture covers all {n_blocks} blocks, so no block is in contact to carry the load: reduce its coverage"
     )]
     NoContact {
         /// Number of blocks.
@@ -67,8 +67,8 @@ pub enum SurfaceError {
     },
     /// The load of a textured block has no block in contact near it that takes it.
     #[error(
-        "no block in contact is within {distance:.1} blocks of block ({i}, {j}), which is textured and leaves its load to such blocks: raise the \
-         distance within which load is shared, or make the texture smaller"
+        "no block in contact is within {distance:.1} blocks of the textured block ({i}, {j}) to carry its load: increase the \
+         distance `within`, or make the texture smaller"
     )]
     NoContactNear {
         /// Column of the block.

@@ -15,7 +15,7 @@ pub enum ArrayError {
     )]
     Read { path: PathBuf, source: io::Error },
     #[error(
-        "cannot tell the format of `{}` from {found}; name a file that ends in {known}",
+        "cannot determine the format of `{}` from {found}; give a file with the extension {known}",
         path.display()
     )]
     Extension {
@@ -26,8 +26,8 @@ pub enum ArrayError {
     #[error("`{}` {problem}", path.display())]
     Contents { path: PathBuf, problem: String },
     #[error(
-        "`{}` has {width} x {height} pixels where at most {limit} pixels are read, and at most {side_limit} along a \
-         side; scale it down",
+        "`{}` has {width} x {height} pixels; at most {limit} pixels are read, and at most {side_limit} along a side: scale it \
+         down",
         path.display()
     )]
     TooManyPixels {
@@ -70,7 +70,7 @@ pub(super) fn broken(path: &Path, format: &str, detail: &str) -> ArrayError {
 pub(super) fn value_error(path: &Path, value: &str, at: [usize; 2], wanted: &str) -> ArrayError {
     let [row, column] = at;
     let problem = format!(
-        "has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; correct this value"
+        "has {value} in row {row}, column {column} (both counted from 0), but must be {wanted}; correct this value"
     );
     contents_error(path, problem)
 }

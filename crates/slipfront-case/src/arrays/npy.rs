@@ -27,7 +27,7 @@ pub fn mask_npy(
     source: &mut (impl BufRead + Seek),
     slab: &Slab,
 ) -> Result<Vec<bool>, ArrayError> {
-    let wanted = "0 or 1, 1 as of a dark pixel,";
+    let wanted = "0 or 1 (1 is a dark pixel)";
     let values = values(path, source, slab, wanted, |value| ![0.0, 1.0].contains(&value))?;
     Ok(values.iter().map(|value| *value == 1.0).collect())
 }
@@ -189,7 +189,7 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
         let shape = shape(&header.shape)?;
         let wanted = data_start as u64 + number.size as u64 * shape[0] as u64 * shape[1] as u64;
         if length != wanted {
-            let detail = format!("it has {length} bytes where its header asks for {wanted}");
+            let detail = format!("it has {length} bytes, but its header requires {wanted}");
             return Err(broken(path, ".npy", &detail));
         }
         let start = SeekFrom::Start(data_start as u64);

@@ -197,7 +197,7 @@ fn npy_that_is_cut_short_or_something_else() {
     let (_folder, path) = file("mu.npy", &whole[..whole.len() - 1]);
     let text = message(read_field(&path, 3, 2));
     assert!(
-        text.contains("it has 175 bytes where its header asks for 176"),
+        text.contains("it has 175 bytes, but its header requires 176"),
         "{text}"
     );
 
@@ -265,7 +265,7 @@ fn values_out_of_bounds_are_named() {
             text.contains(&format!("has {shown} in row 1, column 2")),
             "{text}"
         );
-        assert!(message(read_mask_npy(&path, 3, 2)).contains("0 or 1, 1 as of a dark pixel"));
+        assert!(message(read_mask_npy(&path, 3, 2)).contains("0 or 1 (1 is a dark pixel)"));
     }
 }
 
@@ -303,7 +303,7 @@ fn tables_of_one_column_or_one_row() {
 #[test_case("0.5;1;2\n3;4,5;5\n", "where a number with a decimal"; "two decimal signs")]
 #[test_case(
     "0,1,2\n3,4,nan\n",
-    "has NaN in line 2, in row 1, column 2 (both counted from 0), where a finite number >= 0"
+    "has NaN in line 2, in row 1, column 2 (both counted from 0), but must be a finite number >= 0"
 )]
 #[test_case("0,1,1e999\n3,4,5\n", "has inf in line 1, in row 0, column 2")]
 #[test_case("0,1,2\n3,-4,5\n", "has -4 in line 2, in row 1, column 1")]
@@ -373,7 +373,7 @@ fn paths_that_are_no_files() {
     fs::write(folder.path().join("mu.txt"), "1").unwrap();
     let text = message(read_field(&folder.path().join("mu.txt"), 3, 2));
     assert!(
-        text.contains("the extension `.txt`; name a file that ends in .npy or .csv"),
+        text.contains("the extension `.txt`; give a file with the extension .npy or .csv"),
         "{text}"
     );
     fs::write(folder.path().join("mu"), "1").unwrap();
@@ -491,7 +491,7 @@ fn repair_checksums(png: &mut [u8]) {
 #[test_case(
     100_000,
     100_000,
-    "has 100000 x 100000 pixels where at most 268435456 pixels are read, and at most 1048576 along a side; scale it down"
+    "has 100000 x 100000 pixels; at most 268435456 pixels are read, and at most 1048576 along a side: scale it down"
 )]
 #[test_case(u32::MAX, 1, "has 4294967295 x 1 pixels")]
 #[test_case(1, (1 << 20) + 1, "and at most 1048576 along a side")]
@@ -568,10 +568,7 @@ fn files_longer_than_can_be_meant_are_not_read() {
     // What follows an array is part of none.
     let (_folder, path) = stretched("mu.npy", &field_npy(), 5000);
     let text = message(read_field(&path, 3, 2));
-    let wanted = format!(
-        "it has 5000 bytes where its header asks for {}",
-        field_npy().len()
-    );
+    let wanted = format!("it has 5000 bytes, but its header requires {}", field_npy().len());
     assert!(text.contains(&wanted), "{text}");
 }
 

@@ -228,7 +228,7 @@ impl Budget {
                         count(budget.frames as usize, "snapshot"),
                         count(budget.fields as usize, "field")
                     ),
-                    remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
+                    remedy: "use fewer `output.snapshots` or `output.fields`, or increase `output.stride`",
                 },
                 bytes: [snapshots(cells), snapshots(all_cells), snapshots(all_cells)],
             },
@@ -264,7 +264,7 @@ impl Budget {
                 cause: |_| Cause {
                     key: "texture",
                     what: "the files that it reads".to_owned(),
-                    remedy: "scale them down, or name fewer",
+                    remedy: "scale them down, or use fewer",
                 },
                 bytes: [self.laid, self.inputs, 0.0],
             },
@@ -412,7 +412,7 @@ impl Budget {
         let (whose, remedy) = if is_resumed {
             // The case of a run that resumes can be changed no more.
             let remedy = "give it more, in a queue for example with `--mem`";
-            ("going on with this run", Some(remedy))
+            ("resuming this run", Some(remedy))
         } else {
             ("a run of this case", None)
         };
@@ -446,13 +446,13 @@ impl Budget {
         };
         let together = match self.ranks_on_node {
             1.0 => String::new(),
-            ranks => format!(", {} for the {ranks} ranks of this machine,", byte_size(on_node)),
+            ranks => format!(", {} for the {ranks} ranks of this machine", byte_size(on_node)),
         };
         let (cause, bytes) = self.most(Place::Memory);
         let (needed, most) = (byte_size(of_rank), cause.in_words(bytes));
         let remedy = remedy.unwrap_or(cause.remedy);
         let sentence = format!(
-            "{whose} takes about {needed} of memory{each} ({most}){together} where {bound}: {remedy}{or}"
+            "{whose} needs about {needed} of memory{each} ({most}){together}, but {bound}: {remedy}{or}"
         );
         Err(file.source.error(cause.key, sentence))
     }
@@ -490,8 +490,8 @@ impl Budget {
         };
         let (cause, bytes) = self.most(Place::Files);
         let sentence = format!(
-            "the files of this run take about {} ({}){beside} where {} are free in {}: free some, {}{without}, \
-             or choose another folder",
+            "the files of this run need about {} ({}){beside}, but {} are free in {}: free some, {}{without}, or choose another \
+             folder",
             byte_size(self.disk()),
             cause.in_words(bytes),
             byte_size(free),
@@ -620,7 +620,7 @@ mod tests {
             (
                 vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
                 "output.snapshots",
-                ["for 2674 snapshots of 5 fields", "raise `output.stride`"],
+                ["for 2674 snapshots of 5 fields", "increase `output.stride`"],
             ),
             (
                 vec!["output.series=0.1", "time.duration_star=1e6"],
@@ -632,7 +632,7 @@ mod tests {
             let refused = refusal(&case, &case.budget, 0.0, Some(2e8)).unwrap();
             // The place is the override of the key.
             assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
-            for word in ["where 190.7 MiB are available"].iter().chain(&words) {
+            for word in ["but 190.7 MiB are available"].iter().chain(&words) {
                 assert!(refused.contains(word), "{word}: {refused}");
             }
             assert!(!refused.contains("rank"), "{refused}");
@@ -674,7 +674,7 @@ mod tests {
         let refused = refusal(&cases[0], &budget, 1e6, Some(needed - 3e6)).unwrap();
         for word in [
             " of memory per rank (",
-            &format!(", {} for the 2 ranks of this machine, where ", byte_size(needed)),
+            &format!(", {} for the 2 ranks of this machine, but ", byte_size(needed)),
             ", or share it among more machines",
         ] {
             assert!(refused.contains(word), "{word}: {refused}");

@@ -136,9 +136,9 @@ impl Case {
             return None;
         }
         Some(format!(
-            "`slider.thickness` is {}, more than a third of the {name} of {}: so thick a part is no sheet but a bulk body, in which stress \
-             beside the texture reaches about {} deep, and the texture changes mu_s* by about {} times as much as in this sheet; \
-             write `slider.body = \"bulk\"` and `slider.height = \"{}\"` in its place",
+            "`slider.thickness` is {}, more than a third of the {name} of {}: a part of this thickness is a bulk body, not a \
+             sheet. In a bulk body stress at the texture reaches about {} deep, and the texture changes mu_s* by about {} times \
+             as much as in this sheet; use `slider.body = \"bulk\"` and `slider.height = \"{}\"` instead",
             with_si_prefix(thickness, "m"),
             with_si_prefix(smallest, "m"),
             with_si_prefix(lengths.reach(), "m"),
@@ -157,9 +157,9 @@ impl Case {
             let excess = body.excess(self.scales.young_modulus, 2.0 * feature);
             (2.0 * feature < body.longest_wave && excess > LARGE_EXCESS).then(|| {
                 format!(
-                    "the smallest feature of {} is short for a slider whose longest wave length is {}: at twice the feature the stack is {:.0} % \
-                     stiffer than the body; one array with a `pitch` that fills the slider has its pitch for the longest wave, \
-                     `slider.longest_wave` gives another, and `slider.sheets` takes three sheets",
+                    "the smallest feature of {} is small compared with the longest wavelength of {}: at twice the feature the \
+                     stack is {:.0} % stiffer than the body. Use one array with a `pitch` that fills the slider, which makes the \
+                     pitch the longest wavelength, or set `slider.longest_wave`, or three `slider.sheets`",
                     with_si_prefix(feature, "m"),
                     with_si_prefix(body.longest_wave, "m"),
                     100.0 * excess
@@ -170,8 +170,8 @@ impl Case {
             let excess = body.excess(self.scales.young_modulus, pitch);
             (pitch > body.longest_wave && excess > LARGE_EXCESS).then(|| {
                 format!(
-                    "the longest wave length of the slider is {}, shorter than the pitch of {}: there the stack is {:.0} % stiffer than the \
-                     body; `slider.longest_wave` = \"{1}\" mends that",
+                    "the longest wavelength of the slider is {}, shorter than the pitch of {}: at the pitch the stack is {:.0} \
+                     % stiffer than the body; set `slider.longest_wave` = \"{1}\"",
                     with_si_prefix(body.longest_wave, "m"),
                     with_si_prefix(pitch, "m"),
                     100.0 * excess
@@ -183,9 +183,9 @@ impl Case {
             let (held, by_body) = (body.stack().along(modulus, 0.0), body.along(modulus, 0.0));
             (by_body < weakening && weakening < held).then(|| {
                 format!(
-                    "the stack holds all blocks together {} times as stiffly as the body, and more stiffly than strength falls: once all of \
-                     them slide, nothing runs away in the stack, and mu* falls in proportion to the path of the drive where that of the body \
-                     drops; a longer `slider.longest_wave` is nearer to the body",
+                    "for uniform slip the stack is {} times as stiff as the body, and stiffer than the weakening of friction: \
+                     once all blocks slide, slip does not run away in the stack. mu* then falls in proportion to the drive path, \
+                     but drops at once in the body; a longer `slider.longest_wave` is closer to the body",
                     if by_body > 0.0 { four_digits(held / by_body) } else { "infinitely many".to_owned() }
                 )
             })

@@ -23,14 +23,15 @@ pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {
     let sentence = if blocks < least {
         let kept = deviation_along(blocks).powi(2);
         format!(
-            "{told}, of at least {least}: means over blocks that touch are then hardly alike, and the draw by block is right; leave it out and \
-             multiply `sigma_static_star` and `sigma_kinetic_star` by {}, what means over a block keep of them, or take smaller blocks",
+            "{told}; at least {least} are needed: neighbouring blocks are then almost uncorrelated, and independent \
+             coefficients are adequate; leave it out and multiply `sigma_static_star` and `sigma_kinetic_star` by {}, the spread \
+             of means over a block, or use smaller blocks",
             four_digits(kept)
         )
     } else if blocks > most {
         format!(
-            "{told}, of at most {most}: the coefficients are then the same everywhere; leave it out, set the spreads to 0, and `mu_static` to \
-             the coefficient"
+            "{told}; at most {most} are possible: the coefficients are then uniform; leave it out, set the spreads to 0, and \
+             `mu_static` to the coefficient"
         )
     } else {
         return Ok(());
@@ -109,8 +110,8 @@ pub(super) fn sharing_distance(
     for (number, texture) in file.texture.iter().enumerate() {
         let Some((pitch, _)) = pitch(texture, scales, lattice) else {
             let sentence = format!(
-                "a bulk body bears the load of a textured part near it, and texture {} is no array of several features, whose pitch \
-                 would say how near: give `load.redistribute` = {{ within = \"...\" }}, about twice the width of a feature",
+                "in a bulk body the area near a textured part carries its load, but texture {} is not an array of several \
+                 features with a pitch: give `load.redistribute` = {{ within = \"...\" }}, about twice the width of a feature",
                 number + 1
             );
             return Err(file.source.error(&format!("texture.{number}"), sentence));

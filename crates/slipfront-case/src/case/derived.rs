@@ -39,8 +39,8 @@ impl Derived {
         let n_ranks = ranks.communicator.size();
         if n_ranks > lattice.ny {
             let sentence = format!(
-                "there are more ranks ({n_ranks}) than rows of blocks ({}), of which each takes at least one: take fewer ranks, \
-                 or more blocks along y",
+                "there are more ranks ({n_ranks}) than rows of blocks ({}), but each rank needs at least one row: use fewer \
+                 ranks, or more blocks along y",
                 lattice.ny
             );
             return Err(file.source.error("slider.blocks", sentence));

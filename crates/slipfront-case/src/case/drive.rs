@@ -47,7 +47,8 @@ pub(super) fn attach(
         (None, None) => {}
     }
     if slider.sum_of_drive_springs(lattice) == 0.0 {
-        let sentence = "the file attaches no block, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
+        let sentence =
+            "the file attaches no block, so the slider is not driven: 1 or a dark pixel attaches a block";
         return Err(file.source.error("drive.attach_file", sentence));
     }
     Ok(())
@@ -71,14 +72,14 @@ pub(super) fn drive(
     within(
         file,
         &format!("drive.{}", file.drive.stiffness.key()),
-        "the stiffness of a drive spring over E h",
+        "the stiffness of a drive spring relative to E h",
         k_drive,
         1e-12..=1e6,
     )?;
     let rotation = match file.drive.motion {
         Motion::Translation => None,
         Motion::Rotation if slider.n_blocks(lattice) == 1 => {
-            let sentence = "a single block has no radius to turn about: take more, or \"translation\"";
+            let sentence = "a single block cannot rotate: use more blocks, or \"translation\"";
             return Err(file.source.error("drive.motion", sentence));
         }
         Motion::Rotation => Some(Rotation::about_centroid(lattice, rows, slider, ranks)),
@@ -120,7 +121,7 @@ pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Progra
         let until = segment.until_star.map(|until| (until / dt_star).round());
         if until.is_some_and(|until| until <= before) {
             let sentence = format!(
-                "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change where steps begin",
+                "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change at the start of a step",
                 segment.v_star, dt_star
             );
             return Err(file.source.error("drive.program", sentence));
@@ -150,8 +151,9 @@ pub(super) fn refuse_endless_slip(
         return Ok(());
     }
     let sentence = format!(
-        "{count} of the blocks in contact have no kinetic friction, so that they slide for ever once they do, and a held drive never moves again: \
-         raise `friction.r_star`, lower `friction.sigma_kinetic_star`, load every block, or take `loading` = \"constant\""
+        "{count} of the blocks in contact have no kinetic friction, so once they slide they never stop, and a held drive never \
+         moves again: increase `friction.r_star`, reduce `friction.sigma_kinetic_star`, load every block, or use `loading` = \
+         \"constant\""
     );
     Err(file.source.error("drive.loading", sentence))
 }
@@ -171,8 +173,8 @@ pub(super) fn refuse_large_angles(
         return Ok(());
     }
     let sentence = format!(
-        "the drive turns by up to {angle:.2e} rad, more than {MAX_ANGLE:e}, where its ends would no longer move along tangents: \
-         shorten the run, lower the speed or `load.pressure`, or raise `slider.young_modulus`"
+        "the drive rotates by up to {angle:.2e} rad, more than {MAX_ANGLE:e}, the limit for motion along tangents: shorten the \
+         run, reduce the speed or `load.pressure`, or increase `slider.young_modulus`"
     );
     Err(file.source.error("drive.motion", sentence))
 }

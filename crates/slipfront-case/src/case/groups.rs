@@ -39,8 +39,8 @@ impl Groups {
         let epsilon = scales.epsilon();
         if epsilon > MAX_EPSILON && !file.slider.rigid {
             let sentence = format!(
-                "the load strains the slider by P mu_s l/(E h) = {epsilon:.3}, more than {MAX_EPSILON}: lower `pressure` or raise \
-                 `young_modulus`"
+                "the load strains the slider by P mu_s l/(E h) = {epsilon:.3}, more than {MAX_EPSILON}: reduce `pressure` or \
+                 increase `young_modulus`"
             );
             return Err(file.source.error("load.pressure", sentence));
         }
@@ -102,8 +102,8 @@ fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError>
         .find(|key| file.source.has(key))
         .unwrap_or_default();
     let sentence = format!(
-        "the unit of {what} is {} {unit}, below {MIN_UNIT:e}, where results are lost to rounding: raise `mu_static` or \
-         `pressure`, and look at the units of `block_size`, `young_modulus` and `density`",
+        "the unit of {what} is {} {unit}, below {MIN_UNIT:e}, so results are lost to rounding: increase `mu_static` or \
+         `pressure`, and check the units of `block_size`, `young_modulus` and `density`",
         four_digits(size)
     );
     Err(file.source.error(key, sentence))

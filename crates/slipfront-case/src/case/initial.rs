@@ -82,15 +82,15 @@ fn check(
     let wrong: [(&dyn Fn(usize) -> bool, &str); 3] = [
         (
             &|b| !values[b].is_finite(),
-            "it must be finite; look at the unit of the file",
+            "it must be finite; check the unit of the file",
         ),
         (
             &|b| values[b] != 0.0 && !slider.exists(b),
-            "it does not exist, so that it must have 0; look at `slider.outline`",
+            "it does not exist, so its value must be 0; check `slider.outline`",
         ),
         (
             &|b| values[b] != 0.0 && is_held,
-            "a held drive begins over blocks at rest, so that it must have the velocity 0; take `drive.loading` = \"constant\", or begin \
+            "a held drive starts with blocks at rest, so its velocity must be 0; use `drive.loading` = \"constant\", or start \
              without velocities",
         ),
     ];

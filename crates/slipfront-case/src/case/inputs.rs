@@ -50,7 +50,7 @@ impl Input {
             CaseError::invalid(None, sentence)
         })?;
         if blake3::hash(&contents) != self.hash {
-            let sentence = format!("{path} has changed since the case was made of it: load the case anew");
+            let sentence = format!("{path} has changed since the case was prepared: load the case again");
             return Err(CaseError::invalid(None, sentence));
         }
         Ok(contents.into())
@@ -240,7 +240,7 @@ impl NamedFiles {
             let now = stamp(&found.original).map_err(|error| placed(file, &found.key, error))?;
             if now != found.stamp {
                 let sentence = format!(
-                    "{} was changed while the case was made of it: begin again, and leave this file as it is meanwhile",
+                    "{} was changed while the case was prepared: start again, and do not change this file meanwhile",
                     display_path(&found.original)
                 );
                 return Err(file.source.error(&found.key, sentence));

@@ -137,13 +137,13 @@ impl Case {
     /// The length that decides the mesh error of an answer, in a sentence without a full stop.
     pub fn deciding_length(&self) -> String {
         if self.model.n_blocks() == 1 {
-            return "a single block has none".to_owned();
+            return "a single block has no mesh error".to_owned();
         }
         let of_a_block = self.file.lengths_of_a_block();
         if !of_a_block.is_empty() {
             let keys = of_a_block.iter().map(|length| format!("`{}`", length.key));
             return format!(
-                "the block of {} decides: it takes the place of {}",
+                "the block size, {}, sets the resolution: it replaces {}, which this case does not give",
                 with_si_prefix(self.scales.block_size, "m"),
                 keys.collect::<Vec<_>>().join(", ")
             );
@@ -155,7 +155,7 @@ impl Case {
         });
         least.map_or("no length needs smaller blocks".to_owned(), |(length, enough)| {
             format!(
-                "the {} decides: {} blocks, and {} are enough for 2 % of a reduction",
+                "the {} sets the resolution: {} blocks; {} are enough for 2 % of a reduction",
                 length.name,
                 four_digits(length.blocks),
                 four_digits(enough)
@@ -170,8 +170,8 @@ impl Case {
             .filter_map(|length| {
                 let enough = length.enough.filter(|enough| length.blocks < *enough)?;
                 Some(format!(
-                    "the {} is {} blocks, and {} are enough: what a texture changes about mu_s* still belongs to the size of a block; take \
-                     blocks of at most {}",
+                    "the {} is {} blocks, and {} are enough: the effect of a texture on mu_s* still depends on the block size; \
+                     use blocks of at most {}",
                     length.name,
                     four_digits(length.blocks),
                     four_digits(enough),

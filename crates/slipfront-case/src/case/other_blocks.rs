@@ -108,9 +108,7 @@ impl Case {
         let [nx, ny] = self.file.slider.blocks;
         let refuse = |sentence: String| self.file.source.error("slider.blocks", sentence);
         if [nx, ny] == [1, 1] {
-            return Err(refuse(
-                "a single block has no mesh that could be finer or coarser".to_owned(),
-            ));
+            return Err(refuse("a single block has no finer or coarser mesh".to_owned()));
         }
         let mut other = [nx, ny];
         for blocks in other.iter_mut().filter(|blocks| **blocks > 1) {
@@ -120,13 +118,13 @@ impl Case {
                 let nearest = |blocks: u32| (f64::from(blocks) * finer).round().max(2.0) * times;
                 let [near_x, near_y] = [nx, ny].map(|blocks| if blocks > 1 { nearest(blocks) } else { 1.0 });
                 return Err(refuse(format!(
-                    "`slider.blocks` = [{nx}, {ny}] cannot be divided into blocks of {times} times the size: take numbers that are multiples \
-                     of {times}, such as [{near_x}, {near_y}]"
+                    "`slider.blocks` = [{nx}, {ny}] cannot be divided into blocks of {times} times the size: use multiples of \
+                     {times}, such as [{near_x}, {near_y}]"
                 )));
             }
             if found > MAX_BLOCKS as f64 {
                 return Err(refuse(format!(
-                    "`slider.blocks` = [{nx}, {ny}] becomes {found} blocks along an axis, more than {MAX_BLOCKS}: take fewer levels"
+                    "`slider.blocks` = [{nx}, {ny}] becomes {found} blocks along an axis, more than {MAX_BLOCKS}: use fewer levels"
                 )));
             }
             *blocks = found as u32;
@@ -140,8 +138,8 @@ impl Case {
         if file.friction.along != FrictionAlong::Plane {
             return Err(file.source.error(
                 "friction.along",
-                "an upright sheet touches its substrate with one row of blocks, which its texture leaves: on others it would be \
-                 another row",
+                "an upright sheet is in contact with its substrate along one row of blocks, given by its texture: with other \
+                 blocks this would be another row",
             ));
         }
         let fields = [
@@ -162,7 +160,7 @@ impl Case {
         if let Some((key, _)) = fields.find(|(_, field)| field.is_some()) {
             return Err(file.source.error(
                 &key,
-                format!("`{key}` has a value for each block of this case, and none for others: leave it out, or give a slope or a length in its place"),
+                format!("`{key}` has one value per block of this case, so it does not apply to other blocks: leave it out, or give a slope or a length instead"),
             ));
         }
         let is_line = !matches!(file.drive.attached, Attached::At(AttachedEdge::All));
@@ -178,7 +176,7 @@ impl Case {
             };
             return Err(file.source.error(
                 key,
-                "a drive at some of the blocks is held on others by its stiffness as a whole: give `drive.total_stiffness`".to_owned(),
+                "a drive at some of the blocks needs a total stiffness on other meshes: give `drive.total_stiffness`".to_owned(),
             ));
         }
         Ok(())

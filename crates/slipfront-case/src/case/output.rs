@@ -66,7 +66,7 @@ impl Output {
                 return Ok(steps as u64);
             }
             let sentence =
-                format!("a spacing of {time:?} in t* is less than one step of {dt_star}: raise it");
+                format!("a spacing of {time:?} in t* is less than one step of {dt_star}: increase it");
             Err(file.source.error(key, sentence))
         };
         let snapshots = match &file.output.snapshots {
@@ -108,16 +108,16 @@ impl Output {
         let (found, field) = (self.max_snapshots(last_step), mapped_field(file));
         let sentence = match found {
             _ if !self.movie => return Ok(()),
-            0 => "a movie shows the snapshots of a run, and this one keeps none: take `output.snapshots`, such as { every = 5.0 }, or \
-                  leave `movie` out"
+            0 => "a movie shows the snapshots of a run, but this run has none: add `output.snapshots`, such as { every = 5.0 }, \
+                  or leave `movie` out"
                 .to_owned(),
             _ if !self.fields.contains(&field) => format!(
-                "a movie shows {0}, which this run does not keep: add \"{0}\" to `output.fields`, or leave `movie` out and draw \
-                 another field with `slipfront movie --field`",
+                "a movie shows {0}, which this run does not write: add \"{0}\" to `output.fields`, or leave `movie` out and \
+                 draw another field with `slipfront movie --field`",
                 field_info(field).name
             ),
             _ if found > MAX_PICTURES as u64 => format!(
-                "a movie has at most {MAX_PICTURES} pictures, and this run keeps up to {found} snapshots: raise `every` of \
+                "a movie has at most {MAX_PICTURES} pictures, but this run has up to {found} snapshots: increase `every` of \
                  `output.snapshots`, or list fewer"
             ),
             _ => return Ok(()),

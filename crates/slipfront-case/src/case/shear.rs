@@ -56,8 +56,8 @@ pub(super) fn refuse_runaway(file: &CaseFile, model: &Model) -> Result<(), CaseE
     }
     let key = file.load.shear_key().unwrap_or_default();
     let sentence = format!(
-        "the shear load is {} of P mu_s on the mean, and the blocks hold {} at rest: the slider would run away at t = 0; lower it, or raise \
-         `load.pressure` or `friction.mu_static`",
+        "the mean shear load is {} of P mu_s, but static friction holds only {}: the slider would run away at t = 0; reduce the \
+         shear load, or increase `load.pressure` or `friction.mu_static`",
         four_digits(borne),
         four_digits(held)
     );
@@ -109,7 +109,7 @@ impl AtOnce {
         };
         (n > 0).then(|| {
             format!(
-                "{} {slip} at t = 0, since the shear load is above {their} static friction; the first is ({i}, {j})",
+                "{} {slip} at t = 0, because the shear load exceeds {their} static friction; the first is ({i}, {j})",
                 count(n, "block")
             )
         })

@@ -53,8 +53,8 @@ impl Case {
             return None;
         }
         Some(format!(
-            "periods of stick-slip are too long by about {} % in steps of dt* = {}, since rate and state is of first order in the step; \
-             `time.step = {}` makes them good to {} %",
+            "periods of stick-slip are too long by about {} % for dt* = {}, because the scheme for rate and state is \
+             first-order accurate; `time.step = {}` reduces the error to {} %",
             two_digits(100.0 * error),
             four_digits(dt_star),
             two_digits(dt_star * GOOD / (SAFETY * error)),

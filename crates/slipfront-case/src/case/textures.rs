@@ -211,7 +211,7 @@ pub(super) fn arrays(
                     "array"
                 };
                 let sentence = format!(
-                    "the pattern has {total} {lines}, and at most {MAX_COUNT} are laid over the blocks: raise the pitch, or lower the \
+                    "the pattern has {total} {lines}; at most {MAX_COUNT} are possible: increase the pitch, or reduce the \
                      number of copies"
                 );
                 return Err((format!("{before}{key}"), sentence));
@@ -236,7 +236,7 @@ fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], Stri
     let size = array.spacing.map(|spacing| (spacing.round() as usize).max(1));
     if size[0] > slider[0] || size[1] > slider[1] {
         return Err(format!(
-            "{} x {} blocks in every place of the pattern are more than the slider's {} x {}: lower the pitch",
+            "{} x {} blocks in every place of the pattern are more than the {} x {} of the slider: reduce the pitch",
             size[0], size[1], slider[0], slider[1]
         ));
     }
@@ -304,8 +304,8 @@ fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lat
         return Ok(());
     }
     Err(format!(
-        "the texture reaches {reach:.1e} blocks far, more than {REACH} times the slider's {slider} blocks: look at its \
-         units, and at `slider.block_size`"
+        "the texture extends over {reach:.1e} blocks, more than {REACH} times the {slider} blocks of the slider: check its \
+         units, and `slider.block_size`"
     ))
 }
 

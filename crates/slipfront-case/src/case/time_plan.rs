@@ -64,7 +64,7 @@ impl TimePlan {
         };
         if dt_star >= limit {
             let sentence = format!(
-                "the step dt* = {} is not stable: it must be less than {}; \"auto\" takes {}",
+                "the step dt* = {} is not stable: it must be less than {}; \"auto\" is {}",
                 four_digits(dt_star),
                 four_digits(limit),
                 four_digits(auto)
@@ -80,8 +80,8 @@ impl TimePlan {
         let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
         if steps > MAX_STEPS {
             let sentence = format!(
-                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
-                 shorten it or raise the step",
+                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: shorten the \
+                 run or increase the step",
                 four_digits(dt_star)
             );
             return Err(file.source.error(key, sentence));

@@ -89,13 +89,14 @@ impl Ground<'_> {
             Bearing::Depth(_) => None,
         };
         let contact_height = contact_height(&mut standing, map).ok_or_else(|| {
-            let sentence = "no block of the slider lies in a place of its pattern: change its `pitch` or `array`, or the outline";
+            let sentence =
+                "its pattern covers no block of the slider: change its `pitch` or `array`, or the outline";
             file.source.error(&key, sentence)
         })?;
         let touching = standing.iter().filter(|height| **height >= contact_height);
         let mut notes = read.notes;
         if touching.take(2).count() == 1 && standing.len() > 1 {
-            notes.push("only its highest block touches: all load rests on it".to_owned());
+            notes.push("only its highest block is in contact and carries the whole load".to_owned());
         }
         // Of a map that covers the slider, a rank needs its own rows.
         let slab = if self.size == [inputs.slab.nx, inputs.slab.ny] {

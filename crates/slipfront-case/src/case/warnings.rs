@@ -70,13 +70,13 @@ impl Case {
             // But for rounding.
             if (against_front / v_star - 1.0).abs() < 1e-9 {
                 return format!(
-                    "V* = {} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it",
+                    "V* = {} is above {LARGE_V_STAR}: the slider slips as a whole before a front can cross it",
                     four_digits(v_star)
                 );
             }
             format!(
-                "V* = {} loads this slider as fast as {} loads equal blocks on the paper's springs, which is above \
-                 {LARGE_V_STAR}: loading is faster than a slip front",
+                "V* = {} loads this slider as fast as V* = {} loads equal blocks on the paper's springs, above {LARGE_V_STAR}: \
+                 loading is faster than a slip front",
                 four_digits(v_star),
                 four_digits(against_front)
             )
@@ -86,21 +86,21 @@ impl Case {
         });
         warn(dt_star > 0.5, &|| {
             format!(
-                "dt* = {} is stable but coarse: with 0.1, mu_s* is good to 1e-3",
+                "dt* = {} is stable but coarse: with 0.1, mu_s* is accurate to 1e-3",
                 four_digits(dt_star)
             )
         });
         let increment = self.rise_per_step();
         warn(is_held && increment > LARGE_INCREMENT, &|| {
             format!(
-                "mu* rises by up to {} in a step in which the held drive moves, and mu_s* is known no better: lower `drive.v_star` or `time.step`",
+                "mu* rises by up to {} in a step of the held drive, which is the resolution of mu_s*: reduce `drive.v_star` or `time.step`",
                 four_digits(increment)
             )
         });
         let n_blocks = self.model.n_blocks();
         warn(n_blocks < FEW_BLOCKS && !is_rigid, &|| {
             format!(
-                "{} few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)",
+                "{} few: edge effects are large below {FEW_BLOCKS} (Fig. 5 of the paper)",
                 are(n_blocks, "block")
             )
         });
@@ -126,8 +126,8 @@ impl Case {
         if drag > limit {
             // The drag is in proportion to the speed.
             warnings.push(format!(
-                "the drag of the damping at V* = {} adds {} to the kinetic friction of {}, and mu_k* contains it: it is \
-                 less than the scatter from surface to surface up to V* = {}",
+                "damping drag at V* = {} adds {} to the kinetic friction of {}, and is included in mu_k*; up to V* = {} it is \
+                 less than the scatter between surfaces",
                 four_digits(v_star),
                 four_digits(drag),
                 four_digits(kinetic),
@@ -136,8 +136,9 @@ impl Case {
         }
         if kinetic < held && !self.can_have_transition() {
             warnings.push(format!(
-                "no transition is possible: steady sliding at V* = {} takes mu* = {}, of which {} is drag of the damping, and the blocks \
-                 hold {} at rest; what the run has as a first peak is no static friction: drive more slowly or damp less",
+                "no transition is possible: steady sliding at V* = {} needs mu* = {}, including a damping drag of {}, but \
+                 static friction holds only {}. A first peak of mu* is then not static friction; use a lower speed or less \
+                 damping",
                 four_digits(v_star),
                 four_digits(level),
                 four_digits(drag),
@@ -153,7 +154,7 @@ impl Case {
         for texture in &report.clipped {
             if !report.empty.contains(texture) {
                 warnings.push(format!(
-                    "texture {} reaches over a free edge and is clipped there",
+                    "texture {} extends beyond a free edge and is clipped there",
                     texture + 1
                 ));
             }
@@ -170,7 +171,7 @@ impl Case {
                 && percent < SMALL_COVERAGE
             {
                 warnings.push(format!(
-                    "`coverage` = {percent} of texture {number} is {percent} percent of the area; {} percent are `coverage` = {}",
+                    "`coverage` = {percent} of texture {number} means {percent} percent of the area; for {} percent write `coverage` = {}",
                     four_digits(100.0 * percent),
                     four_digits(100.0 * percent)
                 ));
@@ -180,7 +181,7 @@ impl Case {
                 && is_array(Path::new(file))
             {
                 warnings.push(format!(
-                    "`threshold` = {threshold} of texture {number} is for images: an array says by 0 or 1 what is textured"
+                    "`threshold` = {threshold} of texture {number} applies to images only: an array has 0 or 1 for each block"
                 ));
             }
         }
@@ -202,8 +203,10 @@ impl Case {
             let is_repeated = |texture: &Texture| texture.pattern.arrays().any(|(_, array)| array.is_array());
             let is_alone = textures.len() == 1 && !textures.iter().any(is_repeated);
             let why = match (textures.iter().all(is_map), is_alone) {
-                (true, true) => "blocks of equal height touch together",
-                (true, false) => "blocks of equal height touch together, or maps are clipped or overlap",
+                (true, true) => "blocks of equal height are in contact together",
+                (true, false) => {
+                    "blocks of equal height are in contact together, or maps are clipped or overlap"
+                }
                 (false, _) => "it is clipped, overlaps, or is too fine for the blocks",
             };
             warnings.push(format!(
@@ -243,7 +246,7 @@ impl Case {
                 ),
             };
             return Some(format!(
-                "{file} is {} and laid over {} of the slider, {} times its size: with {own} it would have its own",
+                "{file} is {} and is stretched over {} of the slider, {} times its size; with {own} it keeps its size",
                 in_metres(*size),
                 in_metres([length(0), length(1)]),
                 four_digits(scale)
@@ -275,14 +278,14 @@ impl Case {
             let (name, rest) = (["x", "y"][axis], sizes[axis] as f64 - array.spacing[axis] * array.count[axis] as f64);
             if rest.abs() > LARGE_SEAM {
                 return Some(format!(
-                    "the pattern of texture {number} leaves {rest:.2} blocks free at the periodic edges that bound {name}: there it does \
-                     not go on as it does within"
+                    "the pattern of texture {number} leaves {rest:.2} blocks free at the periodic edges that bound {name}, so \
+                     it is not periodic there"
                 ));
             }
             let is_odd = axis == 1 && array.staggered && array.count[1] % 2 == 1;
             is_odd.then(|| {
                 format!(
-                    "the pattern of texture {number} has an odd number of rows, {}: beyond the periodic edges it goes on without a shift",
+                    "the pattern of texture {number} has an odd number of rows, {}, so rows at the periodic edges are not shifted",
                     array.count[1]
                 )
             })
@@ -296,8 +299,9 @@ impl Case {
         let is_random = self.groups.sigma_static_star > 0.0 || self.groups.sigma_kinetic_star > 0.0;
         (is_random && share > LARGE_COMMON_SHARE).then(|| {
             format!(
-                "random coefficients are alike over much of the slider: the mean of a surface scatters from seed to seed by {} of the \
-                 spread, and what is starred is relative to `mu_static`; take several seeds, or a shorter `friction.correlation_length`",
+                "random coefficients are correlated over much of the slider: the mean of a surface varies between seeds by {} \
+                 of the spread, and starred quantities are relative to `mu_static`; use several seeds, or a shorter \
+                 `friction.correlation_length`",
                 four_digits(share)
             )
         })
@@ -321,8 +325,8 @@ impl Case {
             means[0] = surface.mean_static_coefficient();
             if differs(means[0], mu_static) {
                 warnings.push(format!(
-                    "the given static coefficients have a mean of {:.4}, mu_static is {mu_static}: what is starred is relative to \
-                     mu_static",
+                    "the given static coefficients have a mean of {:.4}, but mu_static is {mu_static}: starred quantities are \
+                     relative to mu_static",
                     means[0]
                 ));
             }
@@ -332,8 +336,8 @@ impl Case {
             means[1] = surface.mean_kinetic_coefficient();
             if differs(means[1], expected) {
                 warnings.push(format!(
-                    "the given kinetic coefficients have a mean of {:.4}, R* mu_static is {expected:.4}: the run takes the given \
-                     ones, and R* = {} says nothing of it",
+                    "the given kinetic coefficients have a mean of {:.4}, but R* mu_static is {expected:.4}: the run uses the \
+                     given coefficients, and R* = {} has no effect",
                     means[1],
                     four_digits(r_star)
                 ));
@@ -344,7 +348,7 @@ impl Case {
         let mean = surface.mean_pressure();
         if self.file.load.pressure_field.is_some() && differs(mean, 1.0) {
             warnings.push(format!(
-                "the given pressures have a mean of {mean:.4} times `pressure`: what is starred is relative to `pressure`"
+                "the given pressures have a mean of {mean:.4} times `pressure`: starred quantities are relative to `pressure`"
             ));
         }
         warnings.extend(friction_warning(&self.model));
@@ -354,8 +358,8 @@ impl Case {
         let [mean_static, mean_kinetic] = means;
         if mean_kinetic >= mean_static {
             warnings.push(format!(
-                "the mean kinetic coefficient, {mean_kinetic:.4}, is not below the static one, {mean_static:.4}: blocks do not \
-                 lose friction when they slip, and a first peak of mu* is no transition, whatever `transition` says"
+                "the mean kinetic coefficient, {mean_kinetic:.4}, is not below the static one, {mean_static:.4}: friction does \
+                 not drop when blocks slip, so a first peak of mu* is not a transition, even if `transition` is true"
             ));
         }
         warnings
@@ -365,7 +369,7 @@ impl Case {
 /// Reason for which a texture covers no block, with the keys to check.
 fn why_empty(texture: &Texture) -> &'static str {
     if texture.pattern.invert {
-        "the inside of its shapes, which `invert` leaves free, covers all of them"
+        "the inside of its shapes, which `invert` keeps in contact, covers all blocks"
     } else {
         texture.shape.why_empty()
     }

@@ -107,7 +107,7 @@ impl<K: quantity::Kind> Checked for Quantity<K> {
         };
         (!is_within(*bounds, self.si())).then(|| {
             let range = in_words(*bounds);
-            format!("\"{self}\": it must be {range} {unit}; look at number and unit")
+            format!("\"{self}\": it must be {range} {unit}; check number and unit")
         })
     }
 }
@@ -145,7 +145,7 @@ impl Checked for String {
         if self.contains(char::is_control) {
             // The backslashes of C:\new\table.csv and what follows them are such a sign.
             return Some(format!(
-                "{self:?}: it has signs that are not printed; a path of Windows has single quotes, such as 'C:\\new\\table.csv', or /"
+                "{self:?}: it contains control characters; write a Windows path in single quotes, such as 'C:\\new\\table.csv', or /"
             ));
         }
         let ending = Path::new(self).extension().and_then(|ending| ending.to_str());

@@ -15,20 +15,20 @@ use slipfront_base::text::truncated;
 const GRAMMAR: [(&str, &str); 7] = [
     (
         "string values must be quoted",
-        "a text must stand in quotes, such as \"100 kPa\"",
+        "a string must be in quotes, such as \"100 kPa\"",
     ),
     (
         "invalid boolean",
-        "a word must stand in quotes, unless it is true or false",
+        "a word must be in quotes, unless it is true or false",
     ),
     ("invalid mantissa", "a number begins with a digit, such as 0.03"),
     (
         "invalid basic string, expected `\"`",
-        "the quotes of a text are not closed",
+        "the quotes of a string are not closed",
     ),
     (
         "unexpected key or value",
-        "one value stands behind `=`; a list stands in [ ] and a text in quotes",
+        "there must be one value after `=`; write a list in [ ] and a string in quotes",
     ),
     ("key with no value", "a key and its value are joined by `=`"),
     ("invalid key-value pair", "a line is `key = value` or `[table]`"),
@@ -73,7 +73,7 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
     let mut looked_at = in_text.chars().chain(marked.chars()).chain(after.chars().next());
     if let Some(quote) = looked_at.find(|c| PRINTED_QUOTES.contains(c)) {
         return Some(format!(
-            "{quote} is a quotation mark of printed text: a text stands in straight ones, such as \"100 kPa\""
+            "{quote} is a typographic quotation mark: write a string in straight ones, such as \"100 kPa\""
         ));
     }
     if [
@@ -85,7 +85,7 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
     .any(|start| message.starts_with(start))
     {
         return Some(
-            "behind a backslash stands the code of a sign: a path of Windows has single quotes, such as 'C:\\data\\map.csv', or /"
+            "a backslash begins an escape sequence: write a Windows path in single quotes, such as 'C:\\data\\map.csv', or /"
                 .to_owned(),
         );
     }
@@ -105,7 +105,7 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
     (!decimals.is_empty() && whole.parse::<i64>().is_ok()).then(|| {
         let (point, list) = (format!("{whole}.{decimals}"), format!("[{whole}, {decimals}]"));
         format!(
-            "one value stands behind `=`; the decimal sign is a point, {}, and a list stands in brackets, {}",
+            "there must be one value after `=`; the decimal sign is a point, {}, and a list is in brackets, {}",
             truncated(&point),
             truncated(&list)
         )

@@ -29,13 +29,13 @@ key_rows! {
                     .or("speed").or("program").paper("V* = sqrt(E rho) V h/(P mu_s l), Eq. 11 with h = l")
                     .title("drive speed", "V*", "")
                     .further_bounds("; V* not below 1e-9"),
-                /// Speed of the drive with its unit, in place of `v_star`.
+                /// Speed of the drive with its unit, instead of `v_star`.
                 speed: Speed => Speed = key("", quantity("m/s", within(1e-18, 1e6))).or("v_star")
                     .or("program").paper("V")
                     .title("drive speed", "V", "m/s"),
-                /// Speeds that follow one another, in place of `v_star`: each until its t*, rounded to a
-                /// step, the last without end; one of them at least is above 0. What counts as V* is the
-                /// largest, whatever its sign.
+                /// Sequence of speeds, instead of `v_star`: each until its t*, rounded to a step, the last to
+                /// the end of the run. At least one speed must be positive. The largest absolute value is
+                /// used as V*.
                 program: Vec<SpeedSegment> => Program = key("",
                     KeyKind::Table("[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]", SpeedSegment::KEYS))
                     .or("v_star").or("speed").further_bounds(", rising"),
@@ -44,8 +44,8 @@ key_rows! {
         /// Direction of the drive, degrees from x towards y.
         pub direction: f64 = key("0", DEGREES).paper("theta")
             .title("direction of the drive", "\u{3b8}", "\u{b0}"),
-        /// Motion of the drive: it pulls along the direction, or turns counterclockwise about the middle of
-        /// all blocks, with the speed at the largest radius.
+        /// Motion of the drive: along the direction, or counterclockwise rotation about the centroid of all
+        /// blocks, with the speed at the largest radius.
         #[serde(deserialize_with = "word")]
         pub motion: Motion = key("\"translation\"", KeyKind::Words(names_of::<Motion>)),
         /// Loading of the slider: the drive moves all the time, or stands while a block in contact slides.
@@ -55,7 +55,7 @@ key_rows! {
         [
             /// Blocks that have a drive spring: `attach` or `attach_file`.
             pub attached: Attached or "the drive needs `attach` or `attach_file`" {
-                /// Blocks that have a drive spring: all, or those of an edge, which must be a free one.
+                /// Blocks that have a drive spring: all, or the blocks of a free edge.
                 #[serde(default, deserialize_with = "some_word")]
                 attach: AttachedEdge => At = key("\"all\"", KeyKind::Words(names_of::<AttachedEdge>))
                     .or("attach_file"),
@@ -69,27 +69,27 @@ key_rows! {
             /// Stiffness of the drive springs: `stiffness`, `stiffness_star`, `stiffness_per_area`,
             /// `total_stiffness` or `total_stiffness_star`.
             pub stiffness: DriveStiffness or "the drive needs a `stiffness`" {
-                /// Stiffness of each drive spring; `"auto"` is k_2 = 0.375 E h, with the thickness h. A
-                /// graded slider multiplies it by the modulus of each block.
+                /// Stiffness of each drive spring; `"auto"` is k_2 = 0.375 E h, with the thickness h. In a
+                /// graded slider it is multiplied by the relative modulus of each block.
                 stiffness: AutoOrStiffness => Each = key("\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m")).paper("k_s")
                     .or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
                     .or("total_stiffness_star"),
-                /// Stiffness of each drive spring over E h, with the thickness h.
+                /// Stiffness of each drive spring, relative to E h with the thickness h.
                 stiffness_star: f64 => EachStar = key("", DRIVE_STIFFNESS).star(StarUnit::SpringOfBlock)
                     .or("stiffness").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star")
                     .title("drive stiffness", "k\u{209b}*", ""),
-                /// Stiffness of the mount, which the drive springs are, per area: that of a slider on any
-                /// blocks. Each spring has K l^2.
+                /// Stiffness K per area of the mount, which the drive springs represent, independent of the
+                /// block size: each spring has K l^2.
                 stiffness_per_area: StiffnessPerArea => PerArea = key("", STIFFNESS_PER_AREA)
                     .or("stiffness").or("stiffness_star").or("total_stiffness").or("total_stiffness_star")
                     .title("stiffness of the mount", "K", "N/m\u{b3}"),
-                /// Stiffness of all drive springs together, shared in proportion to the modulus of each
-                /// block: equally by equal blocks.
+                /// Total stiffness of all drive springs, distributed in proportion to the modulus of each
+                /// block.
                 total_stiffness: Stiffness => Total = key("", STIFFNESS)
                     .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness_star")
                     .title("total drive stiffness", "K\u{209b}", "N/m"),
-                /// Stiffness of all drive springs together over E h, with the thickness h. A file has one of
-                /// the five, or none.
+                /// Total stiffness of all drive springs, relative to E h with the thickness h. A file has at
+                /// most one of these five keys.
                 total_stiffness_star: f64 => TotalStar = key("", DRIVE_STIFFNESS).star(StarUnit::Stiffness)
                     .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
                     .title("total drive stiffness", "K\u{209b}*", ""),
@@ -140,17 +140,19 @@ impl Drive {
         check.value("direction", &self.direction)?;
         if self.motion == Motion::Rotation && self.direction != 0.0 {
             return check.refuse("direction", |key| {
-                format!("`{key}` has no meaning for `motion` = \"rotation\", which pulls every block another way: leave it out")
+                format!("`{key}` does not apply to `motion` = \"rotation\", which drives every block in its own direction: leave it out")
             });
         }
         if self.motion == Motion::Rotation && slider.edges.contains(&Edges::Periodic) {
             return check.refuse("motion", |key| {
-                format!("`{key}` = \"rotation\" needs an axis and ends all around: it has no meaning with periodic edges")
+                format!(
+                    "`{key}` = \"rotation\" needs an axis and free edges: it does not apply to periodic edges"
+                )
             });
         }
         if self.edge().is_some() && slider.outline != Outline::Rectangle {
             return check.refuse("attach", |key| {
-                format!("`{key}` names an edge of the lattice, which a slider with an outline does not have: say by `attach_file` which blocks are driven")
+                format!("`{key}` gives an edge of the lattice, but a slider with an outline has none: give the driven blocks with `attach_file`")
             });
         }
         if let Some(edge) = self.edge()
@@ -158,7 +160,7 @@ impl Drive {
         {
             let axis = ["x", "y"][edge.axis()];
             return check.refuse("attach", |key| {
-                format!("`{key}` names an edge that is none: the slider is periodic along {axis}; take free edges, or `attach_file`")
+                format!("`{key}` gives an edge, but the slider is periodic along {axis}; use free edges, or `attach_file`")
             });
         }
         if slider.body == Body::Bulk {
@@ -180,12 +182,12 @@ impl Drive {
             (
                 self.stiffness.key(),
                 !is_auto,
-                "its stiffness follows from `slider.height`, or stands in the last of `slider.sheets`",
+                "its stiffness follows from `slider.height`, or is in the last of `slider.sheets`",
             ),
             (
                 "motion",
                 self.motion == Motion::Rotation,
-                "a body that turns is not derived",
+                "its equations for rotation are not derived",
             ),
             (
                 "attach_file",
@@ -197,7 +199,7 @@ impl Drive {
         let given = keys.iter().find(|(_, is_given, _)| *is_given);
         given.map_or(Ok(()), |(key, _, why)| {
             check.refuse(key, |key| {
-                format!("`{key}` has no meaning with `slider.body` = \"bulk\": {why}; leave it out, or take \"sheet\"")
+                format!("`{key}` does not apply to `slider.body` = \"bulk\": {why}; leave it out, or use \"sheet\"")
             })
         })
     }
@@ -219,7 +221,7 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     }
     if let Some(number) = others.iter().position(|segment| segment.until_star.is_none()) {
         return refuse(format!(
-            "lacks `until_star` of its speed {}, which others follow: only the last has no end",
+            "lacks `until_star` of its speed {}: only the last speed has no end",
             number + 1
         ));
     }
@@ -241,8 +243,8 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     }
     if segments.iter().all(|segment| segment.v_star <= 0.0) {
         return refuse(
-            "never moves forwards, so that the slider has no static friction along the drive: give it a speed above 0; \
-             `direction` turns the drive round"
+            "never moves forwards, so the slider has no static friction along the drive: give a positive speed; `direction` \
+             reverses the drive"
                 .to_owned(),
         );
     }

@@ -21,7 +21,7 @@ pub enum CaseError {
     Misspelt { path: PathBuf, near: PathBuf },
     #[error("{} is a folder: name the file in it", path.display())]
     Folder { path: PathBuf },
-    #[error("{} is larger than {limit_mib} MiB, so it is no case or study file", path.display())]
+    #[error("{} is larger than {limit_mib} MiB, so it is not a case or study file", path.display())]
     TooLarge { path: PathBuf, limit_mib: u64 },
     #[error("{} is UTF-16 text, not UTF-8: save it again with the encoding UTF-8", path.display())]
     Utf16 { path: PathBuf },
@@ -31,7 +31,7 @@ pub enum CaseError {
     Unwritable(#[from] toml::ser::Error),
     #[error(transparent)]
     Invalid(Box<Invalid>),
-    #[error("stopped while the case was made; nothing was written")]
+    #[error("stopped while the case was prepared; nothing was written")]
     Stopped,
     /// An error of another rank, in the words of that rank.
     #[error("{0}")]

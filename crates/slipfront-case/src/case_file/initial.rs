@@ -16,8 +16,8 @@ key_rows! {
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Initial {
-        /// The state in which another run has ended, `state.npy` of its folder, in place of the files below:
-        /// that run has `output.final_state`, and as many blocks. The drive goes on from where it stood.
+        /// Final state of another run, `state.npy` in its folder, instead of the files below. That run needs
+        /// `output.final_state` and the same number of blocks. The drive continues from its position.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub state_file: Option<String> = key("", KeyKind::File(&["npy"])),
         /// Displacements along x at t = 0, block by block.
@@ -26,7 +26,7 @@ key_rows! {
         /// Displacements along y at t = 0, block by block.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_y: Option<String> = key("", ARRAY).without("0"),
-        /// Displacement that a value of 1 in these files means.
+        /// Displacement of a value of 1 in these files.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_unit: Option<Length> = key("", quantity("m", above(0.0, 1e9)))
             .without("that of u\\*, P mu_s l^2/(E h)"),
@@ -36,7 +36,7 @@ key_rows! {
         /// Velocities along y half a step before t = 0, block by block.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub velocity_y: Option<String> = key("", ARRAY).without("0"),
-        /// Velocity that a value of 1 in these files means.
+        /// Velocity of a value of 1 in these files.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub velocity_unit: Option<Speed> = key("", quantity("m/s", above(0.0, 1e9)))
             .without("that of V\\*, P mu_s l/(h sqrt(E rho))"),
@@ -91,21 +91,21 @@ impl Initial {
         let state = self.state_file.as_ref().map(|_| "state_file");
         if let Some(key) = state.and(displacements.or(velocities)) {
             return check.refuse(key, |key| {
-                format!("`{key}` stands beside `initial.state_file`, which has displacements and velocities: leave one of them out")
+                format!("`{key}` cannot be combined with `initial.state_file`, which has displacements and velocities: leave one of them out")
             });
         }
         if body == Body::Bulk
             && let Some(key) = displacements.or(velocities).or(state)
         {
             return check.refuse(key, |key| {
-                format!("`{key}` does not go with `slider.body` = \"bulk\": the sheets above the contact would be left behind; leave it out, or take \"sheet\"")
+                format!("`{key}` cannot be combined with `slider.body` = \"bulk\": the sheets above the contact would not be displaced; leave it out, or use \"sheet\"")
             });
         }
         if contact == ContactModel::Springs
             && let Some(key) = displacements.or(state)
         {
             return check.refuse(key, |key| {
-                format!("`{key}` does not go with `friction.contact` = \"springs\": where the springs of displaced blocks are attached is not known; leave it out, or take \"rigid\"")
+                format!("`{key}` cannot be combined with `friction.contact` = \"springs\": the attachment points of the springs of displaced blocks are unknown; leave it out, or use \"rigid\"")
             });
         }
         Ok(())

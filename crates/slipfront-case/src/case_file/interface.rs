@@ -21,7 +21,7 @@ impl CaseFile {
             if has_foundation {
                 return check("load").refuse(foundation, |key| {
                     format!(
-                        "`{key}` belongs to an upright sheet, whose blocks stand on it: set `friction.along` = \"x\", or leave it out"
+                        "`{key}` belongs to an upright sheet: set `friction.along` = \"x\", or leave it out"
                     )
                 });
             }
@@ -79,8 +79,8 @@ impl CaseFile {
         if along.abs() < 0.0174 {
             return check("drive").refuse("direction", |key| {
                 format!(
-                    "`{key}` is {}: a drive across an upright sheet (`friction.along` = \"x\") loads no friction, which acts along x; take a \
-                     direction at least 1 degree away from y",
+                    "`{key}` is {}: a drive across an upright sheet (`friction.along` = \"x\") does not load friction, which \
+                     acts along x; use a direction at least 1 degree away from y",
                     self.drive.direction
                 )
             });
@@ -89,7 +89,7 @@ impl CaseFile {
         wrong.map_or(Ok(()), |(table, key, _, why)| {
             check(table).refuse(key, |path| {
                 format!(
-                    "`{path}` does not go with `friction.along` = \"x\", an upright sheet: {why}; leave it out, or take \"plane\""
+                    "`{path}` cannot be combined with `friction.along` = \"x\", an upright sheet: {why}; leave it out, or use \"plane\""
                 )
             })
         })

@@ -116,7 +116,7 @@ pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
 /// The sentence about a key or table that the file as a whole does not have.
 pub fn unknown_table(key: &str) -> String {
     if let Some(home) = home_of(key) {
-        return format!("`{key}` stands outside its table: it belongs in {home}");
+        return format!("`{key}` is outside its table: it belongs in {home}");
     }
     if STUDY_TABLES.contains(&key) {
         return format!(

@@ -19,7 +19,7 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Load {
-        /// Normal load over the whole area, textured or not.
+        /// Normal load divided by the whole area, textured or not.
         pub pressure: Pressure = key("\"100 kPa\"", quantity("Pa", within(1e-9, 1e15))).paper("P")
             .title("pressure", "P", "Pa"),
         /// Which blocks in contact carry the load of the textured ones: all of them in equal parts; with
@@ -27,12 +27,13 @@ key_rows! {
         /// a bulk body `true` is a `within` of the pitch, and a texture without one needs a distance.
         pub redistribute: Redistribute = key("true", KeyKind::Special("`true`, `false`, or a distance such as `{ within = \"400 um\" }`, 1e-12 to 1e3 m"))
             .note("See [texture and load](../model.md#texture-and-load)."),
-        /// A pressure that rises along x or y, with the mean `pressure`: p = P (1 + slope (2 x/L - 1)).
+        /// Pressure that rises linearly along x or y, with the mean `pressure`: p = P (1 + slope (2 x/L -
+        /// 1)).
         #[serde(skip_serializing_if = "Option::is_none")]
         pub profile: Option<Profile> =
             key("", KeyKind::Table("{ along = \"x\", relative_slope = 0.5 }", Profile::KEYS))
                 .or("pressure_field"),
-        /// Local pressure over `pressure`, block by block, in place of `profile`.
+        /// Local pressure relative to `pressure`, block by block, instead of `profile`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub pressure_field: Option<String> = key("", ARRAY).or("profile"),
         /// Dead shear load: a stress along the drive on every block, textured or not, that acts from the
@@ -41,11 +42,11 @@ key_rows! {
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shear: Option<Pressure> = key("", quantity("Pa", within(-1e15, 1e15))).or("shear_star")
             .title("shear load", "\u{3c4}\u{2080}", "Pa").note(DEAD_LOAD),
-        /// Dead shear load over P mu_s, in place of `shear`: what it adds to mu\*.
+        /// Dead shear load over P mu_s, instead of `shear`: its contribution to mu\*.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shear_star: Option<f64> = key("", number(within(-1e3, 1e3), "it is over P mu_s, of which blocks hold 1"))
             .star(StarUnit::One).or("shear").title("shear load", "\u{3c4}\u{2080}*", ""),
-        /// Local shear load over `shear` or `shear_star`, block by block; it may be below 0.
+        /// Local shear load relative to `shear` or `shear_star`, block by block; it may be negative.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shear_field: Option<String> = key("", ARRAY),
         /// Stiffness per area of the foundation along y under the blocks in contact of an upright sheet,
@@ -54,10 +55,10 @@ key_rows! {
         pub foundation: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA).or("foundation_star")
             .title("stiffness of the foundation", "K\u{2099}", "N/m\u{b3}")
             .note("See [upright sheets](../model.md#an-upright-sheet)."),
-        /// Stiffness of the foundation under a block in contact over E h, with the thickness h.
+        /// Stiffness of the foundation under a block in contact, relative to E h with the thickness h.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub foundation_star: Option<f64> = key("", number(above(0.0, 1e3),
-            "it is over E h, with the thickness h, and a spring between blocks has 0.75"))
+            "it is relative to E h, with the thickness h, and a spring between blocks has 0.75"))
             .star(StarUnit::SpringOfBlock).or("foundation")
             .title("stiffness of the foundation", "k\u{2099}*", ""),
     }

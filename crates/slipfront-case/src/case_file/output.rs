@@ -18,19 +18,19 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Output {
-        /// The instants at which fields are written: `"auto"` is the instants A to F of Fig. 4; a list is
-        /// these t*, in increasing order, from 0 to 1e9, `[]` for never; `every` is multiples of that t*
-        /// (more than 0, at most 1e9), and the instants A to F as well.
+        /// Instants at which fields are written. `"auto"` is the instants A to F of Fig. 4. A list contains
+        /// times t* in increasing order, from 0 to 1e9; `[]` writes none. `every` is multiples of this t*
+        /// (more than 0, at most 1e9), in addition to the instants A to F.
         pub snapshots: Snapshots = key("\"auto\"", KeyKind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`")),
-        /// The fields that are written at these instants.
+        /// Fields that are written at these instants.
         #[serde(deserialize_with = "words")]
         pub fields: Vec<Field> = key("[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
             KeyKind::Words(names_of::<Field>))
                 .further_bounds(", each at most once; `\"traction\"` is blank over a texture"),
-        /// Stride of the fields file, which has every n-th block along x and along y.
+        /// Stride of the fields file, which contains every n-th block along x and along y.
         pub stride: u32 = key("1", KeyKind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" }),
-        /// Spacing of the rows of the series in t*; `"auto"` is every step, or as many as give at most 20 000
-        /// rows.
+        /// Spacing of the rows of the series in t*; `"auto"` is one step, or the spacing that gives at most
+        /// 20 000 rows.
         pub series: AutoOr = key("\"auto\"", SPACING),
         /// Whether a movie is drawn of the snapshots, `movie.gif`.
         pub movie: bool = key("false", KeyKind::Switch)

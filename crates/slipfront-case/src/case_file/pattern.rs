@@ -26,14 +26,14 @@ key_rows! {
     pub struct Pattern {
         /// Distance between neighbouring copies.
         pub pitch: Option<Pitch> = key("", PITCH).title("pitch", "", "m"),
-        /// Columns and rows of copies: `"auto"` is as many as have room with a `pitch`, and one without.
+        /// Number of columns and rows of copies: `"auto"` is as many as fit with a `pitch`, and one without.
         pub array: Count = key("\"auto\"", KeyKind::Special("`\"auto\"`, or a pair from 1 to 1000")),
         /// Arrangement of the copies.
         #[serde(deserialize_with = "word")]
         pub lattice: Arrangement = key("\"square\"", KeyKind::Words(names_of::<Arrangement>)),
-        /// A pattern of such patterns.
+        /// Pattern that repeats the array.
         pub repeat: Option<Array> = key("", KeyKind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`")),
-        /// Whether the parts outside of the copies are textured, in place of the parts inside.
+        /// Whether the area outside the copies is textured instead of the area inside.
         pub invert: bool = key("false", KeyKind::Switch),
     }
 }

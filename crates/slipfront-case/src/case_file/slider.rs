@@ -32,7 +32,7 @@ key_rows! {
         pub blocks: [u32; 2] = key("[25, 25]", whole(1, MAX_BLOCKS)).paper("N_x, N_y")
             .title("blocks along a side", "", "")
             .further_bounds(" each, at most 4 000 000 000 together and [what memory holds](#what-a-run-needs); at least 3 along a periodic axis"),
-        /// Edge of a block.
+        /// Edge length of a block.
         pub block_size: Length = key("\"1 um\"", quantity("m", within(1e-12, 1e3))).paper("l")
             .title("block size", "l", "m"),
         /// Thickness of the sheet that the slider is; `block_size` if not given, as of the paper's cubes. A
@@ -46,31 +46,31 @@ key_rows! {
         #[serde(deserialize_with = "word", skip_serializing_if = "Body::is_sheet")]
         pub body: Body = key("\"sheet\"", KeyKind::Words(names_of::<Body>))
             .note("See [bulk bodies](../model.md#bulk-bodies)."),
-        /// Height of a bulk body, from the contact to the face by which it is driven.
+        /// Height of a bulk body, from the contact to the driven face.
         pub height: Option<Length> = key("", quantity("m", within(1e-12, 1e6))).without("deep: many pitches")
             .title("height", "H", "m"),
         /// Poisson's ratio of a bulk body.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
-        /// Longest wave length, down to an eighth of which the sheets answer as the bulk body does. Studies,
-        /// `converge` and the laboratory give it to the slider without texture with which they compare; give
-        /// it where you compare runs yourself.
+        /// Longest wavelength of the response. The sheets respond as the bulk body does for this wavelength
+        /// and down to an eighth of it. Studies, `converge` and the laboratory also use it for the untextured
+        /// slider of a comparison; give it when you compare runs yourself.
         pub longest_wave: Option<Length> = key("", quantity("m", within(1e-12, 1e6)))
             .without("pitch of the one array that fills the slider, else the longer side of the slider")
             .title("longest wave length", "", "m"),
-        /// The sheets of a bulk body in place of those that follow from height and Poisson's ratio, from the
-        /// lowest on.
+        /// Sheets of a bulk body, starting with the lowest, instead of those that follow from height and
+        /// Poisson's ratio.
         pub sheets: Option<Vec<SheetOfStack>> = key("", KeyKind::Table(
             "[{ thickness = \"5 um\", coupling = \"2e15 N/m^3\" }, { thickness = \"40 um\", coupling = \"4e14 N/m^3\" }]", SheetOfStack::KEYS)),
-        /// Stiffness of each of the `sheets` along a wave over that across it.
+        /// Ratio of the stiffness along a wave to the stiffness across it, for each of the `sheets`.
         pub along_to_across: Option<f64> = key("", number(within(1.1, 10.0), "the springs of the paper have 3")).without("3")
             .title("stiffness along over across", "", ""),
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),
         /// Whether the slider is rigid: one block on a spring of `drive.total_stiffness`, without a Young's
-        /// modulus. The units t* and u* take the modulus for which the spring is the paper's, 0.375 E h;
-        /// results in newtons, metres and seconds depend on none.
+        /// modulus. The units t* and u* use the modulus for which the spring has the paper's stiffness, 0.375
+        /// E h. Results in newtons, metres and seconds do not depend on it.
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         pub rigid: bool = key("false", KeyKind::Switch),
         /// Density.
@@ -79,17 +79,17 @@ key_rows! {
         [
             /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
             pub damping: Damping or "the slider needs a damping: `omega_star` or `damping_rate`" {
-                /// Damping of the blocks' motion.
+                /// Damping of the motion of the blocks.
                 omega_star: f64 => OmegaStar = key("0.1", number(within(0.0, 1e3), "a slider that rings little has 1"))
                     .star(StarUnit::Rate)
                     .or("damping_rate").paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),
-                /// Damping with its unit, in place of `omega_star`.
+                /// Damping with its unit, instead of `omega_star`.
                 damping_rate: Rate => Rate = key("", quantity("1/s", within(0.0, 1e24))).or("omega_star")
                     .paper("Omega")
                     .title("damping", "\u{3a9}", "1/s"),
             }
         ]
-        /// Parts beyond the edges that bound x and those that bound y.
+        /// Boundary conditions at the edges that bound x, and at those that bound y.
         #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
         pub edges: [Edges; 2] = key("\"free\"", KeyKind::Words(names_of::<Edges>))
             .further_bounds(", or a pair of them"),
@@ -98,23 +98,24 @@ key_rows! {
         #[serde(deserialize_with = "word", skip_serializing_if = "EdgeSprings::are_whole")]
         pub edge_springs: EdgeSprings = key("\"whole\"", KeyKind::Words(names_of::<EdgeSprings>))
             .note("See [springs along edges](../model.md#an-upright-sheet)."),
-        /// Shape of the slider: blocks outside do not exist. A disc has as many blocks along x as along y.
+        /// Shape of the slider; there are no blocks outside it. A disc needs as many blocks along x as along
+        /// y.
         #[serde(deserialize_with = "word")]
         pub outline: Outline = key("\"rectangle\"", KeyKind::Words(names_of::<Outline>)),
-        /// The shape as a mask: dark pixels, or 1 in an array, are blocks; for `outline = "mask"`.
+        /// Mask of the shape, for `outline = "mask"`: dark pixels, or 1 in an array, are blocks.
         pub outline_file: Option<String> = key("", KeyKind::File(&["png", "npy"])),
-        /// Damping constant of a damper beside every spring between blocks over the spring's stiffness, tau_v
-        /// in t*.
+        /// Retardation time tau_v of the springs between blocks, in t*: each has a parallel damper with tau_v
+        /// times its stiffness.
         pub viscosity_time_star: f64 = key("0", number(within(0.0, 1e3), "it is a time in t*, of the order of 0.1 where it matters"))
             .star(StarUnit::Time)
             .title("viscosity", "\u{3c4}\u{1d65}*", ""),
-        /// Young's modulus over `young_modulus`, block by block.
+        /// Young's modulus relative to `young_modulus`, block by block.
         pub stiffness_field: Option<String> = key("", ARRAY).or("stiffness_grade"),
-        /// Young's modulus over `young_modulus`, from one edge to the other, in place of the field.
+        /// Young's modulus relative to `young_modulus`, from one edge to the other, instead of the field.
         pub stiffness_grade: Option<Grade> = key("", GRADE).or("stiffness_field"),
-        /// Density over `density`, block by block.
+        /// Density relative to `density`, block by block.
         pub density_field: Option<String> = key("", ARRAY).or("density_grade"),
-        /// Density over `density`, from one edge to the other, in place of the field.
+        /// Density relative to `density`, from one edge to the other, instead of the field.
         pub density_grade: Option<Grade> = key("", GRADE).or("density_field"),
     }
 }
@@ -241,7 +242,7 @@ impl Slider {
             return Ok(());
         };
         check.refuse("edge_springs", |key| {
-            format!("`{key}` = \"halved\" has no meaning here: {why}; take \"whole\"")
+            format!("`{key}` = \"halved\" does not apply here: {why}; use \"whole\"")
         })
     }
 
@@ -258,7 +259,7 @@ impl Slider {
         let wrong = keys.iter().find(|(_, is_wrong, _)| self.rigid && *is_wrong);
         wrong.map_or(Ok(()), |(key, _, why)| {
             check.refuse(key, |key| {
-                format!("`{key}` does not go with `slider.rigid`: a rigid slider {why}")
+                format!("`{key}` cannot be combined with `slider.rigid`: a rigid slider {why}")
             })
         })
     }
@@ -307,14 +308,14 @@ impl Slider {
         ];
         if let Some((key, _, why)) = of_sheet.iter().find(|(_, is_given, _)| *is_given) {
             return check.refuse(key, |key| {
-                format!("`{key}` has no meaning with `slider.body` = \"bulk\": {why}; leave it out, or take \"sheet\"")
+                format!("`{key}` does not apply to `slider.body` = \"bulk\": {why}; leave it out, or use \"sheet\"")
             });
         }
         let [nx, ny] = self.blocks;
         if nx.min(ny) == 1 {
             return check.refuse("blocks", |key| {
                 format!(
-                    "`{key}` is [{nx}, {ny}]: a bulk body needs several blocks along x and along y; take \"sheet\" for a chain or a single block"
+                    "`{key}` is [{nx}, {ny}]: a bulk body needs several blocks along x and along y; use \"sheet\" for a chain or a single block"
                 )
             });
         }
@@ -323,7 +324,7 @@ impl Slider {
         {
             return check.refuse("height", |key| {
                 format!(
-                    "`{key}` is \"{height}\", less than a block of \"{}\": take smaller blocks, or a sheet of this `thickness`",
+                    "`{key}` is \"{height}\", less than a block of \"{}\": use smaller blocks, or a sheet of this `thickness`",
                     self.block_size
                 )
             });
@@ -333,8 +334,8 @@ impl Slider {
         {
             return check.refuse("longest_wave", |key| {
                 format!(
-                    "`{key}` is \"{wave}\", less than two blocks of \"{}\", on which no wave is shorter: give the longest wave length of the \
-                     texture, such as its pitch",
+                    "`{key}` is \"{wave}\", less than two blocks of \"{}\", the shortest possible wave: give the longest \
+                     wavelength of the texture, such as its pitch",
                     self.block_size
                 )
             });
@@ -342,13 +343,13 @@ impl Slider {
         let Some(sheets) = &self.sheets else {
             return self.along_to_across.map_or(Ok(()), |_| {
                 check.refuse("along_to_across", |key| {
-                    format!("`{key}` belongs to `slider.sheets`, and follows from `slider.poisson` without: give `sheets`, or leave it out")
+                    format!("`{key}` belongs to `slider.sheets`; without them it follows from `slider.poisson`: give `sheets`, or leave it out")
                 })
             });
         };
         if let Some((key, _)) = of_bulk[..3].iter().find(|(_, is_given)| *is_given) {
             return check.refuse(key, |key| {
-                format!("`{key}` is not read where `slider.sheets` gives the stack: leave one of them out")
+                format!("`{key}` has no effect if `slider.sheets` gives the stack: leave one of them out")
             });
         }
         if !SHEETS.contains(&sheets.len()) {
@@ -395,7 +396,7 @@ impl Slider {
         let [nx, ny] = self.blocks;
         match (self.outline, &self.outline_file) {
             (Outline::Mask, None) => check.refuse("outline", |key| {
-                format!("`{key}` = \"mask\" needs `outline_file`, the image or array that says which blocks exist")
+                format!("`{key}` = \"mask\" needs `outline_file`, the image or array of the existing blocks")
             }),
             (Outline::Rectangle | Outline::Disc, Some(_)) => check.refuse("outline_file", |key| {
                 format!("`{key}` is not read: it belongs to `outline` = \"mask\"; set that, or leave the file out")
@@ -406,8 +407,8 @@ impl Slider {
             (Outline::Disc | Outline::Mask, _) if self.edges.contains(&Edges::Periodic) => {
                 check.refuse("outline", |key| {
                     format!(
-                        "`{key}` has no meaning with periodic edges, where a slider has no end: take `edges` = \"free\", or \
-                         leave it out"
+                        "`{key}` does not apply to periodic edges, because the slider has no boundary: use `edges` = \"free\", \
+                         or leave it out"
                     )
                 })
             }

@@ -20,7 +20,7 @@ const COMMON: &[(&str, &str)] = &[
     ("poisson_ratio", POISSON),
     (
         "gradient",
-        "a stiffness or density that changes along the slider is `slider.stiffness_grade` or `slider.density_grade`",
+        "a graded stiffness or density is `slider.stiffness_grade` or `slider.density_grade`",
     ),
     ("tau_v", VISCOSITY),
     ("viscosity", VISCOSITY),
@@ -34,7 +34,7 @@ const COMMON: &[(&str, &str)] = &[
     ("bonds", SPRINGS_OF_EACH),
     (
         "k_s",
-        "the stiffness of a drive spring is `drive.stiffness`, with its unit, or `drive.stiffness_star`; of all together `drive.total_stiffness`",
+        "the stiffness of a drive spring is `drive.stiffness`, with its unit, or `drive.stiffness_star`; the total stiffness is `drive.total_stiffness`",
     ),
     (
         "shape",
@@ -55,7 +55,7 @@ const COMMON: &[(&str, &str)] = &[
     ("length", BLOCKS),
     (
         "material",
-        "the material stands in [slider]: `slider.young_modulus`, `slider.density`, `slider.omega_star`",
+        "the material is in [slider]: `slider.young_modulus`, `slider.density`, `slider.omega_star`",
     ),
     (
         "damping",
@@ -63,9 +63,12 @@ const COMMON: &[(&str, &str)] = &[
     ),
     (
         "omega",
-        "the damping is `slider.omega_star`, or `slider.damping_rate` with its unit; a drive that turns is `drive.motion` = \"rotation\"",
+        "the damping is `slider.omega_star`, or `slider.damping_rate` with its unit; a rotating drive is `drive.motion` = \"rotation\"",
     ),
-    ("boundary", "what lies beyond the edges is `slider.edges`"),
+    (
+        "boundary",
+        "the boundary condition at the edges is `slider.edges`",
+    ),
     ("periodic", "periodic edges are `slider.edges` = \"periodic\""),
     ("P", PRESSURE),
     (
@@ -79,8 +82,7 @@ const COMMON: &[(&str, &str)] = &[
     ("v", SPEED),
     (
         "velocity",
-        "the speed of the drive is `drive.v_star`, or `drive.speed` with its unit; friction that falls with speed is \
-        `friction.velocity`",
+        "the speed of the drive is `drive.v_star`, or `drive.speed` with its unit; velocity weakening is `friction.velocity`",
     ),
     (
         "angle",
@@ -94,7 +96,7 @@ const COMMON: &[(&str, &str)] = &[
     ("angular_speed", ROTATION),
     (
         "edge",
-        "what lies beyond the edges is `slider.edges`; the edge that is driven is `drive.attach`",
+        "the boundary condition at the edges is `slider.edges`; the edge that is driven is `drive.attach`",
     ),
     ("push", ATTACH),
     ("pull", ATTACH),
@@ -140,7 +142,7 @@ const COMMON: &[(&str, &str)] = &[
     ),
     (
         "frames",
-        "what is written when are `output.snapshots` and `output.fields`",
+        "times and fields of the output are `output.snapshots` and `output.fields`",
     ),
     ("spacing", PITCH),
     ("period", PITCH),
@@ -153,10 +155,7 @@ const COMMON: &[(&str, &str)] = &[
         "pillar",
         "a pillar is the shape of it, such as \"cavity\", with `invert` = true",
     ),
-    (
-        "inverse",
-        "to texture all but the inside of a shape is `invert` = true",
-    ),
+    ("inverse", "`invert` = true textures the outside of a shape"),
     ("pattern", PATTERN),
     ("arrangement", PATTERN),
     (
@@ -164,22 +163,25 @@ const COMMON: &[(&str, &str)] = &[
         "the size of a texture is `coverage`, or `lambda` of a cavity and `width` of a groove; that of the slider is \
         `slider.blocks` times `slider.block_size`",
     ),
-    ("area", "the share of the area is `coverage`, in percent"),
+    (
+        "area",
+        "the textured fraction of the area is `coverage`, in percent",
+    ),
     (
         "depth",
-        "a texture has no depth, and blocks within it do not touch; of a \"height_map\", `texture.N.depth` says which of its blocks do",
+        "a texture has no depth, and its blocks are not in contact; only a \"height_map\" has `texture.N.depth`, which selects the blocks in contact",
     ),
     (
         "position",
-        "a cavity stands at `center`, a groove at `offset` from the middle",
+        "the position of a cavity is `center`, of a groove `offset` from the middle",
     ),
     (
         "x",
-        "a cavity stands at `center`, a groove at `offset` from the middle",
+        "the position of a cavity is `center`, of a groove `offset` from the middle",
     ),
     (
         "y",
-        "a cavity stands at `center`, a groove at `offset` from the middle",
+        "the position of a cavity is `center`, of a groove `offset` from the middle",
     ),
     (
         "values",
@@ -187,7 +189,7 @@ const COMMON: &[(&str, &str)] = &[
     ),
     (
         "simulation",
-        "the length of a run and its step stand in [time], what it writes in [output]",
+        "the duration of a run and its step are in [time], its output is in [output]",
     ),
     ("prestress", SHEAR),
     ("shear_stress", SHEAR),
@@ -222,16 +224,14 @@ const VISCOSITY: &str =
     "the internal viscosity is `slider.viscosity_time_star`; damping of any motion is `slider.omega_star`";
 const SPRINGS_OF_EACH: &str = "the springs between blocks follow from `slider.young_modulus`, those of the drive are `drive.stiffness`, and those \
                                of contacts are `friction.contact` = \"springs\"";
-const OUTLINE: &str = "the shape of a slider that is no rectangle is `slider.outline`";
-const ROTATION: &str = "a drive that turns is `drive.motion` = \"rotation\", with `drive.v_star` at the largest radius; its torque is a result";
-const ATTACH: &str = "which blocks the drive pulls is `drive.attach` = \"left\", \"right\", \"bottom\" or \"top\", or `drive.attach_file`";
-const PROGRAM: &str = "speeds that follow one another, 0 for a hold, are `drive.program` = [{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]";
-const PROFILE: &str =
-    "a load that rises along the slider is `load.profile` = { along = \"x\", relative_slope = 0.5 }";
+const OUTLINE: &str = "the shape of a slider is `slider.outline`";
+const ROTATION: &str = "a rotating drive is `drive.motion` = \"rotation\", with `drive.v_star` at the largest radius; its torque is a result";
+const ATTACH: &str = "the driven blocks are `drive.attach` = \"left\", \"right\", \"bottom\" or \"top\", or `drive.attach_file`";
+const PROGRAM: &str = "a sequence of speeds, with 0 for a hold, is `drive.program` = [{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]";
+const PROFILE: &str = "a non-uniform load is `load.profile` = { along = \"x\", relative_slope = 0.5 }";
 const ADHESION: &str = "adhesion adds to static friction as `friction.adhesion`, and to kinetic friction as `friction.adhesion_kinetic`";
-const SHEAR: &str =
-    "a shear stress that is there from the start is `load.shear`, with its unit, or `load.shear_star`";
-const INITIAL: &str = "what a run begins with are `initial.displacement_x`, `initial.velocity_x` and the like, or `initial.state_file` of another run";
+const SHEAR: &str = "an initial shear stress is `load.shear`, with its unit, or `load.shear_star`";
+const INITIAL: &str = "the initial state is `initial.displacement_x`, `initial.velocity_x` and similar keys, or `initial.state_file` of another run";
 const PITCH: &str = "the distance between the copies of a shape is `pitch`";
 const PATTERN: &str = "a shape is repeated by `array` = [4, 4] or `pitch` = \"12 um\", arranged by `lattice`";
 

@@ -23,21 +23,22 @@ key_rows! {
     pub struct Time from TimeKeys {
         [
             /// Duration of the run: `duration_star` or `duration`.
-            pub duration: RunTime or "the run needs a length: `duration_star` or `duration`" {
-                /// Length of the run; `"auto"` is 8/V*, or (8/3 f + 2.5)/V* where fewer than 48 % of the
-                /// blocks touch and bear f times the load (with a drive on every block), times 1 + tau_a/(P
-                /// mu_s) under adhesion, after the last change of a program.
+            pub duration: RunTime or "the run needs a duration: `duration_star` or `duration`" {
+                /// Duration of the run. `"auto"` is 8/V*. If fewer than 48 % of the blocks are in contact and
+                /// each carries f times the load (with a drive on every block), it is (8/3 f + 2.5)/V*.
+                /// Adhesion multiplies it by 1 + tau_a/(P mu_s). With a program it counts from the last
+                /// change of speed.
                 duration_star: AutoOr => Star = key("\"auto\"", or_word(POSITIVE_TIME, "8/V* shows onset and sliding", AUTO))
                     .star(StarUnit::Time)
                     .or("duration").paper("t*").title("duration", "t*", ""),
-                /// Length of the run with its unit, in place of `duration_star`.
+                /// Duration of the run with its unit, instead of `duration_star`.
                 duration: Duration => Duration = key("", quantity("s", within(1e-24, 1e12)))
                     .or("duration_star").paper("t")
                     .title("duration", "t", "s"),
             }
         ]
-        /// Time step: `"auto"` is 0.1, or half the largest stable step where that is less; `"paper"` is (2/3)
-        /// V* (Eq. 13), which must be less than 0.9058 too. Stiff blocks, mounts and stacks have a smaller
+        /// Time step. `"auto"` is 0.1, or half the largest stable step if that is smaller. `"paper"` is (2/3)
+        /// V* (Eq. 13), which must also be less than 0.9058. Stiff blocks, mounts and stacks have a smaller
         /// bound, which `slipfront check` prints.
         pub step: TimeStep = key("\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
             &["auto", "paper"])).paper("dt*").title("time step", "\u{394}t*", ""),
@@ -79,8 +80,8 @@ impl Time {
                 let step = v_star * 2.0 / 3.0;
                 return check.refuse("step", |key| {
                     format!(
-                        "`{key}` = \"paper\" is (2/3) V* = {step:.4}: it must be less than {UNSTABLE_STEP}; take \"auto\", \
-                         or a smaller `drive.v_star`"
+                        "`{key}` = \"paper\" is (2/3) V* = {step:.4}: it must be less than {UNSTABLE_STEP}; use \"auto\", or a \
+                         smaller `drive.v_star`"
                     )
                 });
             }

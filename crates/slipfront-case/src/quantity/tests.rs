@@ -86,11 +86,11 @@ fn every_prefix_with_every_unit() {
 fn messages_say_what_to_write() {
     assert_eq!(
         error::<kind::Pressure>("3 mm/s"),
-        "\"3 mm/s\" is a speed (m s^-1); a pressure is wanted, such as \"100 kPa\""
+        "\"3 mm/s\" is a speed (m s^-1); give a pressure, such as \"100 kPa\""
     );
     assert_eq!(
         error::<kind::Pressure>("100"),
-        "100 has no unit; a pressure is written as a string with its unit, such as \"100 kPa\""
+        "100 has no unit; write a pressure as a string with its unit, such as \"100 kPa\""
     );
     assert_eq!(
         error::<kind::Pressure>("100 kpa"),

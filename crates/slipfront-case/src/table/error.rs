@@ -10,7 +10,7 @@ use slipfront_base::text::truncated;
 pub enum TableError {
     #[error("cannot be read: {0}")]
     Read(#[from] io::Error),
-    #[error("is {0}, not a table of text: save the table as text, such as .csv, and name that file")]
+    #[error("is {0}, not a text table: save the table as text, such as .csv, and give that file")]
     Binary(&'static str),
     #[error("has {found} fields in line {line} and {names} names in line {header}: {remedy}")]
     TooManyFields {
@@ -28,12 +28,12 @@ pub enum TableError {
     )]
     Thousands { line: u64, text: String },
     #[error(
-        "has a field that begins in line {line} and goes over several lines: remove the quotation mark with which it begins"
+        "has a field that begins in line {line} and spans several lines: remove the quotation mark at its start"
     )]
     OpenQuote { line: u64 },
-    #[error("has more than {most} bytes in line {line}: write one row in every line")]
+    #[error("has more than {most} bytes in line {line}: write one row per line")]
     LongLine { line: u64, most: u64 },
-    #[error("has {lines} lines, and no line {wanted} with names")]
+    #[error("has {lines} lines, so there is no line {wanted} with column names")]
     NoHeader { wanted: u64, lines: u64 },
 }
 

@@ -11,22 +11,22 @@ pub(super) const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TextureFileError {
     #[error(
-        "cannot tell the format of `{path}`; name a file that ends in .svg or .dxf for outlines, in .png for a picture or in .gsf for a \
-         height field"
+        "cannot determine the format of `{path}`; use the extension .svg or .dxf for outlines, .png for a picture, or .gsf for \
+         a height field"
     )]
     Extension { path: String },
     #[error(
-        "`--scale` is for pictures, and `{path}` is none: outlines and height fields have their true size"
+        "`--scale` applies to pictures only, and `{path}` is not a picture: outlines and height fields have their true size"
     )]
     Scale { path: String },
     #[error(
-        "the picture would have {width} x {height} pixels, and at most {} along a side and {} in all are read again: lower `--scale`",
+        "the picture would have {width} x {height} pixels; at most {} along a side and {} in total can be read again: reduce `--scale`",
         MAX_PIXELS[0],
         MAX_PIXELS[1]
     )]
     TooManyPixels { width: usize, height: usize },
     #[error(
-        "the outlines would have {corners} corners, and at most {most} are written: write a .png or .gsf instead"
+        "the outlines would have {corners} vertices; at most {most} are written: write a .png or .gsf instead"
     )]
     TooManyCorners { corners: usize, most: usize },
     #[error(transparent)]

@@ -53,9 +53,10 @@ fn a_thickness_above_a_third_of_the_feature_is_noted() {
     assert_eq!(note(DIMPLES, "33.3 um"), None);
     assert_eq!(
         note(DIMPLES, "33.4 um").unwrap(),
-        "`slider.thickness` is 33.4 um, more than a third of the smallest feature of 100 um: so thick a part is no sheet but a bulk body, in \
-         which stress beside the texture reaches about 200 um deep, and the texture changes mu_s* by about 0.6 to 1.2 times as much as in this \
-         sheet; write `slider.body = \"bulk\"` and `slider.height = \"33.4 um\"` in its place"
+        "`slider.thickness` is 33.4 um, more than a third of the smallest feature of 100 um: a part of this thickness \
+         is a bulk body, not a sheet. In a bulk body stress at the texture reaches about 200 um deep, and the texture \
+         changes mu_s* by about 0.6 to 1.2 times as much as in this sheet; use `slider.body = \"bulk\"` and \
+         `slider.height = \"33.4 um\"` instead"
     );
 }
 
@@ -230,7 +231,11 @@ fn what_a_bulk_body_does_not_have_is_refused() {
             "follows from `slider.height`",
         ),
         ("drive.attach", "'left'", "its whole upper face is driven"),
-        ("drive.motion", "'rotation'", "a body that turns is not derived"),
+        (
+            "drive.motion",
+            "'rotation'",
+            "its equations for rotation are not derived",
+        ),
     ] {
         let refused = refusal(&[bulk, &format!("{key}={value}")]);
         assert!(refused.contains(key) && refused.contains(why), "{refused}");
@@ -252,7 +257,7 @@ fn what_a_bulk_body_does_not_have_is_refused() {
     assert!(refusal(&[bulk, one]).contains("has 1 sheet: a stack has 2 to 4"));
     let two = one.replace("}]", "}, { thickness = '2 km', coupling = '1e15 N/m^3' }]");
     assert!(refusal(&[bulk, &two]).contains("it must be"));
-    assert!(refusal(&[bulk, &two, "slider.height='1 mm'"]).contains("is not read where"));
+    assert!(refusal(&[bulk, &two, "slider.height='1 mm'"]).contains("has no effect if"));
     for blocks in ["[1, 1]", "[50, 1]"] {
         assert!(
             refusal(&[bulk, &format!("slider.blocks={blocks}")])
@@ -306,13 +311,13 @@ fn a_texture_without_a_pitch_says_how_near() {
             .to_string()
     };
     assert!(
-        refused(&[]).contains("texture 1 is no array of several features"),
+        refused(&[]).contains("texture 1 is not an array of several features"),
         "{}",
         refused(&[])
     );
     let too_near = refused(&["load.redistribute={ within = '30 um' }"]);
     assert!(
-        too_near.contains("no block in contact is within 1.5 blocks of block"),
+        too_near.contains("no block in contact is within 1.5 blocks of the textured block"),
         "{too_near}"
     );
     assert!(refused(&["load.redistribute={ within = '3 km' }"]).contains("it must be"));
@@ -332,7 +337,7 @@ fn what_the_stack_leaves_out_is_noted() {
     assert!(noted.contains("at twice the feature the stack is"), "{noted}");
     let noted = notes(DIMPLES, &["slider.longest_wave=\"100 um\""]);
     assert!(
-        noted.contains("100 um, shorter than the pitch of 200 um: there the stack is 31 % stiffer"),
+        noted.contains("100 um, shorter than the pitch of 200 um: at the pitch the stack is 31 % stiffer"),
         "{noted}"
     );
     assert!(

@@ -207,7 +207,7 @@ fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     assert_eq!(fast(&grade("stiffness", 10.0, 10.0)), None);
     let of_equal = |speed: &str| {
         format!(
-            "V* = 0.03 loads this slider as fast as {speed} loads equal blocks on the paper's springs, which is"
+            "V* = 0.03 loads this slider as fast as V* = {speed} loads equal blocks on the paper's springs,"
         )
     };
     assert_eq!(
@@ -299,7 +299,8 @@ fn a_coverage_that_may_be_a_share_is_noted() {
             .into_iter()
             .find(|warning| warning.contains("percent of the area"))
     };
-    let expected = "`coverage` = 0.1 of texture 1 is 0.1 percent of the area; 10 percent are `coverage` = 10";
+    let expected =
+        "`coverage` = 0.1 of texture 1 means 0.1 percent of the area; for 10 percent write `coverage` = 10";
     assert_eq!(note("coverage = 0.1").as_deref(), Some(expected));
     assert_eq!(note("coverage = 1"), None);
     assert_eq!(note("width = '0.1 um'"), None);
@@ -405,7 +406,7 @@ fn masks_fill_every_cell() {
     };
     let said = case("pitch = '40 um'").unwrap_err().to_string();
     assert!(
-        said.contains("40 x 40 blocks in every place of the pattern are more than the slider's 32 x 24"),
+        said.contains("40 x 40 blocks in every place of the pattern are more than the 32 x 24 of the slider"),
         "{said}"
     );
     for (pattern, shift) in [

@@ -112,19 +112,19 @@ fn blocks_over_a_plateau_have_its_height() {
 }
 
 /// A height map that is not fully known is refused with the error and the remedy.
-#[test_case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
+#[test_case("map.npy", OWN, "gives no pixel size: add `pixel_size`")]
 #[test_case(
     "map.png", HeightMapUnits { pixel: SIZE, ..OWN },
-    "does not say which height a value of 1 is: add `height_unit`"
+    "gives no unit of height: add `height_unit`"
 )]
 #[test_case(
     "map.gsf", HeightMapUnits { pixel: SIZE, ..OWN },
-    "says itself that a pixel is 500 nm x 500 nm: leave out `pixel_size`"
+    "gives a pixel size of 500 nm x 500 nm: leave out `pixel_size`"
 )]
 #[test_case("map.x3p", HeightMapUnits { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
 #[test_case("grey8.png", OWN, "grey levels of 8 bits, too coarse")]
-#[test_case("colours.png", OWN, "is a picture in colours, which do not tell heights")]
-#[test_case("colours.tif", OWN, "is a picture in colours, which do not tell heights")]
+#[test_case("colours.png", OWN, "is a colour picture, which has no heights")]
+#[test_case("colours.tif", OWN, "is a colour picture, which has no heights")]
 fn what_cannot_be_known_is_refused(name: &str, units: HeightMapUnits, sentence: &str) {
     let said = read(&folder().join(name), units, [15, 10])
         .unwrap_err()
@@ -335,7 +335,7 @@ fn damaged_x3p_files_are_refused() {
         ),
         (
             vec![("main.xml", whole.as_bytes()), ("bindata/data.bin", &heights)],
-            "has NaN in row 1, column 1 (both counted from 0), where a height is wanted: fill points",
+            "has NaN in row 1, column 1 (both counted from 0), but must have a height: fill missing points",
         ),
         (
             vec![
@@ -471,13 +471,13 @@ fn damaged_fields_and_tables_are_refused() {
     let whole = "XRes = 2\nYRes = 2\nXReal = 2\nYReal = 2\nXYUnits = um\nZUnits = nm\n";
     assert_eq!(read_bytes("a.gsf", &field(whole, 4)).unwrap().size, [2e-6, 2e-6]);
     for (header, numbers, sentence) in [
-        (whole, 3, "it has 104 bytes where its header asks for 108"),
+        (whole, 3, "it has 104 bytes, but its header requires 108"),
         ("XRes = 2\nYRes = 0\n", 0, "it has 2 x 0 points"),
         ("XRes = 2\nYRes = x\n", 0, "it has no whole number `YRes`"),
         (
             "XRes = 2000000\nYRes = 2\n",
             0,
-            "has 2000000 x 2 pixels where at most 268435456 pixels are read",
+            "has 2000000 x 2 pixels; at most 268435456 pixels are read",
         ),
         (
             "XRes = 2\nYRes = 2\nXReal = -1\n",
@@ -529,7 +529,7 @@ fn damaged_fields_and_tables_are_refused() {
         (
             "a.jpg",
             "",
-            "name a file that ends in .npy, .csv (.txt, .dat, .asc, .xyz), .gsf, .x3p, .png or .tif",
+            "give a file with the extension .npy, .csv (.txt, .dat, .asc, .xyz), .gsf, .x3p, .png or .tif",
         ),
     ] {
         let said = read_bytes(name, text.as_bytes()).unwrap_err().to_string();
@@ -682,8 +682,8 @@ fn a_map_of_another_size_is_told() {
         "slider = { blocks = [15, 10], block_size = '10 um' }",
         "bearing_percent = 40",
     );
-    let sentence = "map.x3p is 15 um x 10 um and laid over 150 um x 100 um of the slider, 10 times its size: with `block_size` = \"1 um\" \
-                    it would have its own";
+    let sentence = "map.x3p is 15 um x 10 um and is stretched over 150 um x 100 um of the slider, 10 times its size; with `block_size` = \"1 um\" \
+                    it keeps its size";
     assert!(said.contains(sentence), "{said}");
     let said = warnings_of(
         "slider = { blocks = [60, 40], block_size = '0.25 um' }",
@@ -700,7 +700,7 @@ fn a_map_of_another_size_is_told() {
         ("array = [2, 2]", "`block_size` = \"500 nm\""),
     ] {
         let said = warnings_of(slider, &format!("bearing_percent = 40\n{pitch}"));
-        let sentence = format!("of the slider, 2 times its size: with {own} it would have its own");
+        let sentence = format!("of the slider, 2 times its size; with {own} it keeps its size");
         assert!(said.contains(&sentence), "{said}");
     }
 }
@@ -742,7 +742,7 @@ fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
         (
             "1,1",
             "bearing_percent = 40",
-            "the texture covers 25.00 % of the blocks instead of 60.00 %: blocks of equal height touch together",
+            "the texture covers 25.00 % of the blocks instead of 60.00 %: blocks of equal height are in contact together",
         ),
     ] {
         let said = said(lowest, bearing);
@@ -852,7 +852,7 @@ fn a_list_of_points_on_a_grid_is_a_map() {
     }
 }
 
-#[test_case("tilted.csv", OF_CASE, [20, 20], "a plane takes 100 % of the variance"; "tilt")]
+#[test_case("tilted.csv", OF_CASE, [20, 20], "a plane contains 100 % of the variance"; "tilt")]
 #[test_case("other_md5.x3p", OWN, [50, 50], "the checksum of its heights is "; "checksum")]
 fn what_makes_a_map_doubtful_is_said(name: &str, units: HeightMapUnits, blocks: [usize; 2], note: &str) {
     let map = read_here(name, units, blocks);
@@ -907,7 +907,7 @@ fn a_map_is_levelled_by_its_plane() {
     }
     assert!((map.roughness.sa - 0.5e-6).abs() < 1e-19);
     assert!(map.notes.is_empty(), "{:?}", map.notes);
-    assert!(prepared(&text, Preparation::default()).unwrap().notes[0].starts_with("a plane takes"));
+    assert!(prepared(&text, Preparation::default()).unwrap().notes[0].starts_with("a plane contains"));
 }
 
 #[test_case("0,1,-999,3\n4,5,6,9\n", -999.0; "number")]

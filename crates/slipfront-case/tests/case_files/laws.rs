@@ -96,7 +96,7 @@ fn a_drive_that_is_too_soft_is_told() {
     let warns = |d_c: f64| {
         let case = case(&RATE_AND_STATE.replace("d_c_star = 0.5", &format!("d_c_star = {d_c}")));
         let mut warnings = case.warnings().into_iter();
-        warnings.any(|warning| warning.contains("stick-slip is to be expected"))
+        warnings.any(|warning| warning.contains("expect stick-slip"))
     };
     assert!(!warns(0.5));
     assert!(warns(0.02));
@@ -117,7 +117,7 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     };
     let speed = |drag: f64| format!("drive.v_star={:?}", drag / (0.75_f64.sqrt() * 0.2));
     let soft = "drive.stiffness_star=1e-3";
-    let [drag, no_transition] = ["the drag of the damping", "no transition is possible"];
+    let [drag, no_transition] = ["damping drag at", "no transition is possible"];
     for (size, has_drag, is_flat) in [
         (0.00499, false, false),
         (0.00501, true, false),
@@ -132,7 +132,10 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
         );
     }
     let said = warnings(&[&speed(0.9), soft]);
-    assert!(said.contains("takes mu* = 1.4, of which 0.9 is drag"), "{said}");
+    assert!(
+        said.contains("needs mu* = 1.4, including a damping drag of 0.9"),
+        "{said}"
+    );
     assert!(said.contains("adds 0.9 to the kinetic friction of 0.5"), "{said}");
     // The speed below which the drag is small has no drag to speak of, and adhesion holds more.
     assert!(said.contains("up to V* = 0.02887"), "{said}");
@@ -149,7 +152,7 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     // Blocks that lose nothing when they slip are told of by another sentence.
     let equal = warnings(&["friction.r_star=1"]);
     assert!(
-        equal.contains("do not lose friction") && !equal.contains(no_transition),
+        equal.contains("friction does not drop when blocks slip") && !equal.contains(no_transition),
         "{equal}"
     );
 }
@@ -210,12 +213,12 @@ fn a_field_that_is_longer_than_the_slider_is_warned_of() {
     let said = |rest: &str| {
         let case = case(&format!("slider.blocks = [25, 25]\n{rest}"));
         let mut warnings = case.warnings().into_iter();
-        warnings.find(|warning| warning.contains("alike over much of the slider"))
+        warnings.find(|warning| warning.contains("correlated over much of the slider"))
     };
     // I = 0.8615 at xi = L, and more than half of the spread from 0.47 L on.
     let warned = said("friction.correlation_length = '25 um'").unwrap();
     assert!(
-        warned.contains("from seed to seed by 0.8615 of the spread"),
+        warned.contains("between seeds by 0.8615 of the spread"),
         "{warned}"
     );
     assert_eq!(said("friction.correlation_length = '5 um'"), None);

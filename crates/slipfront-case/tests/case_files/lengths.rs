@@ -70,15 +70,15 @@ fn the_critical_size_decides_of_a_sheet() {
     let said = sheet.deciding_length();
     assert_eq!(
         said,
-        "the critical size decides: 6.664 blocks, and 5 are enough for 2 % of a reduction"
+        "the critical size sets the resolution: 6.664 blocks; 5 are enough for 2 % of a reduction"
     );
     assert_eq!(note_on(&sheet, "critical size"), None);
 
     let coarse = case(&format!("{SHEET}slip_weakening = {{ length_star = 0.4 }}"));
     assert_eq!(
         note_on(&coarse, "critical size").unwrap(),
-        "the critical size is 3.562 blocks, and 5 are enough: what a texture changes about mu_s* still belongs to the size of a block; take \
-         blocks of at most 14.25 um"
+        "the critical size is 3.562 blocks, and 5 are enough: the effect of a texture on mu_s* still depends on the \
+         block size; use blocks of at most 14.25 um"
     );
 }
 
@@ -169,8 +169,8 @@ fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
         );
         assert_eq!(
             note_on(&sheet, "critical size").unwrap(),
-            "the critical size is 2.107 blocks, and 5 are enough: what a texture changes about mu_s* still belongs to the size of a block; \
-             take blocks of at most 8.43 um"
+            "the critical size is 2.107 blocks, and 5 are enough: the effect of a texture on mu_s* still depends on \
+             the block size; use blocks of at most 8.43 um"
         );
     }
 }
@@ -194,7 +194,7 @@ fn the_screening_length_decides_where_slip_is_stable() {
         );
         let said = sheet.deciding_length();
         assert!(
-            said.starts_with("the screening length along decides: 1.732 blocks, and 3 are"),
+            said.starts_with("the screening length along sets the resolution: 1.732 blocks; 3 are"),
             "{said}"
         );
         assert!(
@@ -232,7 +232,7 @@ fn features_gaps_and_correlated_coefficients_are_lengths() {
     }
     let said = grooved.deciding_length();
     assert!(
-        said.starts_with("the smallest groove decides: 3 blocks"),
+        said.starts_with("the smallest groove sets the resolution: 3 blocks"),
         "{said}"
     );
     assert!(
@@ -257,14 +257,14 @@ fn the_block_decides_where_no_key_gives_a_length() {
     for (text, expected) in [
         (
             "",
-            "the block of 1 um decides: it takes the place of `slider.thickness`, `drive.stiffness_per_area`, `friction.slip_weakening`, \
-             `friction.correlation_length`",
+            "the block size, 1 um, sets the resolution: it replaces `slider.thickness`, `drive.stiffness_per_area`, `friction.slip_weakening`, \
+             `friction.correlation_length`, which this case does not give",
         ),
         (
             SHEET,
-            "the block of 20 um decides: it takes the place of `friction.slip_weakening`",
+            "the block size, 20 um, sets the resolution: it replaces `friction.slip_weakening`, which this case does not give",
         ),
-        ("slider.blocks = [1, 1]", "a single block has none"),
+        ("slider.blocks = [1, 1]", "a single block has no mesh error"),
     ] {
         let case = case(text);
         assert_eq!(case.deciding_length(), expected);

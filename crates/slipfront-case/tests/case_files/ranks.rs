@@ -230,10 +230,10 @@ fn files_in_memory_are_refused_in_the_same_sentences(text: &str, wanted: &str) {
 #[test_case("texture = [{ shape = 'mask', file = 'cut.png' }]",
     "ends before the last pixel"; "image")]
 #[test_case("texture = [{ shape = 'mask', file = 'c.npy' }]",
-    "where 0 or 1, 1 as of a dark pixel, is wanted"; "mask")]
+    "must be 0 or 1 (1 is a dark pixel)"; "mask")]
 #[test_case("texture = [{ shape = 'groove', width = '100 um' }]",
-    "nothing is left in contact"; "no contact")]
-#[test_case("texture = [{ shape = 'groove', width = '1 m', offset = '1 km' }]", "reaches"; "far")]
+    "no block is in contact"; "no contact")]
+#[test_case("texture = [{ shape = 'groove', width = '1 m', offset = '1 km' }]", "extends over"; "far")]
 fn all_ranks_tell_the_error_of_one(text: &str, wanted: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_inputs(folder.path());
@@ -397,7 +397,7 @@ fn a_file_that_changes_while_the_case_is_made_is_refused(size: usize) {
     for made in made {
         let said = made.unwrap_err();
         assert!(
-            said.contains("mu.csv was changed while the case was made"),
+            said.contains("mu.csv was changed while the case was prepared"),
             "{said}"
         );
     }

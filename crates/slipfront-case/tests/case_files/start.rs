@@ -85,7 +85,7 @@ fn blocks_that_slip_at_once_are_counted_and_the_first_is_named() {
     );
     assert_eq!(case.expected.first_slip_star, Some(0.0));
     let said =
-        "2 blocks slip at t = 0, since the shear load is above their static friction; the first is (7, 4)";
+        "2 blocks slip at t = 0, because the shear load exceeds their static friction; the first is (7, 4)";
     assert!(
         case.warnings().iter().any(|warning| warning == said),
         "{:?}",
@@ -203,12 +203,12 @@ fn a_case_of_a_prestressed_chain_has_the_speed_of_its_front(tau: f64) {
 }
 
 #[test_case("initial.displacement_x = 'short.csv'", "has 2 lines of numbers"; "size")]
-#[test_case("initial.displacement_x = 'nan.csv'", "where a finite number is wanted"; "no number")]
+#[test_case("initial.displacement_x = 'nan.csv'", "but must be a finite number"; "no number")]
 #[test_case("initial = { displacement_x = 'huge.csv', displacement_unit = '1 m' }",
-    "it must be finite; look at the unit of the file"; "unit")]
-#[test_case("initial.velocity_x = 'one.csv'\ndrive.loading = 'held'", "a held drive begins over blocks at rest"; "held")]
+    "it must be finite; check the unit of the file"; "unit")]
+#[test_case("initial.velocity_x = 'one.csv'\ndrive.loading = 'held'", "a held drive starts with blocks at rest"; "held")]
 #[test_case("initial.displacement_y = 'one.csv'\nslider.outline = 'disc'", "block (0, 0) has 1 in units of the model: it does not exist"; "outline")]
-#[test_case("load = { shear_star = 0.1, shear_field = 'nan.csv' }", "where a finite number is wanted"; "shear")]
+#[test_case("load = { shear_star = 0.1, shear_field = 'nan.csv' }", "but must be a finite number"; "shear")]
 fn wrong_arrays_are_refused(text: &str, expected: &str) {
     let one = vec![vec![1.0; 6]; 6];
     let mut nan = one.clone();

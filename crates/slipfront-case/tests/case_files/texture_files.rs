@@ -567,7 +567,7 @@ fn pictures_and_fields_read_back_as_the_same_texture() {
     for (name, scale, part) in [
         ("a.jpg", None, ".gsf for a height field"),
         ("a.svg", Some(2), "--scale"),
-        ("a.png", Some(40_000), "lower `--scale`"),
+        ("a.png", Some(40_000), "reduce `--scale`"),
     ] {
         let said = write(&case, &path(name), scale).unwrap_err().to_string();
         assert!(said.contains(part), "{said}");

@@ -16,50 +16,48 @@ use crate::threads::{count_from_one, set_threads};
 
 /// Estimate parameters from measured friction curves
 ///
-/// Every parameter has an interval; a record that the model cannot make is refused
+/// Every parameter has a credible interval; a record that the model cannot reproduce is rejected
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv --training results/training -o results/first
   slipfront calibrate cases/calibrations/single_block.toml --dry-run --until \"20 s\"
 
-Stopped in any way, the same command goes on where it was. The folder holds the intervals, a picture of each record beside the
-calibrated model, and a case with the medians.")]
+If the command is stopped in any way, the same command resumes it. The folder contains the intervals, a picture of each record with
+the calibrated model, and a case with the medians.")]
 pub(crate) struct CalibrateCommand {
     /// Calibration file
     #[arg(value_name = "CALIBRATION.toml")]
     calibration: PathBuf,
-    /// Records: tables of text (.csv), in the order of `calibrate.records`
+    /// Measured records as text tables (.csv), in the order of `calibrate.records`
     #[arg(required_unless_present = "until", value_name = "RECORD")]
     records: Vec<PathBuf>,
-    /// Simulate records before any is measured, print how narrow the intervals would be, also of longer,
-    /// slower and faster experiments, and write nothing; of records that are given only the times count
+    /// Plan a measurement: simulate records and print the expected intervals, also for longer, slower and
+    /// faster experiments, and write nothing; given records only supply their times
     #[arg(long)]
     dry_run: bool,
-    /// End of the planned record with its unit, such as "20 s", in place of records
+    /// End of the planned record with its unit, such as "20 s", instead of records
     #[arg(long, value_name = "PLACE", requires = "dry_run", conflicts_with = "records")]
     until: Option<String>,
     /// Number of values of the planned record
     #[arg(long, value_name = "N", requires = "until", default_value_t = 400)]
     values: usize,
-    /// Folder for the results [default: results/ and the name of the calibration]
+    /// Folder for the results [default: results/NAME with the name of the calibration]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Folder that keeps training runs, which calibrations of other records then have in common [default:
-    /// that of the results]
+    /// Folder for training runs, which calibrations of other records can share [default: the results folder]
     #[arg(long, value_name = "DIR")]
     training: Option<PathBuf>,
-    /// Replace files of the results that were edited since they were written, and files of others in their
-    /// places
+    /// Replace result files that were edited, and other files with the names of result files
     #[arg(long)]
     force: bool,
-    /// Most runs at once [default: one per core]; results do not depend on it
+    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Show neither progress nor what was found
+    /// Do not print progress and estimates
     #[arg(short, long)]
     quiet: bool,
-    /// Print what was found, or with --dry-run the plan, as JSON on stdout, and nothing else there
+    /// Print only the estimates to stdout, as JSON; with --dry-run the plan
     #[arg(long)]
     json: bool,
 }
@@ -90,7 +88,7 @@ impl CalibrateCommand {
         progress.finish();
         let text = found.map_err(|error| match error {
             StudyError::Interrupted => {
-                let sentence = "stopped by a signal: the same command goes on from there";
+                let sentence = "stopped by a signal: the same command resumes from there";
                 Failure::stopped(&signals, anyhow::anyhow!(sentence))
             }
             StudyError::Training(error) => Failure::input(error),

@@ -11,9 +11,9 @@ use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Check a case: what it means and what it will cost
+/// Check a case, and print its physics and its cost
 ///
-/// Runs nothing but a short measurement of the speed of this machine
+/// Runs only a short measurement of the speed of this machine
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront check cases/circle.toml
@@ -22,7 +22,7 @@ use crate::threads::set_threads;
 pub(crate) struct CheckCommand {
     #[command(flatten)]
     case: CaseArgs,
-    /// Print all this as JSON
+    /// Print the report as JSON
     #[arg(long)]
     json: bool,
 }

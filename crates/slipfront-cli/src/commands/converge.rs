@@ -25,40 +25,40 @@ use crate::wrap::stdout_columns;
   slipfront converge cases/circle.toml --replicates 8 --max-time 30min
   slipfront converge cases/sheet.toml --dry-run
 
-The slider, its load, mount, damping, speed and duration stay what they are in metres, seconds and pascals; blocks have twice their
-size, their own, half of it, and so on. The folder is that of a study: stopped in any way, the same command goes on where it was.")]
+Slider, load, mount, damping, speed and duration keep their values in metres, seconds and pascals. The block size is twice that of the
+case, that of the case, half of it, and so on. If the command is stopped in any way, the same command resumes it.")]
 pub(crate) struct ConvergeCommand {
     #[command(flatten)]
     case: CaseArgs,
-    /// Folder for the results [default: results/ and the name of the case with -meshes]
+    /// Folder for the results [default: results/NAME-meshes with the name of the case]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of meshes, each of half the blocks' size of the one before; the second is that of the case
+    /// Number of meshes, each with half the block size of the previous one; the second is the mesh of the
+    /// case
     #[arg(long, value_name = "N", default_value_t = MIN_LEVELS, value_parser = clap::value_parser!(u8).range(i64::from(MIN_LEVELS)..=i64::from(MAX_LEVELS)))]
     levels: u8,
-    /// Surfaces of each mesh [default: 5 if coefficients scatter, else 1]
+    /// Random surfaces per mesh [default: 5 if coefficients are random, else 1]
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     replicates: Option<u16>,
-    /// Replace files of the results that were edited since they were written, and files of others in their
-    /// places
+    /// Replace result files that were edited, and other files with the names of result files
     #[arg(long)]
     force: bool,
-    /// Most runs at once [default: one per core]; results do not depend on it
+    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Runs nothing if all runs together need more memory, in GB
+    /// Refuse to run if all runs together need more memory, in GB
     #[arg(long, value_name = "GB")]
     max_memory: Option<f64>,
-    /// Runs nothing if the runs are estimated to take longer, such as 30min or 2h
+    /// Refuse to run if the estimated time is longer, such as 30min or 2h
     #[arg(long, value_name = "TIME")]
     max_time: Option<SignedDuration>,
-    /// Print the meshes with the time of their runs, and run nothing
+    /// Print the meshes and the estimated time of their runs, without running them
     #[arg(long)]
     dry_run: bool,
-    /// Show neither progress nor tables
+    /// Do not print progress and tables
     #[arg(short, long)]
     quiet: bool,
-    /// Print the comparison as JSON on stdout, and nothing else there
+    /// Print only the comparison to stdout, as JSON
     #[arg(long, conflicts_with = "dry_run")]
     json: bool,
 }

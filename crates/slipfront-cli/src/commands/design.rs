@@ -18,7 +18,7 @@ use crate::threads::{count_from_one, set_threads};
 
 /// Search for a texture with the desired friction
 ///
-/// The best texture is judged on surfaces that the search has not seen
+/// The best texture is tested on random surfaces that the search did not use
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront design cases/designs/least_friction.toml
@@ -26,36 +26,35 @@ use crate::threads::{count_from_one, set_threads};
   slipfront design cases/designs/static_friction.toml --time 60s
   slipfront design cases/designs/dimples.toml --dry-run
 
-Stopped in any way, the same command goes on where it was. The folder holds the mask as .npy, .png, .svg, .dxf and .gsf, a case that
-reads it, and the verdict beside named patterns.")]
+If the command is stopped in any way, the same command resumes it. The folder contains the mask as .npy, .png, .svg, .dxf and .gsf, a
+case that reads it, and a comparison with named patterns.")]
 pub(crate) struct DesignCommand {
     /// Design file
     #[arg(value_name = "DESIGN.toml")]
     design: PathBuf,
-    /// Folder for the results [default: results/ and the name of the design]
+    /// Folder for the results [default: results/NAME with the name of the design]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Runs of the search, in place of `design.runs`; the verdict takes some more
+    /// Number of runs of the search, instead of `design.runs`; the final test takes further runs
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     runs: Option<u32>,
-    /// Cuts the search short after this time, such as 60s or 10min; what is found then depends on the speed
-    /// of this machine
+    /// Stop the search after this time, such as 60s or 10min; the result then depends on the speed of this
+    /// machine
     #[arg(long, value_name = "TIME")]
     time: Option<SignedDuration>,
-    /// Replace files of the results that were edited since they were written, and files of others in their
-    /// places
+    /// Replace result files that were edited, and other files with the names of result files
     #[arg(long)]
     force: bool,
-    /// Most runs at once [default: one per core]; results do not depend on it
+    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Print what is searched for, the largest number of runs and their time, and run nothing
+    /// Print the target, the maximum number of runs and their estimated time, without running them
     #[arg(long)]
     dry_run: bool,
-    /// Show neither progress nor the verdict
+    /// Do not print progress and verdict
     #[arg(short, long)]
     quiet: bool,
-    /// Print the verdict, or with --dry-run the plan, as JSON on stdout, and nothing else there
+    /// Print only the verdict to stdout, as JSON; with --dry-run the plan
     #[arg(long)]
     json: bool,
 }
@@ -95,18 +94,18 @@ impl DesignCommand {
                 let best = folder.path().join("mask.npy");
                 let so_far = if folder.has_verdict() {
                     format!(
-                        "{} keeps the results of an earlier search; ",
+                        "{} still contains the results of an earlier search; ",
                         folder.path().display()
                     )
                 } else if best.exists() {
                     format!(
-                        "the best texture so far stands in {}, without a verdict; ",
+                        "the best texture so far is in {}, without a verdict; ",
                         best.display()
                     )
                 } else {
                     String::new()
                 };
-                let sentence = format!("stopped by a signal: {so_far}the same command goes on from there");
+                let sentence = format!("stopped by a signal: {so_far}the same command resumes from there");
                 Failure::stopped(&signals, anyhow::anyhow!(sentence))
             }
             StudyError::NoDesign => Failure::input(error),

@@ -15,7 +15,7 @@ use crate::wrap;
 
 /// Export results to a data repository, or print their citations
 ///
-/// The description of runs, studies, convergences, designs and calibrations is an RO-Crate
+/// Runs, studies, convergences, designs and calibrations are exported as an RO-Crate
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront export results/circle --ro-crate --author \"NAME\" --licence CC-BY-4.0
@@ -24,24 +24,24 @@ use crate::wrap;
   slipfront export results/circle --bibtex > circle.bib
   slipfront export results/circle --cff --author \"NAME\" > CITATION.cff
 
-Only complete folders that `slipfront verify --checksums` finds as they were written are exported.")]
+Only complete and unchanged folders are exported, as checked by `slipfront verify --checksums`.")]
 pub(crate) struct ExportCommand {
-    /// Folders of complete results: of runs, studies, convergences, designs and calibrations
+    /// Folders of complete results of runs, studies, convergences, designs or calibrations
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     #[command(flatten)]
     form: Form,
-    /// Who made the results: a name, or "NAME <https://orcid.org/0000-0000-0000-0000>"
+    /// Author of the results: a name, or "NAME <https://orcid.org/0000-0000-0000-0000>"
     #[arg(long, value_name = "NAME")]
     author: Option<Author>,
-    /// Licence of the results: an identifier of SPDX such as CC-BY-4.0, or an address
+    /// Licence of the results: an SPDX identifier such as CC-BY-4.0, or an address
     #[arg(long, value_name = "ID")]
     licence: Option<Licence>,
-    /// A new folder for the crate, to which the folders are copied [default: the folder of the results
-    /// itself, if it is one]
+    /// New folder for the crate; the results folders are copied to it [default: the results folder itself, if
+    /// there is only one]
     #[arg(short, long, value_name = "DIR", conflicts_with_all = ["bibtex", "cff"])]
     out: Option<PathBuf>,
-    /// Replace a description that stands in the folder of the results
+    /// Replace an existing description in the results folder
     #[arg(long, conflicts_with_all = ["out", "bibtex", "cff"])]
     force: bool,
 }
@@ -50,13 +50,13 @@ pub(crate) struct ExportCommand {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Form {
-    /// Write ro-crate-metadata.json, with which the folder is a Process Run Crate
+    /// Write ro-crate-metadata.json, which makes the folder a Process Run Crate
     #[arg(long)]
     ro_crate: bool,
-    /// Print entries of BibTeX: each folder of results, slipfront and the article of its model
+    /// Print BibTeX entries for each folder of results, slipfront and the article on its model
     #[arg(long)]
     bibtex: bool,
-    /// Print a citation file, CITATION.cff; it needs --author
+    /// Print a citation file, CITATION.cff; requires --author
     #[arg(long)]
     cff: bool,
 }

@@ -10,19 +10,19 @@ use crate::print::print_message;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 
-/// Test every law and option against its exact answer, and benchmarks of rupture against their reference
+/// Compare every law and option with an exact solution, and benchmarks of rupture with their reference
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront family                         one line per option and benchmark
   slipfront family --docs docs/validation   the pages of the documentation, with pictures")]
 pub(crate) struct FamilyCommand {
-    /// Write family.md, rupture.md and their pictures to this folder; with --long transition.md, too
+    /// Write family.md, rupture.md and their pictures to this folder; with --long also transition.md
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
-    /// Run the benchmark of fronts faster than shear waves, too, for half an hour or more
+    /// Add the benchmark of fronts faster than shear waves, which takes half an hour or more
     #[arg(long)]
     long: bool,
-    /// Most runs at once [default: one per core]; results do not depend on it
+    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
 }
@@ -33,7 +33,7 @@ impl FamilyCommand {
         if let Some(path) = self.docs.as_deref().and_then(slipfront_family::foreign_docs) {
             let remedy = "move it away, or choose another folder with --docs";
             return Err(Failure::input(anyhow::anyhow!(
-                "{} is not of an earlier call: {remedy}",
+                "{} was not written by an earlier call: {remedy}",
                 path.display()
             )));
         }
@@ -49,7 +49,7 @@ impl FamilyCommand {
         match answers.filter(|answer| !answer.holds()).count() {
             0 => Ok(()),
             missed => Err(Failure::running(anyhow::anyhow!(
-                "{} farther from the value it is compared with than the tolerance",
+                "{} out of tolerance",
                 are(missed, "answer")
             ))),
         }

@@ -18,42 +18,42 @@ use crate::wrap::for_stderr;
 
 /// Open the interactive laboratory in a browser
 ///
-/// A surface slides while you look at it, paint on it and change it
+/// The surface slides while you watch it, paint on it and change it
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront lab                                          a circular cavity, sliding
-  slipfront lab cases/groove_across.toml                 a case of yours
-  slipfront lab results/circle                           a run again, beside what it recorded
-  slipfront lab mine/a.toml --allow-files shared         a case that names files in another folder
-  slipfront lab --single slipfront.html                  one file that opens without this program, and without a network
+  slipfront lab cases/groove_across.toml                 your own case
+  slipfront lab results/circle                           a repeated run, compared with its recorded results
+  slipfront lab mine/a.toml --allow-files shared         a case with files in another folder
+  slipfront lab --single slipfront.html                  a single file that opens without this program and without a network
   slipfront lab 'http://127.0.0.1:4000/#case=q1Yqyc_NUbJSSinKLEvVK4svLkksUrBVMNAzjMlT0lFKy8xJLVayqq6tBQA'
-                                                         the case of a link that was copied there
+                                                         the case in a copied link
 
-The page answers on this machine alone, and needs no network. Ctrl-C ends it.")]
+The page is available on this machine only, and needs no network. Ctrl-C ends it.")]
 pub(crate) struct LabCommand {
-    /// Case file, run folder, or a link of the page
+    /// Case file, run folder, or link copied from the page
     #[arg(value_name = "CASE")]
     case: Option<String>,
-    /// Folder of results: runs are saved there, and those that are there can be shown again
+    /// Folder of results: runs are saved there, and runs in it can be replayed
     #[arg(short, long, value_name = "DIR", default_value = "results")]
     results: PathBuf,
-    /// Another folder of which files that a case names may be read and become part of links and exports: else
-    /// those in the folder of the case alone; may be given several times
+    /// Another folder with files that a case may read and that may be embedded in links and exports [default:
+    /// only the folder of the case]; repeatable
     #[arg(long, value_name = "DIR")]
     allow_files: Vec<PathBuf>,
-    /// The port [default: one that is free]
+    /// Port of the server [default: a free port]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     port: u16,
-    /// Do not start the browser: open the address that is printed
+    /// Print the address, but do not start the browser
     #[arg(long)]
     no_open: bool,
-    /// Most threads of a run [default: one per core but one, which the browser has]
+    /// Maximum number of threads of a run [default: one less than the number of cores, for the browser]
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Write the laboratory as a folder that any web server can serve, and open nothing
+    /// Write the laboratory as a folder for any web server, and open nothing
     #[arg(long, value_name = "DIR", conflicts_with_all = ["single", "port", "no_open", "threads", "results"])]
     export: Option<PathBuf>,
-    /// Write the laboratory as one file that a browser opens from the disk, and open nothing
+    /// Write the laboratory as a single file that opens in a browser from disk, and open nothing
     #[arg(long, value_name = "FILE.html", conflicts_with_all = ["port", "no_open", "threads", "results"])]
     single: Option<PathBuf>,
 }
@@ -102,8 +102,8 @@ impl LabCommand {
             let file = laboratory.address_file(link);
             Some(file.map_err(|error| {
                 Failure::running(anyhow::anyhow!(
-                    "others can read standard output, and the address cannot be written to a file that they cannot ({error}): make room in {}, \
-                     or use `chmod 600` on the output",
+                    "other users can read standard output, and the address cannot be written to a private file ({error}): free \
+                     some space in {}, or use `chmod 600` on the output",
                     std::env::temp_dir().display()
                 ))
             })?)
@@ -116,7 +116,8 @@ impl LabCommand {
         );
         print_message(&format!("The laboratory is open until Ctrl-C: {address}\n"));
         if file.is_some() {
-            let note = "note: other users can read this output: the address is in the file that is named, which only you can read";
+            let note =
+                "note: other users can read this output, so the address is in a file that only you can read";
             print_stderr(&for_stderr(note));
         }
         if !self.no_open
@@ -127,7 +128,7 @@ impl LabCommand {
             } else {
                 "this address"
             };
-            let note = format!("note: no browser was started, since {reason}: open {address} in one");
+            let note = format!("note: no browser was started, because {reason}: open {address} in a browser");
             print_stderr(&for_stderr(&note));
         }
         laboratory.serve(stopped(&signals)).map_err(Failure::running)
@@ -142,7 +143,7 @@ impl LabCommand {
         if let Some(out) = &self.export {
             export_folder(start, &module, NOTICES, out).map_err(Failure::input)?;
             print_message(&format!(
-                "The laboratory is written to {}: give the folder to a web server, such as `python3 -m http.server`.\n",
+                "The laboratory is written to {}: serve the folder with a web server, such as `python3 -m http.server`.\n",
                 display_path(out)
             ));
         }

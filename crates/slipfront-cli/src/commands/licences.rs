@@ -8,7 +8,7 @@ use crate::print::print;
 /// Text written by `tests/licences/notices.py`; `.ci/run` compares it with the locked crates.
 pub(crate) const NOTICES: &str = include_str!("../../THIRD-PARTY-NOTICES.txt");
 
-/// Print the licences of slipfront and of what it contains
+/// Print the licences of slipfront and of its dependencies
 #[derive(Args)]
 #[command(after_help = "Example:
   slipfront licences | less")]

@@ -8,14 +8,14 @@ use crate::print::print;
 
 /// Print a manual page
 ///
-/// Of slipfront, or of one of its subcommands
+/// Without a subcommand, prints the page of slipfront itself
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront man run | man -l -
   slipfront man > ~/.local/share/man/man1/slipfront.1
   slipfront man study merge > ~/.local/share/man/man1/slipfront-study-merge.1")]
 pub(crate) struct ManCommand {
-    /// The subcommand [default: the page of slipfront itself]
+    /// Subcommand [default: slipfront itself]
     command: Vec<String>,
 }
 

@@ -33,33 +33,33 @@ use crate::threads::set_threads;
 
 /// Make an animation of the snapshots of a run
 ///
-/// An animated GIF, beside the friction curve with a mark at the instant
+/// Writes an animated GIF with the field and the friction curve, which marks the instant
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront movie results/circle
   slipfront movie results/circle --frames 300
   slipfront movie results/circle --seconds 8 --size 1600x800 -o circle.gif
-  slipfront movie results/circle --field displacement_x -o circle.mp4    where ffmpeg is installed")]
+  slipfront movie results/circle --field displacement_x -o circle.mp4    needs ffmpeg")]
 pub(crate) struct MovieCommand {
     /// Run folder
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Least number of snapshots, at equal distances in time beside the instants A-F. If the run has kept
-    /// fewer, its case is run again with this many, in the folder for temporary files (TMPDIR) [default: 100,
-    /// or those that the run has kept if its case names `output.snapshots` or has `output.movie`]
+    /// Minimum number of snapshots, at equal time intervals, in addition to the instants A-F. If the run has
+    /// fewer snapshots, its case is run again in the folder for temporary files (TMPDIR) [default: 100, or
+    /// the snapshots of the run if its case has `output.snapshots` or `output.movie`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_FRAMES))]
     frames: Option<u16>,
-    /// The field that is shown [default: that of the maps in stress.png]
+    /// Field to show [default: the field of the maps in stress.png]
     #[arg(long, value_parser = known_field)]
     field: Option<Field>,
-    /// The file: .gif, or .mp4, which ffmpeg makes [default: movie.gif in the folder of the run]
+    /// Output file: .gif, or .mp4 (needs ffmpeg) [default: movie.gif in the folder of the run]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Duration in seconds, in which instants A-F are shown five times as long as other snapshots [default:
-    /// about 16]
+    /// Duration of the movie in seconds; instants A-F are shown five times as long as other snapshots
+    /// [default: about 16]
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
-    /// Snapshots per second, each shown as long as the others
+    /// Snapshots per second, all shown for the same time
     #[arg(long, value_name = "N", value_parser = per_second, conflicts_with = "seconds")]
     fps: Option<f64>,
     /// Size in pixels
@@ -121,7 +121,7 @@ impl MovieCommand {
             "mp4" => true,
             _ => {
                 return Err(refused(format!(
-                    "cannot tell the format of `{}`: name a file that ends in .gif or .mp4",
+                    "cannot determine the format of `{}`: use the extension .gif or .mp4",
                     out.display()
                 )));
             }
@@ -144,7 +144,7 @@ impl MovieCommand {
         let movie = match more {
             Some((case, frames)) => {
                 print_stderr(&format!(
-                    "{} has kept {}: its case is run again for {frames}",
+                    "{} has {}: its case is run again for {frames}",
                     folder.display(),
                     count(n_kept, "snapshot")
                 ));
@@ -238,8 +238,7 @@ impl MovieCommand {
         let kept = case.iter().flat_map(|case| &case.output.fields);
         let names: Vec<&str> = kept.map(|field| field_info(*field).name).collect();
         format!(
-            "{} has kept no snapshots of {}: name a field that it has with --field (its case keeps {}), or let its case be run \
-             again with --frames",
+            "{} has no snapshots of {}: choose a field with --field (its case writes {}), or run the case again with --frames",
             self.folder.display(),
             field_info(field).name,
             names.join(", ")
@@ -278,7 +277,8 @@ fn mp4(run: &Path, movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec
         .spawn();
     let child = started.map_err(|error| match error.kind() {
         ErrorKind::NotFound => refused(
-            "an MP4 file is made by the program ffmpeg, which is not installed: install it, or name a .gif file".to_owned(),
+            "an MP4 file needs the program ffmpeg, which is not installed: install it, or use a .gif file"
+                .to_owned(),
         ),
         _ => failed(error),
     })?;

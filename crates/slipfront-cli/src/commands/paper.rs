@@ -17,31 +17,30 @@ use crate::threads::{count_from_one, set_worker_threads};
 
 /// Reproduce the figures and tables of the paper
 ///
-/// Judges the claims of the paper one by one
+/// Tests the claims of the paper one by one
 #[derive(Args)]
 #[command(after_help = "Examples:
-  slipfront paper                     everything, into results/paper: figures, claims.csv, report.html
+  slipfront paper                     everything: figures, claims.csv and report.html in results/paper
   slipfront paper fig12 fig15         two figures and the claims about them
-  slipfront paper --docs docs/validation   the claims table of the documentation, too")]
+  slipfront paper --docs docs/validation   also writes the claims table of the documentation")]
 pub(crate) struct PaperCommand {
-    /// Figures: fig1 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any
-    /// case
+    /// Figures: fig1 ... fig18, table1, sensitivity, or all; figures already finished in the folder are
+    /// always reported
     #[arg(value_name = "FIGURE")]
     figures: Vec<String>,
-    /// Folder for the results; what an earlier call there has finished is not run again
+    /// Folder for the results; figures that an earlier call finished there are not run again
     #[arg(short, long, value_name = "DIR", default_value = "results/paper")]
     out: PathBuf,
-    /// Replace files of the results that were edited since they were written, and files of others in their
-    /// places
+    /// Replace result files that were edited, and other files with the names of result files
     #[arg(long)]
     force: bool,
-    /// Most runs at once [default: one per core]; results do not depend on it
+    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Show neither progress nor claims
+    /// Do not print progress and claims
     #[arg(short, long)]
     quiet: bool,
-    /// Write paper.md and its pictures to this folder as well
+    /// Write paper.md and its pictures to this folder, in addition to --out
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
     /// Two random surfaces in place of five, one time step, and only the claims that survive that
@@ -107,7 +106,7 @@ fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
     };
     let remedy = "move it away, or choose another folder with --docs";
     Err(Failure::input(anyhow::anyhow!(
-        "{} is not of an earlier call: {remedy}",
+        "{} was not written by an earlier call: {remedy}",
         path.display()
     )))
 }
@@ -123,7 +122,7 @@ fn open(folder: &Path) -> Result<RunJournal, Failure> {
     make_folders(folder).map_err(unusable)?;
     let used = folder.join(RunJournal::FILE).exists() && !is_study(folder);
     if !used && !is_empty(folder).map_err(unusable)? {
-        let sentence = "holds other things than figures of the paper: choose another with --out";
+        let sentence = "contains files other than figures of the paper: choose another with --out";
         return Err(Failure::input(anyhow::anyhow!(
             "the folder {} {sentence}",
             folder.display()

@@ -16,8 +16,8 @@ use crate::threads::set_threads;
 
 /// Write the texture of a case to a drawing
 ///
-/// As outlines in true size, SVG or DXF, as a picture with one pixel per block, textured ones black, or as
-/// a height field
+/// Formats are outlines to scale (SVG, DXF), a picture with one pixel per block (PNG, textured blocks black),
+/// or a height field
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront texture cases/circle.toml -o mask.png            a mask that a case can read
@@ -26,10 +26,10 @@ use crate::threads::set_threads;
 pub(crate) struct TextureCommand {
     #[command(flatten)]
     case: CaseArgs,
-    /// The file to write: .svg, .dxf, .png, or .gsf, a Gwyddion simple field
+    /// Output file: .svg, .dxf, .png, or .gsf (Gwyddion simple field)
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Pixels of a block along a side, of a picture [default: 1]
+    /// Pixels per block side, for a picture [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     scale: Option<u16>,
     /// Replace the file if it exists
@@ -48,7 +48,7 @@ impl TextureCommand {
             .find(|input| is_same(&input.original, &self.out));
         if let Some(input) = input {
             let sentence = format!(
-                "the texture would replace {}, which the case reads: choose another name",
+                "the texture would replace {}, an input of the case: choose another name",
                 input.original.display()
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
@@ -72,7 +72,7 @@ impl TextureCommand {
         let scale = self.scale.map(usize::from);
         let said = texture_file::write(&case, &self.out, scale).map_err(failed)?;
         let covered = if case.file.texture.is_empty() {
-            "the case has no texture: every block touches".to_owned()
+            "the case has no texture: every block is in contact".to_owned()
         } else {
             report::texture(&case)
         };

@@ -33,36 +33,34 @@ use crate::wrap;
 
 /// Check that results are complete and unchanged
 ///
-/// Every file is compared with its checksum, and results of many runs with the recorded runs
+/// Compares every file with its checksum, and results of several runs with the recorded runs
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront verify results/baseline
   slipfront verify results/*
-  slipfront verify --checksums results/design   compares files with their checksums alone
-  slipfront verify --rerun results/baseline     runs its case again and compares every file
+  slipfront verify --checksums results/design   only compares files with their checksums
+  slipfront verify --rerun results/baseline     also runs the case again and compares every file
   slipfront verify --json results/* | jq '.folders[] | select(.status != \"unchanged\").folder'
 
-Tables, pictures and masks of studies, convergences, designs, calibrations and of the paper are derived again from the runs that their
-folders record. What cannot be derived again is no success, unless --checksums asks for no more. Folders that hold pictures alone, as
-`slipfront plot` writes them, are passed over. Pages that `--docs` writes are documents, and are not verified here.")]
+Tables, pictures and masks of studies, convergences, designs, calibrations and the paper are computed again from the runs recorded in their folders. A file that cannot be computed again is a failure, unless --checksums is given. Folders that contain only pictures of `slipfront plot`, and pages of `--docs`, are not verified.")]
 pub(crate) struct VerifyCommand {
     /// Folders of results
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// Run the case of each run folder again, in the folder for temporary files (TMPDIR), and compare every
-    /// file but the manifest
+    /// file except the manifest
     #[arg(long, conflicts_with = "checksums")]
     rerun: bool,
-    /// Compare files with their checksums, and derive nothing again
+    /// Only compare files with their checksums
     #[arg(long)]
     checksums: bool,
-    /// Most threads to use [default: one per core]; results do not depend on it
+    /// Maximum number of threads [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Say only what is wrong
+    /// Print only errors
     #[arg(short, long)]
     quiet: bool,
-    /// Print what was found of each folder as JSON on stdout, and nothing else there
+    /// Print only the result for each folder to stdout, as JSON
     #[arg(long)]
     json: bool,
 }
@@ -98,7 +96,7 @@ impl VerifyCommand {
     fn look_at(&self, folder: &Path, signals: &Signals) -> Result<Finding, Failure> {
         if holds_pictures_alone(folder) {
             let verdict = Verdict {
-                what: "pictures alone, of which nothing is recorded".to_owned(),
+                what: "only pictures, without recorded results".to_owned(),
                 ..Verdict::default()
             };
             return Ok(Finding::of(verdict, Status::Pictures));
@@ -127,7 +125,7 @@ impl VerifyCommand {
     fn verify(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         if self.rerun && has_records(folder) {
             return Err(Failure::input(anyhow::anyhow!(
-                "{} is the folder of a study: --rerun repeats single runs, such as those in its folder runs/",
+                "{} is the folder of a study: --rerun repeats only single runs, such as those in its folder runs/",
                 folder.display()
             )));
         }
@@ -225,11 +223,11 @@ fn outcome(found: &[Finding]) -> Result<(), Failure> {
     let differ = if different == 1 { "differs" } else { "differ" };
     match (n(Status::Unusable), different, n(Status::NotDerived)) {
         (0, 0, _) if n(Status::Pictures) == found.len() => Err(Failure::input(anyhow::anyhow!(
-            "there is nothing to verify: name folders of runs or studies"
+            "there is nothing to verify: give folders of runs or studies"
         ))),
         (0, 0, 0) => Ok(()),
         (0, 0, not_derived) => Err(Failure::running(anyhow::anyhow!(
-            "{not_derived} {of_all} {} as written, and could not be derived again: --checksums asks for no more",
+            "{not_derived} {of_all} {} as written, and could not be computed again: use --checksums to skip this",
             if not_derived == 1 { "is" } else { "are" }
         ))),
         (0, _, _) => Err(Failure::running(anyhow::anyhow!(
@@ -279,7 +277,7 @@ enum Status {
     NotDerived,
     /// Something is not as it was written.
     Different,
-    /// The folder holds pictures alone, of which nothing is recorded.
+    /// The folder holds only pictures, without recorded results.
     Pictures,
     /// The folder cannot be verified.
     Unusable,

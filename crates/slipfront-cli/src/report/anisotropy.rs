@@ -67,7 +67,7 @@ fn notes(all: &[Anisotropy]) -> String {
     let more = match notes.len().saturating_sub(MAX_NOTES) {
         0 => String::new(),
         more => note(&format!(
-            "and {more} more of the kind; anisotropy.csv has what counts"
+            "and {more} similar notes; anisotropy.csv contains all results"
         )),
     };
     notes.into_iter().take(MAX_NOTES).chain([more]).collect()

@@ -28,26 +28,27 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
 
 /// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive
 /// loads it, about 1/V*: the line of the report, and a note where the drive is the faster. A drive that is
-/// held waits for the front, and a single block has none.
+/// held waits for the front, and a single block has no mesh error.
 fn loading(case: &Case) -> (String, Option<String>) {
     if case.model.n_blocks() == 1 {
         return (String::new(), None);
     }
     if case.model.drive.is_held() {
-        let line = "loading           slow: the drive stands while a front crosses the slider\n";
+        let line = "loading           slow: the drive stops while a front crosses the slider\n";
         return (line.to_owned(), None);
     }
     let (name, blocks) = case.blocks_along_drive();
     let ratio = case.model.speed_against_front() * blocks;
     let line = format!(
-        "loading           V* {name} = {}: the time in which a front crosses the {} blocks over that of loading\n",
+        "loading           V* {name} = {}: time for a front to cross the {} blocks, relative to the loading time\n",
         four_digits(ratio),
         four_digits(blocks)
     );
     let note = (ratio > 1.0).then(|| {
         format!(
-            "V* {name} = {} is above 1: while a slip front crosses the slider, the drive goes on loading the part that still sticks, so that \
-             mu_s* and the effect of a texture depend on speed and size; it is 1 at V* = {}, and loading is slow well below that",
+            "V* {name} = {} is above 1: while a slip front crosses the slider, the drive continues to load the part that still \
+             sticks. mu_s* and the effect of a texture then depend on speed and size. V* {name} is 1 at V* = {}, and loading is \
+             slow well below this speed",
             four_digits(ratio),
             four_digits(case.groups.v_star / ratio)
         )
@@ -57,7 +58,7 @@ fn loading(case: &Case) -> (String, Option<String>) {
 
 fn onset(case: &Case) -> String {
     if case.initial.is_some() {
-        return "onset             not known before: blocks begin displaced or in motion\n".to_owned();
+        return "onset             unknown: blocks start displaced or in motion\n".to_owned();
     }
     let late = |star: f64| {
         if star > case.time_plan.end_star() {
@@ -79,10 +80,10 @@ fn onset(case: &Case) -> String {
         let load = if factor > 1.0 {
             format!("each carry {} times the load", four_digits(factor))
         } else {
-            "are pulled by the others too".to_owned()
+            "are also pulled by the others".to_owned()
         };
         format!(
-            "onset expected    {} to {}: the {} % of blocks in contact {load}; earlier, the more scattered they are{}\n",
+            "onset expected    {} to {}: the {} % of blocks in contact {load}; the onset is earlier if contacts are dispersed{}\n",
             at(from),
             at(to),
             four_digits(100.0 - case.texture.meshed_percent),
@@ -90,7 +91,7 @@ fn onset(case: &Case) -> String {
         )
     } else if expected.first_slip_star.is_none() {
         format!(
-            "onset expected    about {}, if the slider did not bend under its drive{}\n",
+            "onset expected    about {}, if the slider did not deform under its drive{}\n",
             at(to),
             late(to)
         )
@@ -108,8 +109,8 @@ fn whole_slider(case: &Case) -> String {
         .filter(|whole| whole.mu_static + whole.half_width < given);
     expected.map_or(String::new(), |whole| {
         format!(
-            "static friction   mu_s = {} of the slider, whose blocks have {}; mu_static = {:.3} would give {} (estimate from 50 x 50 blocks \
-             of this sigma_s*, R* and V*)\n",
+            "static friction   mu_s = {} for the slider and {} for its blocks; set mu_static = {:.3} to obtain {} (estimate \
+             from 50 x 50 blocks with this sigma_s*, R* and V*)\n",
             with_half_width(whole.mu_static, Some(whole.half_width)),
             four_digits(given),
             whole.for_given,
@@ -135,7 +136,7 @@ fn scales(case: &Case) -> String {
 /// Remark on the cost of a drive that is held, which leaves out the unknown time in which it stands.
 pub(super) fn standing(is_held: bool) -> &'static str {
     if is_held {
-        " and those in which the drive stands"
+        ", not counting steps in which the drive stops"
     } else {
         ""
     }
@@ -149,13 +150,13 @@ fn resources(case: &Case, time: TimeRange) -> String {
     format!(
         "cost              {:.3e} block-steps{}, {} on one thread{}\n\
          memory            {}{available}\n\
-         disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
+         disk              {}, of which snapshots take {}; {} more for checkpoints during the run\n",
         case.block_steps(),
         standing(case.model.drive.is_held()),
         duration(time),
         match useful_threads(case, rayon::current_num_threads()) {
             1 => String::new(),
-            threads => format!(" of the {threads} that a run takes here"),
+            threads => format!(" of the {threads} that a run uses here"),
         },
         byte_size(budget.memory()),
         byte_size(budget.disk()),

@@ -22,7 +22,7 @@ pub(crate) fn design(plan: &DesignPlan, threads: usize) -> String {
         n => format!("{}, each with ", count(n, "design")),
     };
     format!(
-        "{}\n{}  {what} on {nx} x {ny} blocks that cover {least} to {most} % of them, in {}, beside {}\n  \
+        "{}\n{}  {what} that cover {least} to {most} % of {nx} x {ny} blocks, in {}, compared with {}\n  \
          {designs}{} of the search, at most {} of the verdict\n  \
          at most {:.2e} block-steps{}, {} on {} of this machine\n",
         plan.name,

@@ -41,7 +41,7 @@ fn remark(case: &Case, length: &CaseLength) -> Option<String> {
         .filter(|_| length.name == "correlation length")?;
     let percent = |share: f64| four_digits(100.0 * share);
     Some(format!(
-        "means over a block keep {} % of the variance, over the slider {} %",
+        "means over a block have {} % of the variance, means over the slider {} %",
         percent(field.variance_of_blocks()),
         percent(field.variance_of_slider())
     ))

@@ -66,7 +66,7 @@ fn body(case: &Case) -> Option<String> {
             let sheets: Vec<String> = sheets.iter().map(sheet).collect();
             let springs = case.model.springs();
             format!(
-                "a stack of {} sheets, from the lowest on: {}, {} times as stiff along a wave as across it",
+                "a stack of {} sheets, lowest first: {}, {} times as stiff along a wave as across it",
                 sheets.len(),
                 sheets.join(", "),
                 four_digits(springs.along() / springs.diagonal)
@@ -135,7 +135,7 @@ fn load(case: &Case) -> String {
     let pressure = with_si_prefix(case.scales.pressure, "Pa");
     let within = case.load_distance().map_or(String::new(), |distance| {
         format!(
-            ", that of textured blocks on those within {}",
+            ", load of textured blocks on blocks within {}",
             with_si_prefix(distance, "m")
         )
     });
@@ -151,7 +151,7 @@ fn shear(case: &Case) -> String {
     let [along, _] = case.model.mean_dead_load();
     let share = case.share_of_shear().map_or(String::new(), |share| {
         format!(
-            ", {} % of what the blocks hold at rest",
+            ", {} % of the static friction of the blocks",
             four_digits(100.0 * share)
         )
     });
@@ -177,12 +177,12 @@ fn drive(case: &Case) -> String {
     });
     let motion = match keys.motion {
         Motion::Translation => format!("at {} degrees", keys.direction),
-        Motion::Rotation => "at the largest radius, turning about the middle".to_owned(),
+        Motion::Rotation => "at the largest radius, rotating about the centroid".to_owned(),
     };
     let at = match &keys.attached {
         Attached::At(AttachedEdge::All) => String::new(),
         Attached::At(edge) => format!(", attached at the {} edge", format!("{edge:?}").to_lowercase()),
-        Attached::File(file) => format!(", attached as {file} says"),
+        Attached::File(file) => format!(", attached by {file}"),
     };
     let (slider, k_drive) = (case.model.slider(), four_digits(drive.k_drive));
     let springs = slider.sum_of_drive_springs(&case.model.lattice);
@@ -196,7 +196,7 @@ fn drive(case: &Case) -> String {
         ),
     };
     let held = if drive.is_held() {
-        ", standing while a block in contact slides"
+        ", stopped while a block in contact slides"
     } else {
         ""
     };
@@ -264,7 +264,7 @@ fn time(case: &Case) -> String {
     let held = match time_plan.loading {
         Loading::Constant => String::new(),
         Loading::Held { onset_steps } => format!(
-            " of the drive and those in which it stands; mu_s* is the largest mu* to t* = {} of the drive",
+            " of the drive, not counting steps in which it stops; mu_s* is the largest mu* up to t* = {} of the drive",
             four_digits(onset_steps as f64 * time_plan.dt_star)
         ),
     };

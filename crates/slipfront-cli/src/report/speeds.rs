@@ -73,7 +73,7 @@ impl Speeds {
         let header = [
             key_and_unit(case).0,
             &ratio,
-            "mu_s* off by",
+            "mu_s* error",
             "drag",
             "steps",
             "time",
@@ -81,7 +81,7 @@ impl Speeds {
         let slow = &self.slow;
         let mut text = table(&header, &rows);
         text += &format!(
-            "slow loading      `{}`: {}; mu_s* within {} of slow loading in the mean of surfaces, drag {} of {}\n",
+            "slow loading      `{}`: {}; mean mu_s* over surfaces within {} of its slow limit, drag {} of {}\n",
             self.setting(case, slow.over_given),
             duration(per_step.of_steps(&slow.steps)),
             two_digits(slow.static_bound()),
@@ -94,7 +94,7 @@ impl Speeds {
         );
         if let Some((factor, steps)) = self.held {
             text += &format!(
-                "held drive        `drive.loading = \"held\"`, `{}`: as slow, in {} steps and those in which the drive stands\n",
+                "held drive        `drive.loading = \"held\"`, `{}`: equally slow, in {} steps, not counting steps in which the drive stops\n",
                 self.setting(case, factor),
                 steps_in_words(steps)
             );

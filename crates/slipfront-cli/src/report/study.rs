@@ -29,12 +29,12 @@ pub(crate) fn plan(plan: &Plan, time: TimeRange, threads: usize) -> String {
     let replicates = match &settings.until {
         None => count(min, "replicate"),
         Some(until) => format!(
-            "{min} to {max} replicates, until {} is known within {}",
+            "{min} to {max} replicates, until the half width of {} is at most {}",
             until.key, until.half_width
         ),
     };
     let reference = if plan.has_reference() {
-        ", each with its reference"
+        ", each with its untextured reference"
     } else {
         ""
     };
@@ -137,7 +137,7 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
     };
     let rows: Vec<Vec<String>> = (0..shown).map(row).collect();
     let interval = match plan.settings.max_replicates() {
-        1 => "one run at each point".to_owned(),
+        1 => "one run per point".to_owned(),
         _ => format!(
             "mean of n replicates \u{b1} half width of its {} % interval",
             four_digits(100.0 * plan.settings.confidence())
@@ -215,9 +215,10 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
         .collect();
     if !without.is_empty() {
         text += &note(&format!(
-            "{} no transition: mu* rose and did not fall half-way to its steady level in the time of a transition, or slides on as high. There is no \
-             static friction of such a run and no reduction, and no mean has them; `mu_star_max` is its largest mu*. Lengthen `time.duration_star` of the base \
-             if runs end before the fall; those that creep have none",
+            "{} no transition: after its peak, mu* did not drop at least half-way to the steady level within the time of a \
+             transition, or sliding continues at the peak level. Such a run has no static friction and no reduction, and is \
+             omitted from the means; `mu_star_max` is its largest mu*. Increase `time.duration_star` of the base if runs end \
+             before the drop; runs that creep have no drop",
             match without.len() {
                 1 => "1 run has".to_owned(),
                 runs => format!("{runs} runs have"),
@@ -228,7 +229,7 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
     text += &case_warnings(plan);
     if results.orphaned_runs > 0 {
         text += &note(&format!(
-            "{} not part of the study as it is now, but kept in runs.jsonl",
+            "{} not part of the present study; kept in runs.jsonl",
             are(results.orphaned_runs, "recorded run")
         ));
     }

@@ -24,7 +24,7 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     lines.push(("energy", energy(summary)));
     lines.push(("mesh", case.deciding_length()));
     let mut text = match summary.motion {
-        Some(Motion::Rotation) => String::from("\nmu is the torque over the load times the mean radius\n"),
+        Some(Motion::Rotation) => String::from("\nmu is the torque divided by load and mean radius\n"),
         _ => String::from("\n"),
     };
     for (name, value) in lines {
@@ -67,13 +67,13 @@ fn sliding_blocks(case: &Case, summary: &Summary) -> String {
     let most = format!("N* = {:.1} % at most", summary.sliding_percent_max);
     let kinetic = summary.sliding_percent_kinetic;
     let kinetic = kinetic.map_or(String::new(), |kinetic| {
-        format!(", {kinetic:.1} % in that window")
+        format!(", {kinetic:.1} % in the kinetic window")
     });
     // Where contacts that break are what slides, a block without one does not count.
     let breaks = case.model.friction.needs().stores_energy;
     let textured = if summary.texture_percent > 0.0 && !breaks {
         format!(
-            "; {:.1} % are textured, held by nothing, and slide from the start",
+            "; {:.1} % are textured, have no friction, and count as sliding from the start",
             summary.texture_percent
         )
     } else {
@@ -84,7 +84,7 @@ fn sliding_blocks(case: &Case, summary: &Summary) -> String {
 
 fn held_drive(steps: u64, drive_steps: u64) -> String {
     format!(
-        "moved in {} of {}, and stood still in the others",
+        "moved in {} of {}, and stopped in the others",
         drive_steps,
         count(steps as usize, "step")
     )
@@ -92,7 +92,7 @@ fn held_drive(steps: u64, drive_steps: u64) -> String {
 
 fn energy(summary: &Summary) -> String {
     format!(
-        "{} put in, {:.1e} of it unaccounted for",
+        "{} of work, {:.1e} of it missing from the balance",
         with_si_prefix(summary.work_j, "J"),
         summary.energy_error.abs()
     )

@@ -91,7 +91,7 @@ fn files_that_attach_no_blocks_are_refused() {
     workspace.write("edge.npy", npy(|_, _| 0));
     refused("attaches no block");
     workspace.write("edge.npy", npy(|i, j| if (i, j) == (7, 3) { -1 } else { 1 }));
-    refused("has -1 in row 3, column 7 (both counted from 0), where 0 or 1, 1 as of a dark pixel, is wanted");
+    refused("has -1 in row 3, column 7 (both counted from 0), but must be 0 or 1 (1 is a dark pixel)");
     let turned = String::from_utf8_lossy(&npy(|_, _| 1)[..80]).replace("(50, 60)", "(60, 50)");
     workspace.write(
         "edge.npy",

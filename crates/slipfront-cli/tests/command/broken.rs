@@ -317,8 +317,8 @@ fn a_disk_without_room_is_said_before_the_run() {
     };
     assert_eq!(status, 2, "{said}");
     for word in [
-        "the files of this run take about 2.",
-        "where 1.0 MiB are free in disk/a",
+        "the files of this run need about 2.",
+        "but 1.0 MiB are free in disk/a",
         "choose another folder",
     ] {
         assert!(said.contains(word), "{said}");
@@ -339,7 +339,7 @@ fn a_study_without_room_is_said_before_its_runs() {
         return;
     };
     assert_eq!(status, 2, "{said}");
-    for word in ["take about 400.0 KiB where ", "are free in disk/a", "study.keep"] {
+    for word in ["need about 400.0 KiB, but ", "are free in disk/a", "study.keep"] {
         assert!(said.contains(word), "{said}");
     }
     assert!(workspace.read("left/a/runs.jsonl").is_empty());

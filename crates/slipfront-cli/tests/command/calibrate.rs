@@ -78,13 +78,13 @@ fn a_planned_record_says_what_it_would_show() {
     );
     assert_eq!(workspace.files(".").len(), 1);
     for (line, status, sentence) in [
-        ("--dry-run --until 40nm", 2, "a time is wanted"),
+        ("--dry-run --until 40nm", 2, "give a time"),
         (
             "--dry-run --until 40",
             2,
             "the end of the planned record: \"40\" has no unit",
         ),
-        ("--dry-run --until 40ns --values 39", 2, "40 at the least"),
+        ("--dry-run --until 40ns --values 39", 2, "at least 40 values"),
         ("--until 40ns", 2, "--dry-run"),
     ] {
         let said = workspace.fail(&format!("calibrate fit.toml {line}"), status);
@@ -104,13 +104,13 @@ fn another_record_needs_no_runs() {
     );
     let output = workspace.output("calibrate fit.toml other.csv -o two --training runs");
     assert!(
-        output.status.success() && stderr(&output).contains("holds 200 runs"),
+        output.status.success() && stderr(&output).contains("contains 200 runs"),
         "{}",
         stderr(&output)
     );
     assert!(workspace.read("runs/runs.jsonl") == runs);
     let said = workspace.fail("calibrate fit.toml other.csv -o one", 2);
-    assert!(said.contains("holds another calibration"), "{said}");
+    assert!(said.contains("contains another calibration"), "{said}");
 }
 
 /// A record that cannot be meant is refused before any run, and before a folder is made.
@@ -130,7 +130,7 @@ fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
     file.set_len(1 << 40).unwrap();
     let said = workspace.fail("calibrate fit.toml long.csv -o new", 2);
     assert!(
-        said.contains("long.csv: it has 1099511627776 bytes where at most 16777216 can be meant"),
+        said.contains("long.csv: it has 1099511627776 bytes; at most 16777216 are expected"),
         "{said}"
     );
     refused(
@@ -166,11 +166,14 @@ fn a_foreign_record_is_refused_aloud() {
     workspace.write("foreign.toml", fit);
     let said = workspace.fail("calibrate foreign.toml record.csv -o found --quiet", 1);
     assert!(
-        said.contains("the model does not make such records") && said.contains("found/calibration.txt"),
+        said.contains("the model cannot reproduce these records") && said.contains("found/calibration.txt"),
         "{said}"
     );
     let text = workspace.read_text("found/calibration.txt");
-    assert!(text.starts_with("The model does not make such records"), "{text}");
+    assert!(
+        text.starts_with("The model cannot reproduce these records"),
+        "{text}"
+    );
     assert!(workspace.exists("found/case.toml"));
 }
 
@@ -179,7 +182,7 @@ fn folders_of_others_are_left_alone() {
     let workspace = workspace();
     workspace.write("mine/notes.txt", "kept");
     let said = workspace.fail("calibrate fit.toml record.csv -o mine", 2);
-    assert!(said.contains("holds other things than a calibration"), "{said}");
+    assert!(said.contains("is not the folder of a calibration"), "{said}");
     let said = workspace.fail("calibrate fit.toml missing.csv -o new", 2);
     assert!(said.contains("missing.csv") && !workspace.exists("new"), "{said}");
     let said = workspace.fail(
@@ -201,11 +204,11 @@ fn a_signal_keeps_what_was_run() {
     send(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     assert!(
-        !output.status.success() && stderr(&output).contains("the same command goes on"),
+        !output.status.success() && stderr(&output).contains("the same command resumes"),
         "{}",
         stderr(&output)
     );
     assert!(!workspace.exists("found/calibration.json"));
     let said = workspace.fail("verify found", 2);
-    assert!(said.contains("was not finished"), "{said}");
+    assert!(said.contains("is not finished"), "{said}");
 }

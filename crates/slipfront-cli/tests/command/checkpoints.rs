@@ -120,7 +120,7 @@ fn a_warning_of_the_queue_stops_it(signal: &str, status: i32) {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
     assert!(
-        stderr(&output).contains("`slipfront run --resume warned` goes on"),
+        stderr(&output).contains("`slipfront run --resume warned` resumes the run"),
         "{}",
         stderr(&output)
     );
@@ -238,10 +238,10 @@ fn what_is_complete_or_has_not_begun() {
     for (folder, why) in [
         (
             "other",
-            "it has no case.toml; begin the run again, there with --force",
+            "it has no case.toml; start the run again in this folder with --force",
         ),
-        ("nowhere", "there is none of this name; begin the run again"),
-        ("whole/case.toml", "it is a file: name its folder"),
+        ("nowhere", "it does not exist; start the run again"),
+        ("whole/case.toml", "it is a file: give its folder"),
     ] {
         let said = workspace.fail(&format!("run --quiet --resume {folder}"), 2);
         assert!(said.contains(why), "{said}");
@@ -346,7 +346,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
         let mut flipped = latest.clone();
         flipped[place] ^= 4;
         let said = refused(&flipped, "is damaged");
-        assert!(said.contains("add --previous to go on from there"), "{said}");
+        assert!(said.contains("add --previous to resume from it"), "{said}");
     }
     refused(&[&latest[..], b"more"].concat(), "is damaged");
     refused(&workspace.read("whole/fields.nc"), "is damaged");
@@ -363,7 +363,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     );
     refused(
         &text("\"slipfront_checkpoint\":5", "\"slipfront_checkpoint\":1"),
-        "has layout 1, and this version reads layout 5",
+        "has layout 1, but this version reads layout 5",
     );
     for (from, to) in [
         ("\"rows\":50", "\"rows\":51"),
@@ -373,15 +373,15 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     }
     refused(
         &text("\"row_length\":60", "\"row_length\":59"),
-        "is damaged: it holds no state of a run",
+        "is damaged: it does not contain the state of a run",
     );
     refused(
         &sealed(latest[..n - 8].to_vec()),
-        "is damaged: it holds no state of a run",
+        "is damaged: it does not contain the state of a run",
     );
     let case = String::from_utf8(workspace.read("halted/case.toml")).unwrap();
     workspace.write("halted/case.toml", case.replace("seed = 1", "seed = 2"));
-    refused(&latest, "belongs to another case");
+    refused(&latest, "does not belong to the case.toml");
     workspace.write("halted/case.toml", &case);
 
     // A damaged one does not take the place of the one before, however often the run is stopped.
@@ -447,7 +447,7 @@ fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
         workspace.write(&path, [&before[..], b"\n# more"].concat());
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-        let changed = format!("{path} was changed while the run went on");
+        let changed = format!("{path} was changed during the run");
         assert!(stderr(&output).contains(&changed), "{}", stderr(&output));
         assert!(!workspace.exists("edited/manifest.json"));
         workspace.write(&path, before);
@@ -470,7 +470,11 @@ fn a_terminal_that_closes_loses_nothing() {
     let output = child.wait_with_output().unwrap();
     if !ignores_hangup() {
         assert_eq!(output.status.code(), Some(129), "{}", stderr(&output));
-        assert!(stderr(&output).contains("which is saved"), "{}", stderr(&output));
+        assert!(
+            stderr(&output).contains("the state is saved"),
+            "{}",
+            stderr(&output)
+        );
         workspace.succeed("run --resume halted");
     }
     workspace.assert_same_run("whole", "halted");
@@ -502,8 +506,8 @@ fn a_stop_that_saves_nothing_is_a_failure() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(
-        stderr(&output).contains("which cannot be saved in gone")
-            && stderr(&output).contains("goes on from the start when that is mended"),
+        stderr(&output).contains("the state cannot be saved in gone")
+            && stderr(&output).contains("resumes from the start"),
         "{}",
         stderr(&output)
     );

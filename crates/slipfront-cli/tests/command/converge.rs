@@ -199,10 +199,10 @@ fn what_cannot_be_put_on_meshes_is_refused() {
     for (arguments, expected) in [
         (
             "--set slider.blocks=[25,25]",
-            "take numbers that are multiples of 2, such as [26, 26]",
+            "use multiples of 2, such as [26, 26]",
         ),
         ("--set texture.0.coverage=0.01", "no block is textured"),
-        ("--max-memory 0.001", "more than --max-memory 0.001 allows"),
+        ("--max-memory 0.001", "more than --max-memory 0.001;"),
         ("--max-memory nan", "more than --max-memory"),
         ("--max-time 1ns", "longer than --max-time"),
         ("--set drive.attach=left", "give `drive.total_stiffness`"),
@@ -224,7 +224,7 @@ fn meshes_without_a_number_have_status_1() {
     );
     let said = workspace.fail("converge sheet.toml -o meshes --quiet", 1);
     assert!(
-        unwrapped(&said).contains("no quantity has a value on every mesh: meshes/runs.csv says"),
+        unwrapped(&said).contains("no quantity has a value on every mesh: meshes/runs.csv contains"),
         "{said}"
     );
     assert!(workspace.exists("meshes/convergence.json"));

@@ -112,7 +112,7 @@ fn a_run_is_described_in_its_folder() {
     let said = workspace.succeed("export a --ro-crate");
     assert!(said.starts_with("a/ro-crate-metadata.json\n"), "{said}");
     assert!(
-        said.contains("names no author") && said.contains("has no licence"),
+        said.contains("has no author") && said.contains("has no licence"),
         "{said}"
     );
     let described = expect_complete(&workspace, "a");
@@ -126,7 +126,7 @@ fn a_run_is_described_in_its_folder() {
         described.entity("./")["license"]
             .as_str()
             .unwrap()
-            .starts_with("Not told")
+            .starts_with("No licence is given")
     );
     let parameter = |key: &str| {
         let id = format!("{}/{key}", action["@id"].as_str().unwrap());
@@ -161,7 +161,7 @@ fn a_run_is_described_in_its_folder() {
     let (status, said, _) = verified(&workspace, "a");
     assert_eq!(status, 0);
     assert!(
-        said.contains("ro-crate-metadata.json describes other results"),
+        said.contains("ro-crate-metadata.json does not describe the results"),
         "{said}"
     );
 }
@@ -188,19 +188,19 @@ fn several_runs_are_one_crate() {
     let refused = workspace.fail("export b/run --ro-crate -o all", 2);
     assert!(refused.contains("the folder all is not empty"), "{refused}");
     let refused = workspace.fail("export b/run --ro-crate -o .", 2);
-    assert!(refused.contains("the command works in the folder ."), "{refused}");
+    assert!(refused.contains("the command runs in the folder ."), "{refused}");
     // An empty folder gets the name of the crate that takes its place.
     std::fs::create_dir(workspace.path("empty")).unwrap();
     workspace.succeed("export b/run --ro-crate -o empty");
     expect_complete(&workspace, "empty");
     let refused = workspace.fail("export b/run all/run --ro-crate -o new", 2);
     assert!(
-        refused.contains("two of the folders have the name run"),
+        refused.contains("two of the folders have the same name run"),
         "{refused}"
     );
     assert!(!workspace.exists("new"));
     let refused = workspace.fail("export b/run all/run --ro-crate", 2);
-    assert!(refused.contains("name it with --out"), "{refused}");
+    assert!(refused.contains("give its folder with --out"), "{refused}");
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn what_cannot_be_drawn_of_a_folder_is_refused() {
         ),
         (
             "plot run --picture precursors",
-            "run has no picture precursors: the run has kept nothing",
+            "run has no picture precursors: the run has no data for it",
         ),
         (
             "plot run --units si --picture front",
@@ -72,12 +72,12 @@ fn what_cannot_be_drawn_of_a_folder_is_refused() {
         ),
         (
             "plot out --units si",
-            "--units is for pictures of runs, and out is no folder of a run",
+            "--units applies to pictures of runs, but out is not a folder of a run",
         ),
-        ("plot out --field traction", "--field is for pictures of runs"),
+        ("plot out --field traction", "--field applies to pictures of runs"),
         (
             "plot run out",
-            "out is no folder of a run, and curves are drawn over each other of runs alone",
+            "out is not a folder of a run, and only curves of runs can be combined",
         ),
         (
             "plot part",
@@ -85,19 +85,16 @@ fn what_cannot_be_drawn_of_a_folder_is_refused() {
         ),
         (
             "plot run --height 60 -o none",
-            "maps have the shape of the slider",
+            "the height of a map follows from the shape of the slider",
         ),
-        (
-            "plot run --width 80 -o run",
-            "run holds a run, and these are not its pictures",
-        ),
+        ("plot run --width 80 -o run", "run contains another run"),
         (
             "plot out --width 80 -o out",
             "exists: choose another place with --out",
         ),
         (
             "movie out",
-            "out is the folder of a study: name the folder of a run",
+            "out is the folder of a study: give the folder of a run",
         ),
     ] {
         let said = workspace.fail(line, 2);
@@ -145,7 +142,7 @@ fn a_pdf_stands_beside_the_pictures_of_its_run() {
     assert!(said.contains("friction.pdf"), "{said}");
     let said = workspace.fail("plot run -o run.pdf", 2);
     assert!(
-        said.contains("run.pdf is that of a picture: write --out run"),
+        said.contains("run.pdf is the name of a picture: write --out run"),
         "{said}"
     );
 }

@@ -120,7 +120,7 @@ fn the_case_itself_is_never_replaced() {
     ] {
         let said = workspace.fail(line, 2);
         assert!(
-            said.contains("would replace mine/") && said.contains("case.toml, which the run reads"),
+            said.contains("would replace mine/") && said.contains("case.toml, an input of the run"),
             "{said}"
         );
     }
@@ -218,7 +218,7 @@ fn what_an_interrupted_run_has_not_written_stays() {
         workspace.write(&format!("a/{name}"), "mine");
         let before = workspace.files("a");
         let why = if listed {
-            "was changed after the run had written it: move it away"
+            "was changed after the run wrote it: move it away"
         } else {
             "is not a file of an earlier run: move it away"
         };
@@ -266,7 +266,7 @@ fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
         workspace.write(&format!("a/{name}"), "mine");
         let before = workspace.files("a");
         let said = workspace.fail("run masked.toml --quiet -o a --force", 2);
-        let why = format!("a/{name} was changed after the run had written it");
+        let why = format!("a/{name} was changed after the run wrote it");
         assert!(said.contains(&why), "{said}");
         assert!(workspace.files("a") == before);
         workspace.fill("a", &whole);
@@ -274,7 +274,7 @@ fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
     workspace.write("a/friction.svg", "mine");
     let said = workspace.fail("plot a", 2);
     assert!(
-        said.contains("a/friction.svg is not as the run has drawn it") && said.contains("--force"),
+        said.contains("a/friction.svg was changed after the run drew it") && said.contains("--force"),
         "{said}"
     );
     assert_eq!(workspace.read("a/friction.svg"), b"mine");
@@ -408,10 +408,7 @@ fn pictures_of_others_are_not_replaced() {
     let before = workspace.files("b");
     for line in ["plot a -o b", "plot a b -o b", "plot a -o b --force"] {
         let said = workspace.fail(line, 2);
-        assert!(
-            said.contains("b holds a run, and these are not its pictures"),
-            "{said}"
-        );
+        assert!(said.contains("b contains another run"), "{said}");
     }
     assert_eq!(workspace.files("b"), before);
     workspace.write("mine/friction.png", "mine");
@@ -426,5 +423,5 @@ fn pictures_of_others_are_not_replaced() {
     workspace.succeed("plot a -o ./a");
     workspace.succeed("verify a");
     let said = workspace.fail("plot mine", 2);
-    assert!(said.contains("mine holds no summary.json"), "{said}");
+    assert!(said.contains("mine contains no summary.json"), "{said}");
 }

@@ -94,7 +94,7 @@ fn a_signal_ends_the_reading_of_any_file() {
                 "{command} {case}: {}",
                 stderr(&output)
             );
-            let said = "error: stopped while the case was made; nothing was written\n";
+            let said = "error: stopped while the case was prepared; nothing was written\n";
             assert_eq!(stderr(&output), said, "{command} {case}");
         }
     }
@@ -262,7 +262,7 @@ fn what_no_machine_holds_is_refused_in_a_sentence() {
     assert!(!workspace.exists("results"));
     let groove = "texture.0={shape=\"groove\",width=\"1um\",offset=\"1m\"}";
     let said = workspace.fail(&format!("check small.toml --set {groove}"), 2);
-    assert!(said.contains("look at its units"), "{said}");
+    assert!(said.contains("check its units"), "{said}");
 }
 
 /// A limit of the process is refused in a sentence: the process may have less than the machine.

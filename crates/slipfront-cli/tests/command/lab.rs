@@ -195,7 +195,7 @@ fn a_browser_that_cannot_read_the_page_is_not_started() {
     let refused = |change: &dyn Fn(&mut Command), words: &str| {
         let said = said(change);
         assert!(
-            said.starts_with("note: no browser was started, since ") && said.contains(words),
+            said.starts_with("note: no browser was started, because ") && said.contains(words),
             "{words}: {said}"
         );
         assert!(!desktop.0.exists("opened"), "{words}");

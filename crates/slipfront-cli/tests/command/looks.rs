@@ -95,7 +95,7 @@ fn manual_pages_have_options_and_examples() {
         ),
         (
             "man study merge",
-            &[".TH slipfront-study-merge 1  \"slipfront ", "Unite the shards"],
+            &[".TH slipfront-study-merge 1  \"slipfront ", "Merge the shards"],
         ),
     ] {
         let page = workspace.succeed(line);
@@ -243,11 +243,11 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     }
     // How long a held drive stands is not known.
     let said = unwrapped(&workspace.succeed("check small.toml --set drive.loading=held"));
-    let least = "block-steps and those in which the drive stands, at least ";
+    let least = "block-steps, not counting steps in which the drive stops, at least ";
     assert!(said.contains(least), "{said}");
     // I^2 with a = 3, and the product of I with a = 3/6 and 3/5 along the axes.
     let said = unwrapped(&workspace.succeed("check small.toml --set friction.correlation_length=3um"));
-    let alike = "correlation length 3 3 um 0.5 means over a block keep 96.41 % of the variance, over the slider 44.97 %";
+    let alike = "correlation length 3 3 um 0.5 means over a block have 96.41 % of the variance, means over the slider 44.97 %";
     let words: Vec<&str> = said.split_whitespace().collect();
     assert!(words.join(" ").contains(alike), "{said}");
     assert_eq!(workspace.files(".").len(), 1, "check has written something");
@@ -258,17 +258,17 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
 #[test]
 fn check_compares_crossing_and_loading() {
     let workspace = Workspace::small();
-    let note = "above 1: while a slip front crosses the slider, the drive goes on loading";
+    let note = "above 1: while a slip front crosses the slider, the drive continues to load";
     for (set, line, slow) in [
         (
             "drive.v_star=0.16",
-            "V* N_x = 0.96: the time in which a front crosses the 6 blocks",
+            "V* N_x = 0.96: time for a front to cross the 6 blocks",
             None,
         ),
         (
             "drive.v_star=0.2",
             "V* N_x = 1.2: ",
-            Some("it is 1 at V* = 0.1667, and loading is slow well below that"),
+            Some("is 1 at V* = 0.1667, and loading is slow well below this speed"),
         ),
         ("drive.direction=90", "V* N_y = 0.5: ", None),
         ("drive.direction=45", "V* N = 0.7778: ", None),
@@ -278,12 +278,12 @@ fn check_compares_crossing_and_loading() {
         (
             "slider.stiffness_grade={along=\"x\",from=4,to=4}",
             "V* N_x = 1.2: ",
-            Some("it is 1 at V* = 0.08333, and loading is slow well below that"),
+            Some("is 1 at V* = 0.08333, and loading is slow well below this speed"),
         ),
         (
             "slider.blocks=[20,20]",
             "V* N_x = 2: ",
-            Some("it is 1 at V* = 0.05, and loading is slow well below that"),
+            Some("is 1 at V* = 0.05, and loading is slow well below this speed"),
         ),
     ] {
         let said = unwrapped(&workspace.succeed(&format!("check small.toml --set {set}")));
@@ -304,7 +304,7 @@ fn check_warns_where_the_model_leaves_its_validity() {
     );
     let said = unwrapped(&said);
     for words in [
-        "texture 1 reaches over a free edge",
+        "texture 1 extends beyond a free edge",
         "negative draws",
         "the load strains the slider by 0.030",
         "V* = 0.3 is above 0.2",
@@ -351,7 +351,7 @@ fn check_warns_where_the_model_leaves_its_validity() {
             .succeed("check small.toml --set slider.blocks=[3,2] --set friction.mu_kinetic_field=mu_k.csv"),
     );
     for words in [
-        "the given kinetic coefficients have a mean of 5.0000, R* mu_static is 0.5000",
+        "the given kinetic coefficients have a mean of 5.0000, but R* mu_static is 0.5000",
         "the mean kinetic coefficient, 5.0000, is not below the static one, 1.0000",
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
@@ -359,7 +359,7 @@ fn check_warns_where_the_model_leaves_its_validity() {
     workspace.write("mu.csv", "0.4,0.5,0.6\n0.4,0.5,0.6\n");
     let given = "check small.toml --set slider.blocks=[3,2] --set friction.mu_static_field=mu.csv";
     let said = unwrapped(&workspace.succeed(given));
-    assert!(said.contains("a mean of 0.5000, mu_static is 1:"), "{said}");
+    assert!(said.contains("a mean of 0.5000, but mu_static is 1:"), "{said}");
     // Of these only the size remains where nothing is odd and the drive is slow.
     let calm = workspace.succeed("check small.toml --set drive.v_star=0.05");
     assert_eq!(calm.matches("note:").count(), 1, "{calm}");
@@ -387,7 +387,7 @@ fn run_prints_physics_summary_and_where_everything_is() {
 #[test]
 fn a_run_says_that_textured_blocks_slide_from_the_start() {
     let workspace = Workspace::small();
-    let sentence = "% are textured, held by nothing, and slide from the start";
+    let sentence = "% are textured, have no friction, and count as sliding from the start";
     let groove = "texture.0={shape=\"groove\",width=\"2um\"}";
     let n_star = |name: &str| {
         let series = workspace.read_text(&format!("{name}/series.csv"));
@@ -442,12 +442,12 @@ fn a_run_says_what_its_numbers_are_worth() {
     assert!(workspace.summary("stuck")["kinetic_friction_star"].is_null());
     let coarse = workspace.succeed("run small.toml -o coarse --set time.step=0.9");
     assert!(
-        coarse.contains("of the energy put in is unaccounted for"),
+        coarse.contains("of the input energy is missing from the balance"),
         "{coarse}"
     );
     let fine = workspace.succeed("run small.toml -o fine");
     assert!(
-        !fine.contains("of the energy put in is unaccounted for"),
+        !fine.contains("of the input energy is missing from the balance"),
         "{fine}"
     );
     // The largest pull so far is a bound and no coefficient; after a transition it is one.
@@ -505,7 +505,7 @@ fn plot_says_what_it_takes() {
     let said = workspace.fail("plot a measured.csv", 2);
     assert!(
         said.contains(
-            "measured.csv is a file: name the folder of a finished run; a measured record goes with `plot --data`"
+            "measured.csv is a file: give the folder of a finished run; a measured record is given with `plot --data`"
         ),
         "{said}"
     );
@@ -598,15 +598,15 @@ fn subcommands_are_found() {
     let workspace = Workspace::new();
     let help = workspace.succeed("--help");
     for line in [
-        "Many runs:",
-        "  study        Vary a case over keys and seeds, and tabulate the answers",
-        "  help         Print this help, or that of a subcommand",
+        "Several runs:",
+        "  study        Vary keys and seeds of a case, and tabulate the results",
+        "  help         Print this help, or the help of a subcommand",
     ] {
         assert!(help.lines().any(|shown| shown == line), "{line}\n{help}");
     }
     let said = workspace.fail("rnu", 2);
     assert!(
-        said.contains("\"rnu\" is no subcommand: did you mean `slipfront run`?"),
+        said.contains("\"rnu\" is not a subcommand: did you mean `slipfront run`?"),
         "{said}"
     );
     let said = workspace.fail("check --set texture.coverage=5", 2);

@@ -117,7 +117,7 @@ fn vectors_can_be_limited_without_effect_on_results() {
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2), "{said}");
     assert!(
-        said.contains("`MMX` names no vector instructions of slipfront"),
+        said.contains("`MMX` is not a vector instruction set of slipfront"),
         "{said}"
     );
 }
@@ -244,7 +244,7 @@ fn a_later_mu_star_above_the_first_peak_is_told() {
     let [first, largest] = ["static_friction_star", "mu_star_max"].map(|key| summary[key].as_f64().unwrap());
     assert!(largest > 1.01 * first);
     assert!(
-        said.contains("mu* is larger later than at its first peak: 0.1470"),
+        said.contains("mu* becomes larger than at its first peak: 0.1470"),
         "{said}"
     );
 }
@@ -371,7 +371,7 @@ fn a_movie_shows_every_snapshot() {
     for line in ["movie run", "movie run --field velocity_x"] {
         let said = workspace.fail(line, 2);
         assert!(
-            said.contains("movie.gif is not as the run has drawn it: choose another place"),
+            said.contains("movie.gif was changed after the run drew it: choose another place"),
             "{said}"
         );
     }
@@ -407,16 +407,16 @@ fn a_movie_shows_every_snapshot() {
         ("movie run --size 3x4 -o none.gif", "400x200, 800x400, 1600x800"),
         (
             "movie run --field velocity_x -o none.gif",
-            "has kept no snapshots of velocity_x: name a field that it has with --field (its case keeps",
+            "has no snapshots of velocity_x: choose a field with --field (its case writes",
         ),
         (
             "movie run --field pressure",
             "the fields are contact_stress_star, traction",
         ),
-        ("movie run -o movie.avi", "name a file that ends in .gif or .mp4"),
+        ("movie run -o movie.avi", "use the extension .gif or .mp4"),
         (
             "movie empty",
-            "holds no summary.json: name the folder of a run that is finished",
+            "contains no summary.json: give the folder of a finished run",
         ),
         ("movie nowhere", "there is no folder nowhere"),
     ] {
@@ -468,7 +468,7 @@ fn a_case_can_ask_for_its_movie() {
         2,
     );
     assert!(
-        said.contains("a movie shows the snapshots of a run, and this one keeps none"),
+        said.contains("a movie shows the snapshots of a run, but this run has none"),
         "{said}"
     );
     assert!(!workspace.exists("other"));

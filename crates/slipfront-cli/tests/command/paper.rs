@@ -71,7 +71,11 @@ fn what_cannot_be_done_is_said_before_anything_is_written() {
     refused(&workspace, "fig19", "the paper has no `fig19`");
     assert!(!workspace.exists("paper"));
     workspace.write("paper/notes.txt", "mine");
-    refused(&workspace, "fig13", "holds other things");
+    refused(
+        &workspace,
+        "fig13",
+        "contains files other than figures of the paper",
+    );
     assert_eq!(std::fs::read_dir(workspace.path("paper")).unwrap().count(), 1);
 }
 
@@ -84,7 +88,7 @@ fn what_others_have_written_stays() {
     refused(
         &workspace,
         "fig13 --docs docs",
-        "paper.md is not of an earlier call",
+        "paper.md was not written by an earlier call",
     );
     assert!(!workspace.exists("paper"));
     workspace.write("paper/runs.jsonl", "");
@@ -92,7 +96,7 @@ fn what_others_have_written_stays() {
     refused(
         &workspace,
         "fig13",
-        "holds other things than figures of the paper",
+        "contains files other than figures of the paper",
     );
     workspace.remove("paper/study.toml");
     std::fs::create_dir(workspace.path("paper/found")).unwrap();
@@ -100,5 +104,5 @@ fn what_others_have_written_stays() {
     let output = workspace.output("study study.toml --out paper");
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("holds other things than a study"), "{said}");
+    assert!(said.contains("is not the folder of a study"), "{said}");
 }

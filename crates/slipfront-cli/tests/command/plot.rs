@@ -27,7 +27,7 @@ fn plot_refuses_the_name_of_a_picture() {
     for out in ["tr.png", "maps/tr.SVG"] {
         let said = workspace.fail(&format!("plot a --field traction -o {out}"), 2);
         let (folder, _) = out.split_once('.').unwrap();
-        let sentence = format!("{out} is that of a picture: write --out {folder}\n");
+        let sentence = format!("{out} is the name of a picture: write --out {folder}\n");
         assert!(said.contains(&sentence), "{said}");
         assert!(!workspace.exists(out));
     }
@@ -85,7 +85,7 @@ fn plot_draws_maps_of_a_field_that_was_kept() {
     assert!(title("sliding").contains(">sliding fraction</text>"));
     let said = workspace.fail("plot a --field velocity_x", 2);
     assert!(
-        said.contains("has no maps of velocity_x: name it in `output.fields`"),
+        said.contains("has no maps of velocity_x: add it to `output.fields`"),
         "{said}"
     );
     assert!(
@@ -162,7 +162,7 @@ fn curves_are_drawn_in_newtons_and_metres() {
     assert!(svg(&workspace, "torque").contains(">torque (pN m)<"));
     let said = workspace.fail("plot a turned --units si", 2);
     assert!(
-        said.contains("forces and torques have no axis in common: turned"),
+        said.contains("forces and torques cannot share an axis: turned"),
         "{said}"
     );
     // The run's own pictures stay as they were.
@@ -348,7 +348,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     for (options, sentence) in [
         (
             "--width 30 --font-size 12",
-            "a width of 30 mm leaves no room for the curves beside letters of 12 pt: at least 65 mm are needed",
+            "a width of 30 mm leaves no room for curves with text of 12 pt: use at least 65 mm",
         ),
         ("--width 1000", "a number of mm from 20 to 400"),
         ("--font-size big", "a number of pt from 3 to 40"),
@@ -408,8 +408,8 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     let line = "--data slow.csv --x t --y F -o both";
     let said = workspace.fail(&format!("plot a slow {line}"), 2);
     assert!(
-        said.contains("slow.csv fits a best when it is shifted by ")
-            && said.contains(", and slow by 3 ns: give its shift with --shift"),
+        said.contains("slow.csv fits a best with a shift of ")
+            && said.contains(", but slow with 3 ns: give the shift with --shift"),
         "{said}"
     );
     assert!(!workspace.exists("both"));
@@ -424,8 +424,8 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     let said = workspace.fail("plot a --data slow.csv --x t --y F --shift 1 -o none", 2);
     assert!(
         said.contains(
-            "slow.csv and the curve of a run have too little in common, no point or less than a tenth of the shorter of both: shifted, the record goes \
-             from 1 s to 1 s, and a from 0 s to "
+            "slow.csv and the curve of a run overlap too little, by less than a tenth of the shorter one: after the shift the \
+             record covers 1 s to 1 s, and a covers 0 s to "
         ),
         "{said}"
     );
@@ -437,7 +437,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
         format!("plot slow --data slow.csv --x t --y F --shift {shift:e} -o part")
     };
     let said = workspace.fail(&shifted(0.95), 2);
-    assert!(said.contains("too little in common"), "{said}");
+    assert!(said.contains("overlap too little"), "{said}");
     let said = workspace.succeed(&shifted(0.8));
     let points = said
         .split_once(" over ")
@@ -454,7 +454,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     );
     let said = workspace.fail("plot a --data flat.csv --x t --y F -o none", 2);
     assert!(
-        said.contains("flat.csv fits about as well when it is shifted by ") && said.contains("--shift"),
+        said.contains("flat.csv fits about equally well with a shift of ") && said.contains("--shift"),
         "{said}"
     );
     assert!(!workspace.exists("none"));
@@ -473,7 +473,7 @@ fn lines_without_numbers_are_not_passed_over_in_silence() {
     let from = series.lines().count() + 1;
     assert!(
         said.starts_with(&format!(
-            "note: ended.csv ends with 2 lines without numbers, from line {from} on: passed over\n"
+            "note: ended.csv ends with 2 lines without numbers, starting at line {from}: passed over\n"
         )),
         "{said}"
     );

@@ -173,7 +173,7 @@ fn getting_started_shows_what_is_printed() {
     // The example of the help of `verify`, on the folders that the page leaves behind.
     let printed = run(&workspace, "slipfront verify results/*");
     assert!(
-        printed.contains("results/cavity: ") && printed.contains("results/overlay holds pictures alone"),
+        printed.contains("results/cavity: ") && printed.contains("results/overlay holds only pictures"),
         "{printed}"
     );
     assert!(

@@ -133,7 +133,7 @@ fn figures_whose_data_are_lost_are_not_taken_for_verified() {
     let (status, said, problems) = verified(&workspace, "out");
     assert_eq!(status, 1, "{said}");
     assert!(
-        said.contains("were not made again") && problems.contains("--checksums"),
+        said.contains("were not recomputed") && problems.contains("--checksums"),
         "{said}{problems}"
     );
     assert_eq!(verified(&workspace, "out --checksums").0, 0);
@@ -288,7 +288,7 @@ fn journals_of_another_kind_are_refused() {
             ] {
                 let said = workspace.fail(line, 2);
                 assert!(
-                    said.contains("holds runs of another kind of work"),
+                    said.contains("contains runs of another kind of task"),
                     "{line}: {said}"
                 );
             }
@@ -312,7 +312,7 @@ fn a_run_without_an_end_is_none() {
     workspace.write("out/design.jsonl", format!("{sum} {json}\n"));
     for line in [line, "verify out"] {
         let said = workspace.fail(line, 2);
-        assert!(said.contains("holds runs of another kind of work"), "{said}");
+        assert!(said.contains("contains runs of another kind of task"), "{said}");
     }
 }
 
@@ -325,7 +325,7 @@ fn the_folder_of_training_runs_is_not_that_of_the_results() {
             2,
         );
         assert!(
-            said.contains(&format!("--training {training} is the folder of the results")),
+            said.contains(&format!("--training {training} is the results folder")),
             "{said}"
         );
         assert!(!workspace.exists("new"));

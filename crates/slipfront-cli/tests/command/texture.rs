@@ -26,7 +26,7 @@ fn a_signal_ends_a_texture_that_takes_long() {
         assert_eq!(output.status.code(), Some(130), "{command}: {}", stderr(&output));
         assert_eq!(
             stderr(&output),
-            "error: stopped while the case was made; nothing was written\n"
+            "error: stopped while the case was prepared; nothing was written\n"
         );
     }
     assert_eq!(workspace.files(".").len(), 2);
@@ -78,12 +78,12 @@ fn a_picture_is_replaced_only_by_force() {
     workspace.write("masked.toml", MASKED.replace("spot.png", "mask.png"));
     let said = workspace.fail("texture masked.toml -o mask.png --force", 2);
     assert!(
-        said.contains("would replace mask.png, which the case reads"),
+        said.contains("would replace mask.png, an input of the case"),
         "{said}"
     );
     let said = workspace.fail("texture small.toml -o mask.jpg", 2);
     assert!(
-        said.contains("name a file that ends in .svg or .dxf for outlines, in .png for a picture"),
+        said.contains("use the extension .svg or .dxf for outlines, .png for a picture"),
         "{said}"
     );
 }
@@ -118,6 +118,6 @@ fn outlines_and_fields_are_written() {
     workspace.succeed("texture dimples.toml -o b.png --scale 3");
     assert!(workspace.read("b.png") != workspace.read("a.png"));
     let said = workspace.fail("texture dimples.toml -o b.svg --scale 3", 2);
-    assert!(said.contains("`--scale` is for pictures"), "{said}");
+    assert!(said.contains("`--scale` applies to pictures"), "{said}");
     workspace.fail("texture dimples.toml -o c.png --scale 0", 2);
 }

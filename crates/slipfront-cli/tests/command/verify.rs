@@ -46,7 +46,10 @@ fn a_run_is_what_was_written() {
     let (status, said, errors) = verified(&workspace, "a b");
     assert_eq!((status, errors.as_str()), (0, ""));
     assert_eq!(said.lines().count(), 2, "{said}");
-    assert!(said.contains("a: 12 files as slipfront 0.1.0"), "{said}");
+    assert!(
+        said.contains("a: 12 files unchanged since slipfront 0.1.0"),
+        "{said}"
+    );
     let (status, said, _) = verified(&workspace, "a --quiet");
     assert_eq!((status, said.as_str()), (0, ""));
     assert!(before == workspace.files("."), "verifying has changed something");
@@ -77,7 +80,7 @@ fn json_has_what_was_found_of_each_folder() {
         ]
     );
     assert!(of("differences")[1].contains("b/series.csv differs"), "{said}");
-    assert!(of("error")[3].contains("nowhere is no folder"), "{said}");
+    assert!(of("error")[3].contains("nowhere is not a folder"), "{said}");
 }
 
 #[test]
@@ -232,10 +235,10 @@ fn what_is_no_run_folder_is_said_with_status_2() {
     for (folder, words) in [
         (
             "empty",
-            "empty holds no manifest.json: it is no run folder, or its run did not end",
+            "empty has no manifest.json: it is not a run folder, or its run did not finish",
         ),
-        ("small.toml", "small.toml is no folder"),
-        ("nowhere", "nowhere is no folder"),
+        ("small.toml", "small.toml is not a folder"),
+        ("nowhere", "nowhere is not a folder"),
     ] {
         let (status, said, errors) = verified(&workspace, folder);
         assert_eq!((status, said.as_str()), (2, ""), "{folder}");
@@ -262,7 +265,7 @@ fn folders_of_pictures_are_passed_over() {
     assert_eq!((status, errors.as_str()), (0, ""), "{said}");
     assert!(
         said.starts_with("a: 12 files")
-            && said.contains("note: results/overlay holds pictures alone, of which nothing is recorded"),
+            && said.contains("note: results/overlay holds only pictures, without recorded results"),
         "{said}"
     );
     assert_eq!(
@@ -272,20 +275,20 @@ fn folders_of_pictures_are_passed_over() {
     let (status, _, errors) = verified(&workspace, "results/overlay");
     assert_eq!(status, 2);
     assert!(
-        errors.contains("there is nothing to verify: name folders of runs or studies"),
+        errors.contains("there is nothing to verify: give folders of runs or studies"),
         "{errors}"
     );
     workspace.write("results/overlay/notes.txt", "");
     let (status, _, errors) = verified(&workspace, "a results/overlay");
     assert_eq!(status, 2);
     assert!(
-        errors.contains("results/overlay holds no manifest.json") && !errors.contains("--resume"),
+        errors.contains("results/overlay has no manifest.json") && !errors.contains("--resume"),
         "{errors}"
     );
     remove(&workspace, "a/manifest.json");
     let (_, _, errors) = verified(&workspace, "a");
     assert!(
-        errors.contains("`slipfront run --resume a` goes on with it"),
+        errors.contains("`slipfront run --resume a` resumes it"),
         "{errors}"
     );
 }
@@ -307,7 +310,10 @@ fn a_manifest_of_another_version_is_understood() {
     });
     let (status, said, _) = verified(&workspace, "a");
     assert_eq!(status, 0, "{said}");
-    assert!(said.contains("a: 12 files as slipfront 9.9.9"), "{said}");
+    assert!(
+        said.contains("a: 12 files unchanged since slipfront 9.9.9"),
+        "{said}"
+    );
     let (status, said, _) = verified(&workspace, "a --rerun --quiet");
     assert_eq!(status, 0, "{said}");
     let (_, said, _) = verified(&workspace, "a --rerun");
@@ -353,11 +359,15 @@ fn a_manifest_speaks_of_its_own_folder_alone() {
 fn a_case_that_is_none_any_more_is_told() {
     let workspace = workspace_with_a_run();
     for (from, to, words) in [
-        ("[drive]", "[drove]", "is no case for this version: a/case.toml:"),
+        (
+            "[drive]",
+            "[drove]",
+            "is not a valid case for this version: a/case.toml:",
+        ),
         (
             "v_star = 0.1",
             "v_star = 0.10",
-            "is not the resolved case that it was",
+            "is not the original resolved case",
         ),
     ] {
         let before = workspace.files("a");

@@ -20,7 +20,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     from_the_side(&mut drawn, [3.35, 0.6]);
     data.panel(
         "fig01",
-        "The model. Left, from above: every block is tied to its eight neighbours by springs k_1 = (3/4) E l along the axes and k_2 = \
+        "The model. Left, top view: springs connect each block to its eight neighbours, k_1 = (3/4) E l along the axes and k_2 = \
          (3/8) E l across them. Right, from the side: the load F_n presses a block on the substrate, the drive at speed V \
          pulls it through k_s = k_2, friction F_f holds it.",
         Drawing::Sketch(drawn),

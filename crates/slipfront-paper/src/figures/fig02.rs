@@ -24,7 +24,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     };
     data.panel(
         "fig02",
-        "Local static and kinetic friction coefficients of one random surface, over their means.",
+        "Local static and kinetic friction coefficients of one random surface, divided by their means.",
         coefficient_maps(
             "\u{3bc}_i/\u{27e8}\u{3bc}\u{27e9}",
             groups.sigma_static_star,
@@ -50,9 +50,9 @@ fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut Fi
     let fine: Vec<f64> = (-60..=60).map(|k| 1.0 + 0.05 * sigma * f64::from(k)).collect();
     data.panel(
         "fig02_distribution",
-        "The same coefficients as densities, beside the Gaussian of Eq. 1.",
+        "Probability densities of these coefficients, with the Gaussian of Eq. 1.",
         Drawing::Responses(Responses {
-            x_title: "local coefficient over its mean".to_owned(),
+            x_title: "local coefficient/mean".to_owned(),
             y_title: "density".to_owned(),
             curves: vec![
                 histogram("static", &bins, mu_static),
@@ -93,7 +93,7 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     Response::of_values(label, &middles, &shares)
 }
 
-/// Distance of Kolmogorov and Smirnov between a sample and the standard Gaussian, times sqrt(n): below 1.36
+/// Kolmogorov-Smirnov distance between a sample and the standard Gaussian, times sqrt(n): below 1.36
 /// with 95 % confidence if it is one.
 fn distance_to_normal(mut sorted: Vec<f64>) -> f64 {
     let normal = Normal::standard();

@@ -61,7 +61,7 @@ pub(super) fn measure_table(runner: &mut FigureRunner, data: &mut FigureData) ->
     ];
     data.table(
         "table1",
-        "Table 1: its speeds as printed, the V* that they make by Eq. 11a, and the speeds that make V* = 0.03 (D3).",
+        "Table 1: printed speeds, the V* that they give by Eq. 11a, and the speeds that give V* = 0.03 (D3).",
         header,
         rows,
     );
@@ -104,13 +104,13 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     };
     data.panel(
         "fig03",
-        "The eight cases of Table 1, three speeds corrected so that all have V* = 0.03 (D3): friction above, sliding \
-         blocks below. A-F are the instants of Fig. 4.",
+        "The eight cases of Table 1, with three speeds corrected so that all have V* = 0.03 (D3). Top: friction; bottom: sliding \
+         blocks. A-F are the instants of Fig. 4.",
         curves(&corrected),
     );
     data.panel(
         "fig03_as_printed",
-        "The same with the speeds as printed: cases 3, 6 and 7 have V* = 0.015, 0.010 and 0.015, and fall out of line.",
+        "The eight cases with the printed speeds. Cases 3, 6 and 7 have V* = 0.015, 0.010 and 0.015, so their curves differ.",
         curves(&printed),
     );
     Ok(())
@@ -131,7 +131,7 @@ fn other_surfaces(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData
     });
     data.table(
         "fig03_surfaces",
-        "Case 8 on other random surfaces: largest difference from the first surface, which all curves of Fig. 3 have here, up \
+        "Case 8 on other random surfaces: largest difference from the first surface, which all curves of Fig. 3 use here, up \
          to the end of the transition.",
         ["surface", "difference of mu*", "difference of N* (%)"],
         rows,

@@ -19,7 +19,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         .map(|letter| main.stress_map(main.instant(letter)?, &letter.to_string()));
     data.panel(
         "fig04",
-        "Contact stress at the instants A-F of Fig. 3: loading, first slip, peak, most blocks sliding, least friction, \
+        "Contact stress at the instants A-F of Fig. 3: loading, first slip, friction peak, most blocks sliding, lowest friction, \
          kinetic phase.",
         stress_maps(maps.into_iter().collect::<Result<_, _>>()?, 3),
     );

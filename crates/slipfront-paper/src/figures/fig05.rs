@@ -14,7 +14,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let name = |size: usize| format!("{0} \u{d7} {0} blocks", sides[size]);
     data.panel(
         "fig05",
-        "Friction and sliding blocks of sliders of 5 x 5, 25 x 25 and 75 x 75 blocks.",
+        "Friction and sliding blocks for sliders of 5 x 5, 25 x 25 and 75 x 75 blocks.",
         curves(firsts, name),
     );
     let mut maps = Vec::new();
@@ -25,8 +25,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     }
     data.panel(
         "fig05c",
-        "Contact stress in the three sizes at the peak of friction (C), when most blocks slide (D), and at the least \
-         friction after it (E).",
+        "Contact stress for the three sizes at the friction peak (C), when most blocks slide (D), and at the lowest \
+         friction after the peak (E).",
         stress_maps(maps, 3),
     );
     whole_curves(&runs, data);

@@ -23,7 +23,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         .collect();
     data.panel(
         "fig06",
-        "Onset time and time steps up to the onset, with dt* = (2/3) V*, against speed, beside Eqs. 12 and 14.",
+        "Onset time and number of time steps up to the onset, with dt* = (2/3) V*, against speed, compared with Eqs. 12 and 14.",
         Drawing::Responses(Responses {
             x_title: "drive speed V*".to_owned(),
             log_x: true,
@@ -102,7 +102,7 @@ fn material(sweep: &ParameterSweep, data: &mut FigureData) {
     });
     data.table(
         "fig06_material",
-        "Onset time in seconds after one quantity of Table 1 case 8 is changed, over the onset time before.",
+        "Onset time after one quantity of case 8 of Table 1 is changed. The factor is relative to the unchanged case.",
         ["change", "V*", "onset time (ns)", "factor"],
         rows,
     );

@@ -19,7 +19,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     };
     data.panel(
         "fig07",
-        "V* = 0.2 in the paper's time step and in one 27 times finer: the fluctuation is the same, and so is no instability.",
+        "V* = 0.2 with the paper's time step and with a step 27 times smaller. The fluctuation is the same, so it is not an instability.",
         Drawing::Curves(vec![
             paper.curve(&format!("\u{394}t* = {:.3}", paper.case.time_plan.dt_star)),
             finest.curve(&format!("\u{394}t* = {}", finest.case.time_plan.dt_star)),
@@ -93,8 +93,8 @@ fn literal(sweep: &ParameterSweep, data: &mut FigureData) {
     let rows = speeds.iter().zip(&best);
     data.table(
         "fig07_literal",
-        "The step in which Eq. 4 as printed gives mu_k* = R* = 0.5, between steps from 0.05 to 0.3: smaller steps give more, \
-         larger ones less (D2, D11). Beside it Eq. 13.",
+        "Time step at which Eq. 4 as printed gives mu_k* = R* = 0.5, interpolated between steps from 0.05 to 0.3, and the step of \
+         Eq. 13. Smaller steps give a higher mu_k*, larger steps a lower one (D2, D11).",
         ["V*", "dt*", "(2/3) V*"],
         rows.map(|(v, dt)| [v.to_string(), format!("{dt:.3}"), format!("{:.4}", 2.0 / 3.0 * v)]),
     );

@@ -15,7 +15,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let numbers = sweep.numbers(&[], "static_friction_star");
     data.panel(
         "fig08",
-        "Static friction against speed, means of five surfaces with their 95 % intervals.",
+        "Static friction against speed. Lines: means over five random surfaces; bands: 95 % confidence intervals of these means.",
         Drawing::Responses(Responses {
             x_title: "drive speed V*".to_owned(),
             y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
@@ -27,7 +27,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let labels: Vec<String> = speeds.iter().map(|speed| format!("V* = {speed}")).collect();
     data.panel(
         "fig08_maps",
-        "Contact stress at the peak of friction: the faster the drive, the more blocks slip before it comes.",
+        "Contact stress at the friction peak. At higher drive speed more blocks slip before the peak.",
         stress_maps(peak_maps(&runs, &labels)?, 3),
     );
     let means = values(&numbers);

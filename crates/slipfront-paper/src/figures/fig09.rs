@@ -54,7 +54,7 @@ fn friction(sweep: &ParameterSweep, runs: &[FigureRun], data: &mut FigureData) -
     });
     data.table(
         "fig09_damping",
-        "Friction and sliding blocks by damping, means of five surfaces.",
+        "Friction and sliding blocks against damping, means over five random surfaces.",
         ["Omega*", "mu_s*", "mu_k*", "N* in the kinetic window (%)"],
         rows,
     );

@@ -54,7 +54,7 @@ fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<
     }
     let excess = excess_in(&FigureRun::kinetic_window)?;
     windows.push((
-        "from t_s* + 2.5/V* to 8/V*: as everywhere else here".to_owned(),
+        "from t_s* + 2.5/V* to 8/V* (used in all other results)".to_owned(),
         excess,
     ));
     let long = runner.study("fig10_long")?.values(&[], "kinetic_friction_star");
@@ -67,8 +67,8 @@ fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<
     });
     data.table(
         "fig10_windows",
-        "Kinetic friction above R* at R* = 0.25, by the window over which it is averaged (D8), and on how many surfaces it is \
-         below R*. E, the end of the transition, is at t* = 87.",
+        "Difference mu_k* - R* at R* = 0.25 for several averaging windows (D8), and the number of surfaces with mu_k* \
+         below R*. The end of the transition, E, is at t* = 87.",
         ["window", "mu_k* - R*", "below R*"],
         rows,
     );

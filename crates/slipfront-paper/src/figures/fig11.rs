@@ -47,7 +47,7 @@ fn draw(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Resul
     let mean = main.case.scales.mu_static_mean;
     data.panel(
         "fig11a",
-        "Local static friction coefficients; circles around the six lowest of their local minima.",
+        "Local static friction coefficients. Circles mark the six lowest local minima.",
         coefficient_maps(
             "\u{3bc}_s/\u{27e8}\u{3bc}_s\u{27e9}",
             main.case.groups.sigma_static_star,
@@ -68,7 +68,7 @@ fn draw(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Resul
     }
     data.panel(
         "fig11bcd",
-        "Contact stress when 3, 20 and 60 % of the blocks have slipped: fronts start at the circles and grow together.",
+        "Contact stress after 3, 20 and 60 % of the blocks have slipped. Fronts start at the circles and merge.",
         stress_maps(maps, 3),
     );
     Ok(())

@@ -30,8 +30,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     }
     data.panel(
         "fig12",
-        "Static friction against the spread of the local static coefficients, for four speeds: means of five surfaces \
-         with their 95 % intervals.",
+        "Static friction against the spread of the local static coefficients, for four speeds. Lines: means over five random \
+         surfaces; bands: 95 % confidence intervals of these means.",
         Drawing::Responses(Responses {
             x_title: "spread of static coefficients \u{3c3}\u{209b}*".to_owned(),
             y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
@@ -50,16 +50,16 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     kinetic(runner, data)
 }
 
-/// Share of fives of surfaces that are as close together as the paper's, at every point of the figure with a
+/// Share of groups of five surfaces that agree as closely as the paper's, at every point of the figure with a
 /// spread.
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_surfaces")?;
     let farthest_of = |five: &[f64]| farthest(five, mean(five));
     let readings: [(&str, &str, Scatter); 2] = [
-        ("fives_within", "the largest deviation", &farthest_of),
+        ("fives_within", "largest deviation", &farthest_of),
         (
             "fives_within_as_standard",
-            "the standard deviation",
+            "standard deviation",
             &standard_deviation,
         ),
     ];
@@ -76,9 +76,9 @@ fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Pape
     }
     data.table(
         "fig12_fives",
-        "Of 7800 fives among two hundred surfaces, the share in % that stay below 0.015 at all points of Fig. 12 with a spread, by what is \
-         read as their deviation.",
-        ["read as", "all 24 points", "18 points, without V* = 0.01"],
+        "Percentage of 7800 groups of five, taken from two hundred surfaces, with a deviation below 0.015 at all points of Fig. 12 that \
+         have a spread, for two readings of \"deviation\".",
+        ["reading", "all 24 points (%)", "18 points, without V* = 0.01 (%)"],
         rows,
     );
     Ok(())
@@ -162,7 +162,7 @@ fn fluctuations(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), 
     }
     data.table(
         "fig12_fluctuations",
-        "Standard deviation of mu* in the kinetic window of runs to t* = 1000.",
+        "Standard deviation of mu* in the kinetic window, for runs to t* = 1000.",
         ["sigma_s*", "sigma_k*", "standard deviation"],
         rows,
     );

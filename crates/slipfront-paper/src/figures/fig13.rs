@@ -42,13 +42,13 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     }
     data.panel(
         "fig13",
-        "The parameters of Eq. 17: an arm \u{3bb} at the angle \u{3c6} from the middle (x_0, y_0), and an arm w \u{3bb} at the \
-         angle -s \u{3c6} from its end, lead to the outline; here s = 3, w = 0.2.",
+        "Parameters of Eq. 17. An arm \u{3bb} at the angle \u{3c6} starts at the centre (x_0, y_0), and an arm w \u{3bb} at the \
+         angle -s \u{3c6} leads from its end to the outline; here s = 3, w = 0.2.",
         Drawing::Sketch(parameters()),
     );
     data.panel(
         "fig13_shapes",
-        "The outlines of Eq. 17 at equal area: ellipses (s = 1), semi-triangles (s = 2), -squares (s = 3) and -pentagons \
+        "Outlines of Eq. 17 with equal area: ellipses (s = 1), semi-triangles (s = 2), -squares (s = 3) and -pentagons \
          (s = 4), round (w = 1/(5 s)) and sharp (w = 1/s).",
         Drawing::Shapes(shapes),
     );

@@ -37,8 +37,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     }
     data.panel(
         "fig14",
-        "Contact stress around a circular cavity under 5 % of the slider while slip spreads. a: on a rough surface; b: \
-         on a smooth one, driven to the right; c: the same, driven to the upper right.",
+        "Contact stress around a circular cavity with 5 % coverage while slip spreads. a: rough surface; b: \
+         smooth surface, driven to the right; c: smooth surface, driven to the upper right.",
         stress_maps(maps, SHARES.len()),
     );
     Ok(())

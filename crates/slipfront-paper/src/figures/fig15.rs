@@ -16,7 +16,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let numbers: Vec<Vec<MeasuredNumber>> = (0..spreads.len())
         .map(|spread| sweep.numbers(&[spread], REDUCTION))
         .collect();
-    // What the blocks cover (Eq. 15), which is nearly what is asked.
+    // The coverage of the meshed texture (Eq. 15) is nearly the specified coverage.
     let meshed = sweep.means(&[0], "texture_percent");
     let curves = numbers
         .iter()
@@ -25,7 +25,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     data.panel(
         "fig15",
         "Reduction of static friction by a circular cavity against its area, for four spreads of the local static \
-         coefficients: means of five surfaces with their 95 % intervals.",
+         coefficients. Lines: means over five random surfaces; bands: 95 % confidence intervals of these means.",
         Drawing::Responses(Responses {
             x_title: "meshed texture coverage A* (%)".to_owned(),
             y_title: "reduction of \u{3bc}\u{209b}* (%)".to_owned(),
@@ -77,7 +77,7 @@ fn starting_points(runner: &FigureRunner, data: &mut FigureData) -> Result<(), P
     data.value("least_rise_of_starts_when_rough", smallest(rises(rough)));
     data.table(
         "fig15_starts",
-        "Places where slip begins before the peak of friction, ahead of all blocks around them, among 50 x 50 blocks without \
+        "Number of blocks that slip before the friction peak and before all their neighbours, in 50 x 50 blocks without \
          texture.",
         ["sigma_s*", "starting points"],
         rows,

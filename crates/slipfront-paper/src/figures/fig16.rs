@@ -24,8 +24,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         |direction: usize, label: &str| Response::of_formula(label, &ends, |_| grooves[direction].value);
     data.panel(
         "fig16",
-        "Reduction of static friction by an elliptical cavity under 10 % of the slider against its elongation, across \
-         and along the sliding direction, beside grooves of the same area.",
+        "Reduction of static friction by an elliptical cavity with 10 % coverage against its elongation across \
+         and along the sliding direction, and by grooves of the same area. Curves: means over five random surfaces; bands: \
+         95 % confidence intervals of these means.",
         Drawing::Responses(Responses {
             x_title: "elongation w".to_owned(),
             y_title: "reduction of \u{3bc}\u{209b}* (%)".to_owned(),

@@ -11,8 +11,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let runs = runner.run(sweep.first_cases()?)?;
     data.panel(
         "fig17",
-        "Contact stress at the peak of friction, with a tenth of the slider textured: a, an ellipse across the sliding \
-         direction; b, along it; c, a groove across; d, along.",
+        "Contact stress at the friction peak, with 10 % coverage. a: ellipse across the sliding \
+         direction; b: ellipse along it; c: groove across it; d: groove along it.",
         stress_maps(peak_maps(&runs, &sweep.names(0))?, 4),
     );
     Ok(())

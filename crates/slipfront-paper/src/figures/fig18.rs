@@ -27,8 +27,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     };
     data.panel(
         "fig18a",
-        "a: reduction of static friction by cavities of seven shapes, each under 10 % of the slider: means of five surfaces \
-         with their 95 % intervals.",
+        "a: reduction of static friction by cavities of seven shapes, each with 10 % coverage. Bars: means over five random surfaces; \
+         error bars: 95 % confidence intervals of these means.",
         Drawing::Bars(BarChart {
             y_title: "reduction of \u{3bc}\u{209b}* (%)".to_owned(),
             groups: vec![BarGroup {
@@ -48,8 +48,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     });
     data.panel(
         "fig18_maps",
-        "b-e: contact stress at the peak of friction around the shapes with the fewest and with the most vertices (the text \
-         does not name the shapes of its four maps); beside them, without a letter, the squares between.",
+        "b-e: contact stress at the friction peak around the shapes with the fewest and with the most vertices (the text of the paper \
+         does not name the shapes of its four maps). The maps without a letter show the squares.",
         stress_maps(maps.to_vec(), 3),
     );
     let means = values(&reductions);

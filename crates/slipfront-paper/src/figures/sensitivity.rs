@@ -38,7 +38,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "Static and kinetic friction of the baseline (25 x 25 blocks, sigma_s* = 0.05), and the reduction by a circular \
          cavity (50 x 50 blocks, sigma_s* = 0, A* = 10 %), when one thing is changed. Runs without a transition have no static friction and no \
          reduction.",
-        ["what is changed", "mu_s*", "mu_k*", "reduction (%)"],
+        ["change", "mu_s*", "mu_k*", "reduction (%)"],
         rows,
     );
 

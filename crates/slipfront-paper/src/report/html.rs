@@ -34,7 +34,7 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
                         h2 : "Claims";
                         p {
                             : "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
-                               the deviations from the paper's print that the documentation of the model explains. ";
+                               the deviations from the printed paper; the documentation of the model explains them. ";
                             : NUMBERING; : " "; : REVISED;
                             @ if !paper.results_by_paper_step.is_empty() {
                                 : " Each claim was measured twice: with "; : text(StepRule::Auto.formula());
@@ -75,8 +75,8 @@ fn header(paper: &Paper) -> Raw<String> {
             }
             p(class="count") {
                 : paper.tally(); : ". ";
-                @ if unexpected == 0 { : "Every verdict is the expected one." }
-                else { strong { : unexpected; : " verdicts are not the expected ones."; } }
+                @ if unexpected == 0 { : "Every verdict is as expected." }
+                else { strong { : unexpected; : " verdicts are not as expected."; } }
             }
             @ if paper.reduced { p : "Reduced version: two random surfaces, one time step."; }
         }

@@ -15,12 +15,12 @@ pub(super) const TITLE: &str = "# The paper, claim by claim\n";
 pub fn page(paper: &Paper) -> String {
     let mut text = format!(
         "{TITLE}\n\
-         What becomes of every claim of the paper's text when its figures are run again:\n\n\
+         This page lists every claim of the paper's text, with the result of a new run of its figures:\n\n\
          ```console\n$ slipfront paper --docs docs/validation\n```\n\n\
-         Criteria and expected verdicts stand in [crates/slipfront-paper/cases/claims.toml](../../crates/slipfront-paper/cases/claims.toml). Numbers D1 to D12 are\n\
+         Criteria and expected verdicts are in [crates/slipfront-paper/cases/claims.toml](../../crates/slipfront-paper/cases/claims.toml). Numbers D1 to D12 are\n\
          the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
-         intervals of the mean over random surfaces, five where nothing else is said. Measured with {}; the last column holds what\n\
-         the paper's own step, {}, gives in its place; {}.\n\n{NUMBERING}\n{REVISED}\n\n\
+         intervals of the mean over random surfaces, five unless stated otherwise. The time step is {}. The last column has the\n\
+         result with the paper's time step, {}; {}.\n\n{NUMBERING}\n{REVISED}\n\n\
          {}.\n\n\
          | | claim | place | measured | holds if | verdict | paper's step |\n\
          |---:|---|---|---|---|---|---|\n",

@@ -228,7 +228,7 @@ fn figures_are_known_by_their_short_names_too() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.starts_with("the paper has no `fig19`: take fig01, fig02, table1, fig03"),
+        error.starts_with("the paper has no `fig19`: choose fig01, fig02, table1, fig03"),
         "{error}"
     );
 }

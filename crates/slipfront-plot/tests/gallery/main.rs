@@ -197,7 +197,7 @@ fn overlays() {
         .unwrap_err()
         .to_string();
     assert!(
-        said.starts_with("a height of 50 mm leaves no room for the curves beside letters of 8 pt"),
+        said.starts_with("a height of 50 mm leaves no room for curves with text of 8 pt"),
         "{said}"
     );
     overlay(
@@ -320,8 +320,8 @@ fn responses() {
     let reductions = ["V*", "reduction of \u{3bc}\u{209b}* (%)", "blocks along a side"];
     check("response-nine", |size| drawn(reductions, &nine, size));
     let precursors = [
-        "tangential over normal force F\u{209c}/F\u{2099} after the event",
-        "length over that of the slider L\u{209a}/L",
+        "tangential/normal force F\u{209c}/F\u{2099} after the event",
+        "relative length L\u{209a}/L",
         "",
     ];
     check("precursors", |size| drawn(precursors, &["events", "exact"], size));

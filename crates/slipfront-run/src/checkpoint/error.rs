@@ -17,18 +17,18 @@ pub enum CheckpointError {
     #[error("{path} is damaged: {why}")]
     Damaged { path: PathBuf, why: &'static str },
     #[error(
-        "{path} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it"
+        "{path} has layout {found}, but this version reads layout {LAYOUT}: resume with the version that wrote it"
     )]
     Layout { path: PathBuf, found: u32 },
     #[error(
-        "{path} was written by {found}, and this is {here}, which may not give the same bits: resume with that version"
+        "{path} was written by {found}; this is {here}, which may not give bit-identical results: resume with the version that wrote it"
     )]
     Program {
         path: PathBuf,
         found: String,
         here: &'static str,
     },
-    #[error("{path} belongs to another case than the case.toml and inputs beside it")]
+    #[error("{path} does not belong to the case.toml and inputs in its folder")]
     Case { path: PathBuf },
     #[error(transparent)]
     Differs(#[from] Difference),

@@ -190,7 +190,7 @@ pub(super) fn read(
         let named = given.map(|(what, value)| (format!("the {what} of the checkpoint"), value));
         named.into()
     })?;
-    let unknown = || damaged("its first line is not that of a checkpoint");
+    let unknown = || damaged("its first line is not the first line of a checkpoint");
     let FormatVersion { slipfront_checkpoint } = serde_json::from_str(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
         let (path, found) = (owned(), slipfront_checkpoint);
@@ -201,7 +201,7 @@ pub(super) fn read(
     let contents = length.saturating_sub(OUT_LEN as u64);
     let hash = hash_of_pieces(&mut file, contents, communicator).map_err(unreadable)?;
     if checksum != hash.as_bytes() {
-        return Err(damaged("its checksum does not fit"));
+        return Err(damaged("its checksum is wrong"));
     }
     let here = program::this_build();
     if header.program != here {
@@ -213,10 +213,10 @@ pub(super) fn read(
     }
     let begin = line.len() as u64;
     let end = header.columns_end(begin).filter(|&end| end <= contents);
-    let end = end.ok_or_else(|| damaged("it does not hold the columns that its first line tells"))?;
+    let end = end.ok_or_else(|| damaged("it does not have the columns given in its first line"))?;
     let state = agree_on_io(communicator, read_state(&file, end, contents));
     let state = state.map_err(|error| match error.kind() {
-        ErrorKind::InvalidData => damaged("it holds no state of a run"),
+        ErrorKind::InvalidData => damaged("it does not contain the state of a run"),
         _ => unreadable(error),
     })?;
     Ok(VerifiedFile {

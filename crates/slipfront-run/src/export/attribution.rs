@@ -16,11 +16,11 @@ impl Attribution {
     pub fn notes(&self) -> Vec<&'static str> {
         let mut notes = Vec::new();
         if self.author.is_none() {
-            notes.push("the crate names no author: add --author \"NAME\"");
+            notes.push("the crate has no author: add --author \"NAME\"");
         }
         if self.licence.is_none() {
             notes.push(
-                "the crate has no licence, without which others may not use the results: add --licence, such as --licence CC-BY-4.0",
+                "the crate has no licence, so others may not use the results: add --licence, such as --licence CC-BY-4.0",
             );
         }
         notes

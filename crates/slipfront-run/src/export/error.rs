@@ -12,23 +12,21 @@ use crate::verify::VerifyError;
 pub enum ExportError {
     #[error(transparent)]
     Run(#[from] VerifyError),
-    #[error(
-        "{difference}: only results that are as they were written are exported; make them again in another folder"
-    )]
+    #[error("{difference}: only unchanged results can be exported; compute them again in another folder")]
     Changed { difference: String },
     #[error("{path} exists: replace it with --force, or write the crate to a new folder with --out")]
     Exists { path: PathBuf },
     #[error("the folder {path} is not empty: choose another with --out")]
     NotEmpty { path: PathBuf },
     #[error(
-        "the command works in the folder {path}, which a new one would replace: name one in it with --out"
+        "the command runs in the folder {path}, which would be replaced: give a folder inside it with --out"
     )]
     WorkedIn { path: PathBuf },
     #[error("stopped by a signal: nothing is written")]
     Interrupted,
-    #[error("two of the folders have the name {name}, as which both would be copied: rename one of them")]
+    #[error("two of the folders have the same name {name}: rename one of them")]
     SameName { name: String },
-    #[error("several folders make one crate in a folder of its own: name it with --out")]
+    #[error("several folders are copied into one crate: give its folder with --out")]
     NeedsFolder,
     #[error("a citation file needs an author: add --author \"NAME\"")]
     NeedsAuthor,

@@ -35,11 +35,11 @@ pub(super) fn meaning_in_run(name: &str) -> String {
         (SERIES, "The curves over time"),
         (
             KYMOGRAPH,
-            "Share of sliding blocks over place along the drive and time",
+            "Fraction of sliding blocks against position along the drive and time",
         ),
         (
             FIELDS,
-            "Displacement, velocity, stress and sliding of every block at some instants",
+            "Displacement, velocity, stress and sliding of every block at selected instants",
         ),
         (
             STATE,

@@ -31,7 +31,7 @@ pub(super) fn metadata(all: &[(&Exported, String)], by: &Attribution, published:
     let actions = all.iter().flat_map(|(results, _)| &results.actions);
     let parts = all.iter().flat_map(|(results, at)| parts(results, at));
     let licence = by.licence.as_ref().map_or_else(
-        || json!("Not told: ask the authors before using the results."),
+        || json!("No licence is given: ask the authors before using the results."),
         |licence| link(&licence.url),
     );
     let mut root = json!({

@@ -200,7 +200,7 @@ pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> impl Iterator<It
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FieldsError {
     #[error(
-        "cannot write `{path}`: {what} has {found} values where {wanted} are wanted; hand over matching arrays"
+        "cannot write `{path}`: {what} has {found} values instead of {wanted}; give arrays of the same size"
     )]
     Shape {
         path: PathBuf,

@@ -261,14 +261,14 @@ fn arrays_of_another_length_are_refused() {
             nx: 0,
             ..file.clone()
         },
-        "x has 0 values where 1 are wanted",
+        "x has 0 values instead of 1",
     );
     refused(
         &FieldsFile {
             rows: 1..4,
             ..file.clone()
         },
-        "the rows up to the last has 4 values where 3 are wanted",
+        "the rows up to the last has 4 values instead of 3",
     );
     refused(
         &FieldsFile {
@@ -282,21 +282,21 @@ fn arrays_of_another_length_are_refused() {
             nx: 6,
             ..file.clone()
         },
-        "textured has 15 values where 18 are wanted",
+        "textured has 15 values instead of 18",
     );
     refused(
         &FieldsFile {
             stride: 2,
             ..file.clone()
         },
-        "traction has 15 values where 6 are wanted",
+        "traction has 15 values instead of 6",
     );
     refused(
         &FieldsFile {
             names: &names[..1],
             ..file.clone()
         },
-        "a frame has 2 values where 1 are wanted",
+        "a frame has 2 values instead of 1",
     );
     let statics = StaticFields {
         mu_kinetic: &lattice.mu_kinetic[1..],
@@ -307,7 +307,7 @@ fn arrays_of_another_length_are_refused() {
             statics,
             ..file.clone()
         },
-        "mu_kinetic has 14 values where 15 are wanted",
+        "mu_kinetic has 14 values instead of 15",
     );
     let twice = [Field::Sliding, Field::Sliding];
     refused(
@@ -315,7 +315,7 @@ fn arrays_of_another_length_are_refused() {
             names: &twice,
             ..file.clone()
         },
-        "the list of fields has 2 values where 1 are wanted",
+        "the list of fields has 2 values instead of 1",
     );
 }
 

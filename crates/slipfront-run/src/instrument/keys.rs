@@ -68,7 +68,7 @@ enum FilterName {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a number in N or 1, or a text with a unit, such as \"20 mN\""
+    expecting = "expected a number in N or 1, or a string with a unit, such as \"20 mN\""
 )]
 enum Amount {
     Si(f64),
@@ -153,7 +153,7 @@ impl InstrumentKeys {
             .transpose()?;
         let gain = self.gain.unwrap_or(1.0);
         if gain == 0.0 {
-            return refuse("gain", "0 leaves nothing of the friction");
+            return refuse("gain", "0 removes the whole friction signal");
         }
         positive("gain", gain.abs())?;
         let amount = |key: &'static str, amount: &Amount| {
@@ -196,14 +196,14 @@ impl InstrumentKeys {
             (Some(_), None) => {
                 return refuse(
                     "mass",
-                    "it swings on the load cell: give the `stiffness` of that, too",
+                    "it oscillates on the load cell: also give the `stiffness` of the load cell",
                 );
             }
-            (None, Some(_)) => return refuse("stiffness", "nothing swings on it: give the `mass`, too"),
+            (None, Some(_)) => return refuse("stiffness", "a stiffness needs a `mass`: give it as well"),
             (None, None) if self.damping_ratio.is_some() => {
                 return refuse(
                     "damping_ratio",
-                    "it is that of the load cell: give its `mass` and `stiffness`, too",
+                    "it belongs to the load cell: also give its `mass` and `stiffness`",
                 );
             }
             (None, None) => return Ok(None),
@@ -239,13 +239,13 @@ impl InstrumentKeys {
             return match given.into_iter().find(|(_, is_given)| *is_given) {
                 Some((key, _)) => refuse(
                     key,
-                    "it is that of a `filter`: say which, such as `filter = \"first_order\"`",
+                    "it belongs to a `filter`: give one, such as `filter = \"first_order\"`",
                 ),
                 None => Ok(None),
             };
         };
         if self.order.is_some() && filter != FilterName::Butterworth {
-            return refuse("order", "a Butterworth filter alone has one");
+            return refuse("order", "only a Butterworth filter has an order");
         }
         let [least, most] = ORDERS;
         let order = self.order.unwrap_or(2);
@@ -258,7 +258,7 @@ impl InstrumentKeys {
             FilterName::MovingMean => Filter::MovingMean(MOVING_MEAN_CUTOFF / cutoff),
         };
         match (cutoff, time, filter) {
-            (Some(_), Some(_), _) => refuse("time", "`cutoff` says the same: give one of both"),
+            (Some(_), Some(_), _) => refuse("time", "`cutoff` sets the same quantity: give one of them"),
             (Some(cutoff), None, _) => Ok(Some(by_frequency(cutoff))),
             (None, Some(_), FilterName::Butterworth) => refuse("time", "a Butterworth filter has a `cutoff`"),
             (None, Some(time), FilterName::FirstOrder) => Ok(Some(Filter::FirstOrder(time))),

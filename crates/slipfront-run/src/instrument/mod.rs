@@ -8,8 +8,8 @@ pub use self::chain::Instrument;
 pub use self::keys::{InstrumentError, InstrumentKeys};
 
 /// Why an instrument with memory does not go with a held drive, and the remedy.
-pub const HELD_DRIVE: &str = "a held drive has no time while blocks slide, and load cells, filters and samplings need one: remove \
-                              `drive.loading = \"held\"`, or give the instrument's gain, offset and range alone";
+pub const HELD_DRIVE: &str = "a held drive has no time while blocks slide, but load cells, filters and sampling need a time: \
+                              remove `drive.loading = \"held\"`, or give only gain, offset and range of the instrument";
 
 #[cfg(test)]
 mod tests {

@@ -15,7 +15,7 @@ pub enum MeasuredError {
     #[error("{} {why}", display_path(path))]
     Workbook { path: PathBuf, why: String },
     #[error(
-        "{} has `{name}` in several columns, {columns}: give the number of the one that is meant, such as {number}",
+        "{} has `{name}` in several columns, {columns}: give the number of a column, such as {number}",
         display_path(path)
     )]
     Several {
@@ -31,7 +31,7 @@ pub enum MeasuredError {
         known: String,
     },
     #[error(
-        "nothing tells the unit of column `{column}` of {}: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
+        "column `{column}` of {} has no unit: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
         display_path(path)
     )]
     NoUnit {
@@ -57,8 +57,8 @@ pub enum MeasuredError {
         column: String,
     },
     #[error(
-        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards: \
-         keep the lines of one step of a test",
+        "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a single \
+         step of the test",
         display_path(path)
     )]
     Falls {
@@ -68,7 +68,7 @@ pub enum MeasuredError {
         value: f64,
     },
     #[error(
-        "{} has {found} lines of numbers; a record has at least two",
+        "{} has {found} lines of numbers; a record needs at least two",
         display_path(path)
     )]
     TooShort { path: PathBuf, found: usize },

@@ -70,7 +70,7 @@ impl Measure {
             (Some(number), Some(factor)) => Ok(number * factor),
             (Some(_), None) => Err(self.no_such_unit(unit.trim())),
             (None, _) => Err(format!(
-                "{text:?} is no number with a unit, such as 2 {}",
+                "{text:?} is not a number with a unit, such as 2 {}",
                 self.unit()
             )),
         }

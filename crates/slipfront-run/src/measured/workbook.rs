@@ -53,7 +53,7 @@ enum Cell {
 /// several have.
 pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
     let unreadable = |why: String| {
-        format!("is a workbook that cannot be read: {why}; save its sheet as .csv, and name that file")
+        format!("is a workbook that cannot be read: {why}; save its sheet as .csv, and give that file")
     };
     let mut found = sheets(bytes).map_err(unreadable)?;
     found.retain(|sheet| sheet.n_rows > 1);
@@ -62,7 +62,7 @@ pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
         0 => Err("is a workbook without a sheet with two columns of numbers".to_owned()),
         1 => Ok(found.remove(0)),
         _ => Err(format!(
-            "has numbers in several sheets, {}: save the one that is meant as .csv, and name that file",
+            "has numbers in several sheets, {}: save the right sheet as .csv, and give that file",
             names()
         )),
     }

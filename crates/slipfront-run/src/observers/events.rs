@@ -121,7 +121,7 @@ impl Observed for Events {
 
     const TABLE: Option<Table> = Some(Table {
         file: FILE,
-        shows: "the catalogue of the events of slip",
+        shows: "the catalogue of slip events",
         description: "Events of slip: time, place of nucleation, number of blocks, moment and friction of each",
         columns: |file| columns::<EventRow>(file, FILE),
     });
@@ -156,8 +156,8 @@ impl Observed for Events {
         let all = self.events().len() as u64 + self.unlisted();
         (self.unlisted() > 0).then(|| {
             format!(
-                "the catalogue of events is full: events.csv has the first {} of {all}, and the numbers of events are those of \
-                 these; shorten time.duration_star",
+                "the catalogue of events is full: events.csv and all event statistics contain only the first {} of {all}; \
+                 reduce time.duration_star",
                 Self::MAX
             )
         })
@@ -167,7 +167,7 @@ impl Observed for Events {
         let mut text = format!("{} of slip", count(numbers.count, "event"));
         if let (Some(share), Some(blocks)) = (numbers.whole_share, numbers.blocks_max) {
             text += &format!(
-                ", {} % of them of all blocks in contact, the largest of {}",
+                ", {} % of them with all blocks in contact, the largest with {}",
                 four_digits(100.0 * share),
                 count(blocks, "block")
             );

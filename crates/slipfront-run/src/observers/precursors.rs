@@ -83,7 +83,7 @@ impl Observed for Precursors {
 
     const TABLE: Option<Table> = Some(Table {
         file: FILE,
-        shows: "the events of slip, row by row",
+        shows: "the slip events, one per row",
         description: "Events of slip of a slider that is driven at an edge",
         columns: |file| columns::<PrecursorRow>(file, FILE),
     });
@@ -122,9 +122,9 @@ impl Observed for Precursors {
         let crossing = match numbers.crossing_time_star.zip(numbers.crossing_mu_star) {
             Some((time_star, mu_star)) => {
                 let at = instant(time_star, &case.scales);
-                format!("the first across the whole slider at mu* = {mu_star:.4}, {at}")
+                format!("the first event across the whole slider at mu* = {mu_star:.4}, {at}")
             }
-            None => "none across the whole slider".to_owned(),
+            None => "no event across the whole slider".to_owned(),
         };
         ("events of slip", format!("{}, {crossing}", numbers.events))
     }

@@ -29,21 +29,21 @@ pub enum RunPictureError {
     #[error("{0} has no units in its summary and series: run its case.toml again")]
     NoUnits(PathBuf),
     #[error(
-        "forces and torques have no axis in common: {0} is a rotation or not, other than the runs beside it"
+        "forces and torques cannot share an axis: {0} and the other runs are not all rotations or all translations"
     )]
     NotComparable(PathBuf),
     #[error(transparent)]
     Record(#[from] Box<RecordError>),
     #[error(
-        "a movie has at most {0} pictures, and the run has kept more snapshots: raise `every` of `output.snapshots`"
+        "a movie has at most {0} pictures, but the run has more snapshots: increase `every` of `output.snapshots`"
     )]
     TooManySnapshots(usize),
     #[error(
-        "programs show a picture for at least a fiftieth of a second, so that these {pictures} pictures take at least {seconds} s"
+        "programs show a picture for at least a fiftieth of a second, so these {pictures} pictures take at least {seconds} s"
     )]
     TooFast { pictures: usize, seconds: f64 },
     #[error(
-        "{path} has no maps of {field}: name it in `output.fields`, leave `output.snapshots` at its default or list instants, and run the case again"
+        "{path} has no maps of {field}: add it to `output.fields`, keep the default `output.snapshots` or list instants, and run the case again"
     )]
     NoMaps { path: PathBuf, field: &'static str },
     #[error("cannot draw {name}: {source}")]
@@ -58,8 +58,9 @@ pub enum RunPictureError {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum RecordError {
     #[error(
-        "{record} and the curve of a run have too little in common, no point or less than a tenth of the shorter of both: shifted, the record goes \
-        from {from} to {to}, and {} from {start} to {end}; look at its units, and give another shift with --shift, or none",
+        "{record} and the curve of a run overlap too little, by less than a tenth of the shorter one: after the shift the \
+        record covers {from} to {to}, and {} covers {start} to {end}; check the units, and give another shift with --shift, or \
+        none",
         run.display()
     )]
     LittleInCommon {
@@ -71,7 +72,7 @@ pub enum RecordError {
         end: String,
     },
     #[error(
-        "{record} fits {} best when it is shifted by {own}, and {} by {of_other}: give its shift with --shift",
+        "{record} fits {} best with a shift of {own}, but {} with {of_other}: give the shift with --shift",
         first.display(),
         other.display()
     )]
@@ -83,7 +84,7 @@ pub enum RecordError {
         of_other: String,
     },
     #[error(
-        "{record} fits about as well when it is shifted by {one} as by {other}: give its shift with --shift"
+        "{record} fits about equally well with a shift of {one} and of {other}: give the shift with --shift"
     )]
     UnclearShift {
         record: String,

@@ -1,5 +1,5 @@
 //! The picture of the slip front: the time at which each block has first slipped, and the share of sliding
-//! blocks against place and time.
+//! blocks against position and time.
 
 use std::ops::Range;
 

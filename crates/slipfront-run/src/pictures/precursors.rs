@@ -42,8 +42,8 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
     }
     let drawn = plot::response(
         &Responses {
-            x_title: "tangential over normal force F\u{209c}/F\u{2099} after the event".to_owned(),
-            y_title: "length over that of the slider L\u{209a}/L".to_owned(),
+            x_title: "tangential/normal force F\u{209c}/F\u{2099} after the event".to_owned(),
+            y_title: "relative length L\u{209a}/L".to_owned(),
             curves,
             ..Responses::default()
         },

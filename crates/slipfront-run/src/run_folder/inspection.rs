@@ -94,12 +94,12 @@ impl Inspection {
         };
         let why = match unread.map(std::io::Error::kind) {
             Some(ErrorKind::NotFound) if path.exists() => {
-                "it has no case.toml; begin the run again, there with --force"
+                "it has no case.toml; start the run again in this folder with --force"
             }
-            Some(ErrorKind::NotFound) => "there is none of this name; begin the run again",
-            Some(ErrorKind::NotADirectory) => "it is a file: name its folder",
+            Some(ErrorKind::NotFound) => "it does not exist; start the run again",
+            Some(ErrorKind::NotADirectory) => "it is a file: give its folder",
             None => {
-                "its case.toml is not as this version wrote it; put it back as it was, or run it to another folder"
+                "its case.toml was changed, or was written by another version; restore it, or run it in another folder"
             }
             Some(kind) => {
                 let sentence = unread.map(ToString::to_string).unwrap_or_default();

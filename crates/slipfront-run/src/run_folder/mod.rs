@@ -211,7 +211,7 @@ pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(),
     let seen = match found_at(&temporary.join(name)) {
         Ok(Some(_)) => Ok(()),
         Ok(None) => Err(format!(
-            "the folder {} is not the folder {of_first} of rank 0: all ranks write to one, on a disk that their machines share",
+            "the folder {} is not the folder {of_first} of rank 0: all ranks need the same folder, on a shared disk",
             display_path(path)
         )),
         Err(error) => Err(FolderError::read(path)(error).to_string()),

@@ -16,7 +16,7 @@ pub fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
     let mut text = on_meshes(found) + "\n";
     if quantities.is_empty() {
         text += &note(
-            "no quantity has a value on every mesh: look at runs.csv for what the runs found",
+            "no quantity has a value on every mesh: runs.csv contains the results of the runs",
             columns,
         );
     }
@@ -29,7 +29,7 @@ pub fn text(plan: &Plan, found: &OnMeshes, columns: usize) -> String {
     }
     if !lengths.is_empty() {
         let sentence = format!(
-            "no limit is given, since every mesh is another material: a block gives it {}. Give them as lengths of the material",
+            "no limit is given, because every mesh is a different material: the block size sets {}. Give them as lengths of the material",
             lengths.join(", ")
         );
         text += &note(&sentence, columns);
@@ -59,7 +59,7 @@ fn on_meshes(found: &OnMeshes) -> String {
 /// The value on the finest mesh, where this is a material of its own.
 fn of_another_material(one: &Convergence) -> String {
     format!(
-        "{}: {} on the finest mesh, and a number of that mesh",
+        "{}: {} on the finest mesh; this value depends on the mesh",
         one.quantity,
         four_digits(one.means[one.means.len() - 1])
     )
@@ -71,7 +71,7 @@ fn sentence(one: &Convergence) -> String {
     let (name, value, scatter) = (&one.quantity, one.means[last], one.half_widths[last]);
     let half = scatter.unwrap_or(0.0);
     let of_surfaces = scatter.map_or(String::new(), |half| {
-        format!(", scatter over surfaces {}", two_digits(half))
+        format!(", scatter between surfaces {}", two_digits(half))
     });
     match one.verdict {
         Verdict::Converges { order, mesh_error } => format!(
@@ -82,12 +82,12 @@ fn sentence(one: &Convergence) -> String {
         Verdict::Equal => format!("{name}: {} on every mesh{of_surfaces}", four_digits(value)),
         // What seeds scatter by hides what the mesh does.
         Verdict::Open { spread } if spread <= half => format!(
-            "{name}: {}; the last three meshes differ by {}, within the scatter over surfaces: more --replicates show more",
+            "{name}: {}; the last three meshes differ by {}, within the scatter between surfaces: use more --replicates",
             with_error(value, spread + half),
             two_digits(spread)
         ),
         Verdict::Open { spread } => format!(
-            "{name}: {} on the finest mesh; no limit is claimed, since differences do not decrease: the last three meshes differ by {}",
+            "{name}: {} on the finest mesh; no limit is given, because differences do not decrease: the last three meshes differ by {}",
             four_digits(value),
             two_digits(spread)
         ),

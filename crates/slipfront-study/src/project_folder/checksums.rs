@@ -52,9 +52,7 @@ impl Checksums {
         let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| damaged(&error.to_string()))?;
         let list: Self = serde_json::from_slice(&bytes).map_err(|error| damaged(&error.to_string()))?;
         if seal(&bytes).as_ref() != Some(&list.seal) {
-            return Err(damaged(
-                "its seal does not fit, so that it was changed afterwards",
-            ));
+            return Err(damaged("its seal is wrong: it was changed afterwards"));
         }
         // A list of somebody else must lead to no file outside of its folder.
         let is_inside = |file: &ManifestFile| {
@@ -68,7 +66,7 @@ impl Checksums {
             .find(|file| !is_inside(file))
         {
             Some(file) => Err(damaged(&format!(
-                "it names {}, which lies outside of the folder",
+                "it lists {}, which is outside the folder",
                 file.name
             ))),
             None => Ok(Some(list)),

@@ -8,13 +8,13 @@ pub fn notes_of_use(damaged: usize, kept: usize) -> Vec<String> {
     if damaged > 0 {
         let lines = count(damaged, "damaged line");
         notes.push(format!(
-            "the journal has {lines}, passed over: its runs count as not made"
+            "the journal has {lines}, which are ignored: their runs count as not run"
         ));
     }
     if kept > 0 {
         let runs = count(kept, "run");
         notes.push(format!(
-            "the folder holds {runs} of an earlier call, which are not repeated"
+            "the folder contains {runs} of an earlier call, which are not repeated"
         ));
     }
     notes

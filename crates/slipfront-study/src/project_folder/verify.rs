@@ -31,7 +31,7 @@ pub enum VerifyStudyError {
         runs: usize,
         others: usize,
     },
-    #[error("the {what} in {path} was not finished: run it again to go on with it first")]
+    #[error("the {what} in {path} is not finished: run it again to resume it first")]
     UnfinishedSearch { what: &'static str, path: PathBuf },
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -83,7 +83,7 @@ pub fn verify_checksums(
         Ok(Some(list)) => list,
         Ok(None) => {
             let sentence = format!(
-                "{} is missing: the command that made the folder writes it when it is run again",
+                "{} is missing: run the command of this folder again to write it",
                 path.display()
             );
             verdict.differences.push(sentence);
@@ -100,13 +100,16 @@ pub fn verify_checksums(
     verdict.differences = differences(&list.files, folder, "were written", stop);
     if !list.replaced.is_empty() {
         let sentence = format!(
-            "{}: the results were not written to their end; the command that made the folder ends it when it is run again",
+            "{}: the results were not completely written; run the command of this folder again to complete them",
             path.display()
         );
         verdict.differences.push(sentence);
     }
     let by = program::in_words(&list.version, list.revision.as_deref());
-    verdict.what = format!("{} as {by} wrote them", count(list.files.len(), "file"));
+    verdict.what = format!(
+        "{} unchanged since {by} wrote them",
+        count(list.files.len(), "file")
+    );
     let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = list.files.iter().map(|file| file.name.as_str());
     let (described, outdated) = description_in(folder, &list.seal);
@@ -155,7 +158,7 @@ fn derive_from_runs(
     open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
     let [kept, all] = (derivation.find_again)(folder, temporary.path(), &PictureLook::default(), stop)?;
     if all > kept {
-        let sentence = format!("{} not in the journal, and made again", are(all - kept, "run"));
+        let sentence = format!("{} not in the journal, and run again", are(all - kept, "run"));
         verdict.notes.push(sentence);
     }
     verdict.differences = differences_from(temporary.path(), folder, "follow from its runs", stop)?;

@@ -16,10 +16,10 @@ static WIDEST: AtomicUsize = AtomicUsize::new(NAMES.len() - 1);
 #[derive(Debug, thiserror::Error)]
 pub enum SimdWidthError {
     /// No vector instructions have this name.
-    #[error("`{0}` names no vector instructions of slipfront: they are baseline, AVX2 and AVX-512")]
+    #[error("`{0}` is not a vector instruction set of slipfront: choose baseline, AVX2 or AVX-512")]
     Unknown(String),
     /// The processor lacks these instructions.
-    #[error("this processor has no {0}: its widest vector instructions are {1}")]
+    #[error("this processor does not support {0}: its widest vector instructions are {1}")]
     Missing(&'static str, &'static str),
 }
 

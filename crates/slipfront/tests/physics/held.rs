@@ -203,7 +203,7 @@ fn what_does_not_come_to_rest_is_an_error() {
     assert!(
         error
             .to_string()
-            .contains("raise its kinetic friction or damping, or take constant loading")
+            .contains("increase kinetic friction or damping, or use constant loading")
     );
 }
 

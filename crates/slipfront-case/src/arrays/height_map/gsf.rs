@@ -36,7 +36,7 @@ pub(super) fn read(
     let [nx, ny] = grid.points;
     let wanted = start + 4 * nx as u64 * ny as u64;
     if length != wanted {
-        let detail = format!("it has {length} bytes where its header asks for {wanted}");
+        let detail = format!("it has {length} bytes, but its header requires {wanted}");
         return Err(refuse(&detail));
     }
     source.seek(SeekFrom::Start(start)).map_err(&read_error)?;

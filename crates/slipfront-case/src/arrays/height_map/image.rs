@@ -53,14 +53,14 @@ pub(super) fn read(
 
 /// An error about a picture in colours, whose order of heights is unknown.
 pub(super) fn in_colours(path: &Path) -> ArrayError {
-    let problem = "is a picture in colours, which do not tell heights: export the heights themselves, as grey levels of 16 bits or \
-                   as a .gsf, .x3p or .npy file";
+    let problem = "is a colour picture, which has no heights: export the heights as 16-bit grey levels, or as a .gsf, .x3p or \
+                   .npy file";
     contents_error(path, problem.to_owned())
 }
 
 /// An error about a picture that has more than grey levels.
 pub(super) fn beside_grey(path: &Path) -> ArrayError {
-    let problem = "has grey levels with a second channel, such as opacity (alpha): save the grey levels alone, without transparency";
+    let problem = "has grey levels with a second channel, such as opacity (alpha): save only the grey levels, without transparency";
     contents_error(path, problem.to_owned())
 }
 

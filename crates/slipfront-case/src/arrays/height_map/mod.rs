@@ -97,7 +97,7 @@ pub fn height_map(
     room: &Room,
 ) -> Result<HeightMap, ArrayError> {
     let too_far_apart = || {
-        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
+        let problem = "has heights too far apart to be averaged: check its numbers".to_owned();
         contents_error(path, problem)
     };
     let range_of = |mean: &Mean| {
@@ -175,7 +175,7 @@ pub fn height_map(
         let [nx, _] = room.blocks;
         let problem = format!(
             "has no measured point in the block in column {} and row {} (both counted from 0, row 0 at y = 0): fill its gaps by \
-             interpolation before, or take larger blocks",
+             interpolation, or use larger blocks",
             gap % nx,
             gap / nx
         );
@@ -211,21 +211,21 @@ fn doubts(
     let mut doubts = Vec::new();
     if share_of_plane > LARGE_TILT {
         doubts.push(format!(
-            "a plane takes {} % of the variance of its heights, so that one side touches: level the map, as `level = \"plane\"` does",
+            "a plane contains {} % of the variance of its heights, so only one side is in contact: level the map with `level = \"plane\"`",
             four_digits(100.0 * share_of_plane)
         ));
     }
     let height = (range.highest - range.lowest) * unit;
     if height > size[0].max(size[1]) {
         doubts.push(format!(
-            "its heights range over {}, more than it is wide: look at `height_unit` and `pixel_size`",
+            "its heights range over {}, more than its width: check `height_unit` and `pixel_size`",
             with_si_prefix(height, "m")
         ));
     }
     if height > FAR_OFF * roughness.sq {
         doubts.push(format!(
-            "a few of its heights lie far off all others, from {lowest} to {highest} in the unit of the file, as marks of points that \
-             were not measured do: leave them out, as `missing = {lowest}` or `missing = {highest}` does",
+            "a few of its heights are far from all others, from {lowest} to {highest} in the unit of the file, and may mark \
+             points that were not measured: omit them with `missing = {lowest}` or `missing = {highest}`",
             lowest = range.lowest,
             highest = range.highest
         ));
@@ -301,8 +301,8 @@ fn not_measured(path: &Path, height: f64, [row, column]: [usize; 2]) -> ArrayErr
         false => "",
     };
     let problem = format!(
-        "has {height} in row {row}, column {column} (both counted from 0), where a height is wanted: fill points that were not \
-         measured by interpolation before{remedy}"
+        "has {height} in row {row}, column {column} (both counted from 0), but must have a height: fill missing points by \
+         interpolation{remedy}"
     );
     contents_error(path, problem)
 }
@@ -313,12 +313,11 @@ fn pixel(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<[f64;
         (Some(pixel), None) | (None, Some(pixel)) => Ok(pixel),
         (Some([x, y]), Some(_)) => {
             let (x, y) = (with_si_prefix(x, "m"), with_si_prefix(y, "m"));
-            let problem = format!("says itself that a pixel is {x} x {y}: leave out `pixel_size`");
+            let problem = format!("gives a pixel size of {x} x {y}: leave out `pixel_size`");
             Err(contents_error(path, problem))
         }
         (None, None) => {
-            let problem =
-                "does not say how large a pixel is: add `pixel_size`, such as pixel_size = \"0.5 um\"";
+            let problem = "gives no pixel size: add `pixel_size`, such as pixel_size = \"0.5 um\"";
             Err(contents_error(path, problem.to_owned()))
         }
     }
@@ -330,12 +329,11 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
         (Some(unit), None) | (None, Some(unit)) => Ok(unit),
         (Some(unit), Some(_)) => {
             let unit = with_si_prefix(unit, "m");
-            let problem =
-                format!("says itself that its heights are in units of {unit}: leave out `height_unit`");
+            let problem = format!("gives its heights in units of {unit}: leave out `height_unit`");
             Err(contents_error(path, problem))
         }
         (None, None) => {
-            let problem = "does not say which height a value of 1 is: add `height_unit`, such as height_unit = \"1 nm\"";
+            let problem = "gives no unit of height: add `height_unit`, such as height_unit = \"1 nm\"";
             Err(contents_error(path, problem.to_owned()))
         }
     }

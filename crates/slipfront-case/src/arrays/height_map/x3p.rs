@@ -148,8 +148,8 @@ fn valid_points(
         None => Ok(bytes),
         Some(gap) => {
             let problem = format!(
-                "says that point {gap} (counted from 0) was not measured: fill such points by interpolation before, or leave them \
-                 out with `missing = \"nan\"`"
+                "says that point {gap} (counted from 0) was not measured: fill such points by interpolation, or leave them out \
+                 with `missing = \"nan\"`"
             );
             Err(contents_error(path, problem))
         }

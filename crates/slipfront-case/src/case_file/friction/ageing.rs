@@ -13,7 +13,8 @@ use slipfront_base::number_format::four_digits;
 
 pub(super) const SYNONYMS: &[(&str, &str)] =
     &[("aging", ADVICE), ("healing", ADVICE), ("strengthening", ADVICE)];
-const ADVICE: &str = "static friction that grows with age is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
+const ADVICE: &str =
+    "ageing of static friction is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
 
 key_rows! {
     /// `ageing`: static friction that grows while a block is stuck, mu_s [1 + beta ln(1 + t/time)].

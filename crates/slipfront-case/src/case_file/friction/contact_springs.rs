@@ -16,16 +16,16 @@ const ADVICE: &str = "springs in contact are `friction.contact` = \"springs\", o
      `friction.contact_stiffness_per_area` with its unit";
 
 /// Reason for which laws of thresholds that vary have no meaning beside springs.
-pub(super) const ALONE: &str = "with `contact` = \"springs\" a spring holds the block, and breaks at a threshold that does not vary; leave it \
-                                out, or take `contact` = \"rigid\"";
+pub(super) const ALONE: &str = "with `contact` = \"springs\" a spring holds the block and breaks at a constant threshold; leave \
+                                it out, or use `contact` = \"rigid\"";
 
 /// Reason for which keys of kinetic friction have no meaning beside springs that form again.
-pub(super) const NO_KINETIC: &str = "with `contact` = \"springs\" a spring that breaks forms again at once, and there is no kinetic friction; \
-                                     leave it out, or take `after_break` = \"slide\"";
+pub(super) const NO_KINETIC: &str = "with `contact` = \"springs\" a broken spring re-forms at once, so there is no kinetic \
+                                     friction; leave it out, or use `after_break` = \"slide\"";
 
 /// Reason for which coefficients are not drawn anew where blocks slide.
-pub(super) const SLIDES: &str = "with `after_break` = \"slide\" a contact keeps its coefficients; leave it out, or take `after_break` = \
-                                 \"form_again\"";
+pub(super) const SLIDES: &str = "with `after_break` = \"slide\" a contact keeps its coefficients; leave it out, or use \
+                                 `after_break` = \"form_again\"";
 
 /// Reason for which the keys of springs have no meaning beside another contact.
 pub(super) const ELSEWHERE: &str = "it belongs to `contact` = \"springs\"; set that, or leave it out";
@@ -38,13 +38,13 @@ pub(super) fn without_stiffness(path: &str) -> String {
 }
 
 /// Reason for which springs that are drawn anew take one rank.
-pub(super) const ONE_RANK: &str = "a spring that forms again takes the coefficient of any block of the slider, and a rank knows those of its own \
-                                   rows alone: take one rank, or redraw = false";
+pub(super) const ONE_RANK: &str = "a spring that re-forms takes the coefficient of any block of the slider, but a rank knows \
+                                   only its own rows: use one rank, or redraw = false";
 
 /// The law in words, for the end of a sentence about static friction.
 pub(super) fn in_words(law: &ContactSprings) -> String {
     let again = match law.after_break {
-        AfterBreak::FormsAgain { redraw: Some(_) } => " and form again, thresholds drawn anew",
+        AfterBreak::FormsAgain { redraw: Some(_) } => " and re-form, with new thresholds",
         AfterBreak::FormsAgain { redraw: None } => " and form again",
         AfterBreak::Slides => ", after which blocks slide",
     };

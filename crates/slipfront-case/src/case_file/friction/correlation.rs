@@ -7,12 +7,12 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("patch_size", ADVICE),
     ("xi", ADVICE),
 ];
-const ADVICE: &str = "coefficients that are alike over a length are `friction.correlation_length` = \"5 um\"";
+const ADVICE: &str = "the correlation length of coefficients is `friction.correlation_length` = \"5 um\"";
 
 /// Reason for which a correlation length has no meaning where no coefficient is drawn.
 pub(super) const GIVEN: &str =
-    "all coefficients are given by files, and none is drawn; leave out it or one of the files";
+    "all coefficients are given by files, so none is random; leave it out, or one of the files";
 
 /// Reason for which springs are not drawn anew from a field.
-pub(super) const REDRAW: &str = "a spring that forms again takes the coefficient of any block, so that neighbours would no longer be alike over \
-                                 `correlation_length`; leave one of them out";
+pub(super) const REDRAW: &str = "a spring that re-forms takes the coefficient of any block, so neighbours would lose their \
+                                 correlation over `correlation_length`; leave one of them out";

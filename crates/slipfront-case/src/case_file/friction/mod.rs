@@ -99,8 +99,8 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(try_from = "FrictionKeys", into = "FrictionKeys")]
     pub struct Friction from FrictionKeys {
-        /// The reading of Eq. 4, or rate and state in its place; `"reversal"` and `"literal"` are for
-        /// comparison.
+        /// Interpretation of Eq. 4, or rate-and-state friction instead of it; `"reversal"` and `"literal"`
+        /// are for comparison.
         #[serde(deserialize_with = "word")]
         pub law: Law = key("\"projection\"", KeyKind::Words(names_of::<Law>)).paper("Eq. 4"),
         /// Direction in which friction acts: the plane of a slider that lies on its substrate, or x alone, of
@@ -108,39 +108,39 @@ key_rows! {
         #[serde(deserialize_with = "word", skip_serializing_if = "FrictionAlong::is_plane")]
         pub along: FrictionAlong = key("\"plane\"", KeyKind::Words(names_of::<FrictionAlong>))
             .note("See [upright sheets](../model.md#an-upright-sheet)."),
-        /// Mean static coefficient, and the scale of all forces even when a field is given.
+        /// Mean static coefficient. It is the scale of all forces, even if a field is given.
         pub mu_static: f64 = key("1.0", number(above(0.0, 100.0), "it is the scale of all forces"))
             .paper("mean of mu_s")
             .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
         [
             /// Mean of the local kinetic coefficients: `r_star` or `mu_kinetic`.
             pub kinetic: KineticFriction or "friction needs `r_star` or `mu_kinetic`" {
-                /// Mean kinetic over mean static coefficient.
-                r_star: f64 => RStar = key("0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"))
+                /// Ratio of the mean kinetic to the mean static coefficient.
+                r_star: f64 => RStar = key("0.5", number(within(0.0, MAX_R_STAR), "it is the ratio of the kinetic to the static coefficient"))
                     .star(StarUnit::One)
                     .or("mu_kinetic").paper("R*").title("friction ratio", "R*", ""),
-                /// Mean kinetic coefficient, in place of `r_star`.
+                /// Mean kinetic coefficient, instead of `r_star`.
                 mu_kinetic: f64 => MuKinetic = key("", KeyKind::Special("0 to 10 times `mu_static`"))
                     .or("r_star").paper("mean of mu_k")
                     .title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
             }
         ]
-        /// Standard deviation of the static coefficients over their mean.
+        /// Standard deviation of the static coefficients, relative to their mean.
         pub sigma_static_star: f64 = key("0.05", SIGMA).star(StarUnit::One).paper("sigma_s*")
             .title("spread of static coefficients", "\u{3c3}\u{209b}*", ""),
-        /// Standard deviation of the kinetic coefficients over *their* mean.
+        /// Standard deviation of the kinetic coefficients, relative to *their* mean.
         pub sigma_kinetic_star: f64 = key("0.05", SIGMA).star(StarUnit::One).paper("sigma_k*")
             .title("spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
         /// Seed of the random coefficients.
         pub seed: u64 = key("1", whole(0, MAX_SEED)).title("seed", "", ""),
-        /// Static coefficients block by block, in place of random ones.
+        /// Static coefficients block by block, instead of random ones.
         pub mu_static_field: Option<String> = key("", ARRAY).paper("mu_s,i"),
-        /// Kinetic coefficients block by block, in place of random ones.
+        /// Kinetic coefficients block by block, instead of random ones.
         pub mu_kinetic_field: Option<String> = key("", ARRAY).paper("mu_k,i"),
-        /// Shear strength without load, added to the static threshold of the blocks in contact, tau_a: the
-        /// threshold is mu_s,i F_n,i + tau_a l^2.
+        /// Load-independent shear strength tau_a of the contact: the static threshold of a block in contact
+        /// is mu_s,i F_n,i + tau_a l^2.
         pub adhesion: Pressure = key("\"0 Pa\"", SHEAR_STRENGTH).title("adhesion", "\u{3c4}\u{2090}", "Pa"),
-        /// Shear strength without load, added to the kinetic friction of the blocks in contact.
+        /// Load-independent shear strength that is added to the kinetic friction of blocks in contact.
         pub adhesion_kinetic: Pressure = key("\"0 Pa\"", SHEAR_STRENGTH)
             .title("kinetic adhesion", "\u{3c4}\u{2090}\u{2096}", "Pa"),
         /// Length over which random coefficients are alike; without it every block draws its own.
@@ -149,30 +149,29 @@ key_rows! {
             .further_bounds(", 0.25 to 100 000 blocks")
             .note("With it the spreads are those at a point, and those [of means over \
             blocks](../model.md#coefficients-that-are-alike-over-a-length) are less."),
-        /// Kinetic friction that falls with speed: mu_k,i (ratio + (1 - ratio)/(1 + v/v_c)).
+        /// Velocity weakening of kinetic friction: mu_k,i (ratio + (1 - ratio)/(1 + v/v_c)).
         pub velocity: Option<Velocity> =
             key("", KeyKind::Table("{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }", Velocity::KEYS)),
-        /// Static friction that grows while a block is stuck: mu_s,i (1 + beta ln(1 + t/time)).
+        /// Ageing of static friction while a block is stuck: mu_s,i (1 + beta ln(1 + t/time)).
         pub ageing: Option<Ageing> = key("", KeyKind::Table("{ law = \"logarithmic\", beta = 0.02, time_star = 1 }", Ageing::KEYS)),
         /// Slip over which strength falls from the static to the kinetic threshold, D_c; without it strength
         /// falls at once.
         pub slip_weakening: Option<SlipWeakeningLength> = key("", KeyKind::Table("{ length = \"0.5 um\" }", SlipWeakeningLength::KEYS))
             .further_bounds(", in units of P mu_s l^2/(E h); one of the two")
             .note("See [the model](../model.md#other-laws-of-friction)."),
-        /// Time for which a block must be stuck to be whole again; without it none is before the run ends.
+        /// Time of stick after which a block has its full strength again; without it strength is not restored
+        /// during the run.
         pub healing_time_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time)
             .title("healing time", "t\u{2095}*", ""),
-        /// Connection that holds a block until its threshold: nothing that yields, or a spring, which breaks
-        /// there.
+        /// Contact below the threshold: rigid, or a spring that breaks at the threshold.
         #[serde(deserialize_with = "word")]
         pub contact: ContactModel = key("\"rigid\"", KeyKind::Words(names_of::<ContactModel>)),
-        /// Stiffness of the spring in the contact of a block; this or the next is needed with
-        /// `contact = "springs"`.
+        /// Stiffness of the contact spring of a block; `contact = "springs"` needs this key or the next.
         pub contact_stiffness_star: Option<f64> = key("", number(above(0.0, 1e3),
-            "it is over E h, with the thickness h, and a spring between blocks has 0.75"))
+            "it is relative to E h, with the thickness h, and a spring between blocks has 0.75"))
                 .star(StarUnit::SpringOfBlock).or("contact_stiffness_per_area")
             .paper("k_t/(E h)").title("contact stiffness", "k\u{209c}*", ""),
-        /// Stiffness of the springs in contact per area.
+        /// Stiffness of the contact springs per area.
         pub contact_stiffness_per_area: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA)
             .or("contact_stiffness_star")
             .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
@@ -181,29 +180,29 @@ key_rows! {
         #[serde(default, deserialize_with = "word", skip_serializing_if = "AfterBreak::is_default")]
         pub after_break: AfterBreak = key("\"form_again\"", KeyKind::Words(names_of::<AfterBreak>))
             .note("See [springs in contact](../model.md#other-laws-of-friction)."),
-        /// Whether a spring that forms again has another threshold: that of the coefficient of a block in
-        /// contact, chosen at random from the seed.
+        /// Whether a contact spring that re-forms has a new threshold, from the coefficient of a random block
+        /// in contact (chosen by the seed).
         pub redraw: bool = key("false", KeyKind::Switch),
-        /// Direct effect of rate and state; needed with that law, as are the next three.
+        /// Direct effect of rate-and-state friction; this law needs this key and the next three.
         pub a: Option<f64> = key("", number(within(1e-6, 10.0), "it is a coefficient, of the order of 0.01"))
             .title("direct effect", "a", ""),
-        /// Evolution effect of rate and state.
+        /// Evolution effect of rate-and-state friction.
         pub b: Option<f64> = key("", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"))
             .title("evolution effect", "b", ""),
-        /// Slip over which the state follows a change of speed, in units of P mu_s l^2/(E h).
+        /// Characteristic slip of the state variable, in units of P mu_s l^2/(E h).
         pub d_c_star: Option<f64> = key("", SLIP_STAR).star(StarUnit::Displacement)
             .title("slip of the state", "D*", ""),
-        /// Reference speed of rate and state, in the unit of V*.
+        /// Reference speed of rate-and-state friction, in the unit of V*.
         pub v_0_star: Option<f64> = key("", SPEED_STAR).star(StarUnit::Speed)
             .title("reference speed", "V\u{2080}*", ""),
-        /// Coefficient of steady sliding at `v_0_star`; `mu_static` if not given.
+        /// Friction coefficient of steady sliding at `v_0_star`; `mu_static` if not given.
         pub mu_0: Option<f64> = key("", number(within(0.0, 100.0), "it is a coefficient"))
             .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),
-        /// State at the start, t*; `d_c_star`/`v_0_star` if not given.
+        /// Initial state, t*; `d_c_star`/`v_0_star` if not given.
         pub theta_0_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time)
             .title("state at the start", "\u{3b8}\u{2080}*", ""),
-        /// Speed above which a block counts as sliding under rate and state, in the unit of V*; V*/10 if not
-        /// given.
+        /// Speed above which a block counts as sliding under rate-and-state friction, in the unit of V*;
+        /// V*/10 if not given.
         pub slip_speed_star: Option<f64> = key("", SPEED_STAR).star(StarUnit::Speed),
     }
 }
@@ -291,11 +290,11 @@ impl Friction {
         let draws = self.spreads().iter().any(|(_, sigma_star)| *sigma_star > 0.0);
         let drawn_by_block = self.correlation_length.is_none() && draws;
         let slip = falls_at_once.then_some(LengthOfABlock {
-            length: "the slip over which strength is lost",
+            length: "the slip-weakening distance",
             key: "friction.slip_weakening",
         });
         let coefficients = drawn_by_block.then_some(LengthOfABlock {
-            length: "the length over which coefficients are alike",
+            length: "the correlation length of the coefficients",
             key: "friction.correlation_length",
         });
         slip.into_iter().chain(coefficients)
@@ -376,7 +375,7 @@ impl Friction {
                 let along = match &coulomb.interface {
                     None => String::new(),
                     Some(interface) if interface.foundation > 0.0 => format!(
-                        ", along x alone, on a foundation of {} E h under a block",
+                        ", only along x, on a foundation of {} E h per block",
                         four_digits(interface.foundation)
                     ),
                     Some(_) => ", along x alone".to_owned(),
@@ -505,8 +504,8 @@ impl Friction {
         match self.law {
             Law::Projection => {}
             Law::Reversal | Law::Literal => {
-                let why = "`law` = \"reversal\" and \"literal\" are other readings of Eq. 4, for comparison with it alone; \
-                           take `law` = \"projection\"";
+                let why = "`law` = \"reversal\" and \"literal\" are other interpretations of Eq. 4, only for comparison with \
+                           it; use `law` = \"projection\"";
                 refuse_set(check, &self.options(), why)?;
                 refuse_set(check, &[springs], why)?;
             }
@@ -576,21 +575,21 @@ pub(crate) fn friction_warning(model: &Model) -> Option<String> {
 fn refuse_set(check: &Check, keys: &[(&str, bool)], why: &str) -> Result<(), CaseError> {
     let set = keys.iter().find(|(_, is_set)| *is_set);
     set.map_or(Ok(()), |(key, _)| {
-        check.refuse(key, |path| format!("`{path}` has no meaning here: {why}"))
+        check.refuse(key, |path| format!("`{path}` does not apply here: {why}"))
     })
 }
 
 /// Reason for which laws that depend on time have no meaning under a held drive.
-const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" the drive waits for slip to end, and loads as slowly as you like: no time passes in which \
-                            contacts could grow stronger; leave one of them out";
+const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" loading is arbitrarily slow, so there is no time scale for contacts \
+                            to strengthen; leave one of them out";
 
 /// Reason for which other laws have no meaning under a held drive.
-const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact are stuck, as they are by \
-                    `law` = \"projection\" and `contact` = \"rigid\" alone; take these, or `drive.loading` = \"constant\"";
+const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact stick, which needs `law` = \
+                    \"projection\" and `contact` = \"rigid\"; use these, or `drive.loading` = \"constant\"";
 
 /// Reason for which there are no events of slip of springs in contact.
-const EVENTS: &str = "with `output.events` blocks slide from the begin of an event to its end, and a spring in contact breaks and forms again \
-                      at an instant; take `after_break` = \"slide\" or `contact` = \"rigid\", or leave `output.events` out";
+const EVENTS: &str = "`output.events` needs blocks that slide during an event, but a contact spring breaks and re-forms in an \
+                      instant; use `after_break` = \"slide\" or `contact` = \"rigid\", or leave `output.events` out";
 
 /// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it
 /// spreads.

@@ -28,8 +28,8 @@ const SLIP: &str = "the slip of rate and state is `friction.d_c_star`";
 const REFERENCE_SPEED: &str = "the reference speed of rate and state is `friction.v_0_star`";
 
 /// Reason for which other keys have no meaning beside this law.
-pub(super) const ALONE: &str = "`law` = \"rate_and_state\" has no static and kinetic coefficients, and its friction follows speed and age \
-                                already; leave it out, or take `law` = \"projection\"";
+pub(super) const ALONE: &str = "`law` = \"rate_and_state\" has no static and kinetic coefficients, and already depends on speed \
+                                and age; leave it out, or use `law` = \"projection\"";
 
 /// Reason for which the keys of this law have no meaning beside another law.
 pub(super) const ELSEWHERE: &str = "it belongs to `law` = \"rate_and_state\"; set that, or leave it out";
@@ -76,8 +76,8 @@ pub(super) fn warning(law: &RateAndState, model: &Model) -> Option<String> {
     let critical = law.critical_stiffness(model.surface.mean_normal_force(), model.damping, v_star);
     (k_drive < critical).then(|| {
         format!(
-            "the drive, of stiffness {} E h per block, is softer than {}, below which steady sliding at V* = {} is \
-             unstable: stick-slip is to be expected",
+            "the drive stiffness is {} E h per block, below the critical stiffness {} for steady sliding at V* = {}: expect \
+             stick-slip",
             four_digits(k_drive),
             four_digits(critical),
             four_digits(v_star)

@@ -19,10 +19,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "the time of healing is `friction.healing_time_star`, in t*",
     ),
 ];
-const ADVICE: &str = "strength that falls with slip is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S - K) length/2 of a block";
+const ADVICE: &str = "slip weakening is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S - K) length/2 of a block";
 
 /// Reason for which other laws have no meaning beside slip weakening.
-pub(super) const ALONE: &str = "beside `slip_weakening` it is not derived; leave one of them out";
+pub(super) const ALONE: &str = "it cannot be combined with `slip_weakening`; leave one of them out";
 
 /// Reason for which healing has no meaning without slip weakening.
 pub(super) const ELSEWHERE: &str = "it belongs to `slip_weakening`; set that, or leave it out";
@@ -71,10 +71,10 @@ impl SlipWeakeningLength {
 /// The law in words, for the end of a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &SlipWeakening) -> String {
     let healing = law.healing_time.map_or(String::new(), |time| {
-        format!(", whole again after t* = {} at rest", four_digits(time))
+        format!(", full strength again after t* = {} at rest", four_digits(time))
     });
     format!(
-        ", strength falling over a slip of D_c* = {}{healing}",
+        ", slip weakening over D_c* = {}{healing}",
         four_digits(law.length)
     )
 }

@@ -19,7 +19,8 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("critical_speed", ADVICE),
     ("v_c", ADVICE),
 ];
-const ADVICE: &str = "friction that falls with speed is `friction.velocity` = { law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }";
+const ADVICE: &str =
+    "velocity weakening is `friction.velocity` = { law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }";
 
 key_rows! {
     /// `velocity`: kinetic friction that falls with speed, mu_k [ratio + (1 - ratio)/(1 + v/v_c)].
@@ -39,7 +40,7 @@ key_rows! {
 /// Kind of the key `ratio`: a share of kinetic friction.
 const RATIO: KeyKind = number(
     within(0.0, 1.0),
-    "it is kinetic friction at high speed over that at rest",
+    "it is the ratio of kinetic friction at high speed to kinetic friction at rest",
 );
 
 /// Dependence of kinetic friction on speed.
@@ -68,5 +69,5 @@ impl Velocity {
 /// The law in words, for the end of a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &Weakening) -> String {
     let (ratio, speed) = (four_digits(law.ratio), four_digits(law.critical_speed));
-    format!(", falling to {ratio} of mu_k about V* = {speed}")
+    format!(", falling to {ratio} mu_k above about V* = {speed}")
 }

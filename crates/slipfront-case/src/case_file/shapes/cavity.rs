@@ -50,25 +50,25 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(try_from = "CavityKeys", into = "CavityKeys")]
     pub struct Cavity from CavityKeys {
-        /// Kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges.
+        /// Kind of outline: an ellipse for 1, otherwise a polygon with s + 1 curved edges.
         pub s: u32 = key("1", KeyKind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" })
             .paper("s")
             .title("cavity shape", "s", ""),
-        /// Departure of the outline from a circle: at 1/s the vertices are sharp.
+        /// Deviation of the outline from a circle; vertices are sharp at 1/s.
         pub w: f64 = key("0", KeyKind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s")).paper("w")
             .title("cavity shape", "w", ""),
         [
             /// Size of the cavity: `coverage` or `lambda`.
             pub size: CavitySize or "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`" {
-                /// Size: percent of the whole area, all copies together.
+                /// Size: total coverage of all copies, in percent of the whole area.
                 coverage: f64 => Coverage = key("", COVERAGE).or("lambda").paper("A* (Eq. 18, D5)")
                     .title("texture coverage", "A*", "%"),
-                /// Size: the length of Eq. 17, a circle's radius. A cavity needs one of the two.
+                /// Size: the length of Eq. 17, the radius of a circle. A cavity needs one of these two keys.
                 lambda: Length => Lambda = key("", SIZE).or("coverage").paper("lambda")
                     .title("cavity size", "\u{3bb}", "m"),
             }
         ]
-        /// Whether x and y are swapped, as the paper does: an ellipse of w > 0 is then elongated along y, not
+        /// Whether x and y are swapped, as in the paper: an ellipse with w > 0 is then elongated along y, not
         /// x.
         pub across: bool = key("false", KeyKind::Switch),
         /// Centre of the cavity, or of its pattern.

@@ -38,14 +38,14 @@ key_rows! {
         [
             /// Size of the groove: `coverage` or `width`.
             pub size: GrooveSize or "a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`" {
-                /// Size: percent of the whole area, all copies together.
+                /// Size: total coverage of all copies, in percent of the whole area.
                 coverage: f64 => Coverage = key("", COVERAGE).or("width").paper("A*")
                     .title("texture coverage", "A*", "%"),
-                /// Size: the width. A groove needs one of the two.
+                /// Size: the width. A groove needs one of these two keys.
                 width: Length => Width = key("", SIZE).or("coverage").title("groove width", "", "m"),
             }
         ]
-        /// Distance of the groove's middle line from the slider's.
+        /// Distance between the centre lines of groove and slider.
         pub offset: Length = key("\"0 um\"", COORDINATE).title("groove offset", "", "m"),
     }
 }

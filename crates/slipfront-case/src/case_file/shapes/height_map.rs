@@ -31,31 +31,32 @@ key_rows! {
             /// Heights that touch: `bearing_percent` or `depth`.
             pub bearing: Bearing or "a height map needs what touches: `bearing_percent = 60` (percent of the area, the highest parts) or \
                                      `depth = \"0.5 um\"` (below the highest)" {
-                /// Share of the area that touches, the highest parts first.
+                /// Percentage of the area in contact, starting with the highest parts.
                 bearing_percent: f64 => Percent = key("", COVERAGE).or("depth")
                     .title("bearing area", "", "%"),
-                /// Distance below the reference down to which a block still touches. A map needs one of the
-                /// two.
+                /// Depth below the reference down to which a block is in contact. A map needs one of these
+                /// two keys.
                 depth: Length => Depth = key("", SIZE).or("bearing_percent")
                     .title("depth of contact", "", "m"),
             }
         ]
-        /// Height from which `depth` is counted; that of the highest block if left out.
+        /// Height from which `depth` is measured; the height of the highest block if not given.
         pub reference: Option<Length> = key("", COORDINATE),
-        /// Height that a value of 1 in the file means, if the file has no unit.
+        /// Height of a value of 1 in the file, if the file has no unit.
         pub height_unit: Option<Length> = key("", SIZE),
-        /// Distance of neighbouring points, if the file does not have it.
+        /// Distance between neighbouring points, if the file does not contain it.
         pub pixel_size: Option<Pitch> = key("", PITCH),
-        /// Surface that is subtracted from the heights first: the plane of least squares.
+        /// Surface that is subtracted from the heights first: the least-squares plane.
         #[serde(default, deserialize_with = "some_word")]
         pub level: Option<Level> = key("", KeyKind::Words(names_of::<Level>)),
-        /// Decimal sign of a table of text.
+        /// Decimal sign of a text table.
         #[serde(default, deserialize_with = "some_word")]
         pub decimal: Option<DecimalSign> = key("", KeyKind::Words(names_of::<DecimalSign>)).without("found"),
-        /// Separator of the numbers of a table of text.
+        /// Separator of the numbers in a text table.
         #[serde(default, deserialize_with = "some_word")]
         pub separator: Option<FieldSeparator> = key("", KeyKind::Words(names_of::<FieldSeparator>)).without("found"),
-        /// Value of points that were not measured, a number or `"nan"`: a block has the mean of its others.
+        /// Value of points that were not measured, a number or `"nan"`; a block has the mean of its other
+        /// points.
         pub missing: Option<Missing> = key("", KeyKind::Special("a number or `\"nan\"`")),
     }
 }

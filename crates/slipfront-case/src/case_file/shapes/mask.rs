@@ -20,10 +20,11 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Mask {
-        /// An image, stretched over the slider with its top row at the largest y, dark pixels textured; or an
-        /// array of shape (ny, nx) of 0 and 1, 1 being textured.
+        /// Image, stretched over the slider with its top row at the largest y, with dark pixels textured; or
+        /// an array of 0 and 1 of shape (ny, nx), with 1 textured.
         pub file: String = key("", KeyKind::File(&["png", "npy"])),
-        /// Share of white below which a pixel of an image is dark; of no matter for an array.
+        /// Grey level below which a pixel of an image is dark, from 0 (black) to 1 (white); no effect on
+        /// arrays.
         pub threshold: f64 = key("0.5", number(between(0.0, 1.0), "it is a share of white")),
     }
 }

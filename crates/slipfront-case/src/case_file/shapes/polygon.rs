@@ -22,7 +22,7 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Polygon {
-        /// The corners; the inside follows from the even-odd rule.
+        /// Vertices; the even-odd rule determines the inside.
         #[serde(deserialize_with = "read_points")]
         pub points: Vec<[Length; 2]> = key("", KeyKind::Special("at least 3 pairs within 1e9 m")),
     }

@@ -62,7 +62,7 @@ pub(super) fn expect_a_folder(out: &Path) -> Result<(), Failure> {
     }
     let folder = out.with_extension("");
     Err(Failure::input(anyhow::anyhow!(
-        "--out names a folder, in which pictures have names of their own, and {} is that of a picture: write --out {}",
+        "--out must be a folder, but {} is the name of a picture: write --out {}",
         out.display(),
         folder.display()
     )))
@@ -76,8 +76,7 @@ pub(in crate::commands) fn expect_memory(bytes: f64) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::input(anyhow::anyhow!(
-        "this takes about {} of memory where {} are available to this process: give it more, in a queue for \
-         example with `--mem`",
+        "this needs about {} of memory, but {} are available to this process: allow more, in a queue for example with `--mem`",
         byte_size(needed),
         byte_size(available)
     )))
@@ -86,7 +85,7 @@ pub(in crate::commands) fn expect_memory(bytes: f64) -> Result<(), Failure> {
 pub(in crate::commands) fn expect_results(folder: &Path) -> Result<(), Failure> {
     if folder.is_file() {
         return Err(Failure::input(anyhow::anyhow!(
-            "{} is a file: name the folder of a finished run; a measured record goes with `plot --data`",
+            "{} is a file: give the folder of a finished run; a measured record is given with `plot --data`",
             folder.display()
         )));
     }
@@ -94,12 +93,12 @@ pub(in crate::commands) fn expect_results(folder: &Path) -> Result<(), Failure> 
     let sentence = match path.try_exists() {
         Ok(true) => return Ok(()),
         Ok(false) if has_records(folder) => format!(
-            "{} is the folder of a study: name the folder of a run, such as one in its folder runs/",
+            "{} is the folder of a study: give the folder of a run, such as one in its folder runs/",
             folder.display()
         ),
         Ok(false) if !folder.exists() => missing_folder(folder),
         Ok(false) => format!(
-            "{} holds no summary.json: name the folder of a run that is finished",
+            "{} contains no summary.json: give the folder of a finished run",
             folder.display()
         ),
         Err(error) => format!("cannot read {}: {error}", path.display()),
@@ -124,7 +123,7 @@ pub(in crate::commands) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     let sentence = match manifest.try_exists() {
         Ok(false) => return Ok(()),
         Ok(true) => format!(
-            "{} holds a run, and these are not its pictures: choose another folder with --out",
+            "{} contains another run: choose another folder with --out",
             out.display()
         ),
         Err(error) => format!("cannot read {}: {error}", manifest.display()),
@@ -160,7 +159,7 @@ pub(in crate::commands) fn in_the_way(
     let is_drawn = own.map(|run| run.has_written(name)).transpose();
     let what = match is_drawn.map_err(Failure::input)? {
         Some(true) => return Ok(None),
-        Some(false) => "is not as the run has drawn it",
+        Some(false) => "was changed after the run drew it",
         None => "exists",
     };
     Ok(Some(format!(

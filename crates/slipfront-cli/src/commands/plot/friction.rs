@@ -18,42 +18,42 @@ use crate::table_args::TableArgs;
 /// The picture of friction.
 #[derive(Args)]
 pub(super) struct FrictionArgs {
-    /// Draw friction alone, in these units
+    /// Draw only friction, in these units
     #[arg(long)]
     units: Option<UnitsName>,
-    /// Draw friction alone, against this [default: time, or where runs of different materials can be
-    /// compared]
+    /// Draw only friction, against this quantity [default: time, or the quantity that makes runs of different
+    /// materials comparable]
     #[arg(long)]
     against: Option<AgainstName>,
-    /// Draw friction alone, with this name of a run in the legend; once for each folder, and a last time for
-    /// the record of --data
+    /// Draw only friction, with this name of a run in the legend; one per folder, then one for the record of
+    /// --data
     #[arg(long = "name", value_name = "TEXT", conflicts_with = "field")]
     names: Vec<String>,
-    /// Draw friction alone, with this title of the horizontal axis; a character after _ is a subscript
+    /// Draw only friction, with this title of the horizontal axis; a character after _ is a subscript
     #[arg(long, value_name = "TEXT", conflicts_with = "field")]
     x_label: Option<String>,
-    /// Draw friction alone, with this title of the axis of friction
+    /// Draw only friction, with this title of the friction axis
     #[arg(long, value_name = "TEXT", conflicts_with = "field")]
     y_label: Option<String>,
-    /// A measured record to draw with the curves, in SI units: a table of text (.csv)
+    /// Measured record to draw with the curves, in SI units: a text table (.csv)
     #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
     data: Option<PathBuf>,
-    /// Column of times of the record, or of displacements with `--against displacement`: name or number from
+    /// Column of times in the record, or of displacements with `--against displacement`: name or number from
     /// 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     x: Option<String>,
-    /// Column of forces of the record, or of coefficients if its unit is 1
+    /// Column of forces in the record, or of coefficients if its unit is 1
     #[arg(long, value_name = "COLUMN", requires = "data")]
     y: Option<String>,
-    /// Unit of the column of times or displacements [default: that in its header]
+    /// Unit of the column of times or displacements [default: unit in its header]
     #[arg(long, value_name = "UNIT", requires = "data")]
     x_unit: Option<String>,
-    /// Unit of the column of forces [default: that in its header]
+    /// Unit of the column of forces [default: unit in its header]
     #[arg(long, value_name = "UNIT", requires = "data")]
     y_unit: Option<String>,
     #[command(flatten)]
     table: TableArgs,
-    /// Factor of the forces: -1 turns their sign
+    /// Factor of the forces; -1 changes their sign
     #[arg(
         long,
         value_name = "NUMBER",
@@ -62,7 +62,7 @@ pub(super) struct FrictionArgs {
         allow_negative_numbers = true
     )]
     y_factor: f64,
-    /// Number added to the forces after that, in N or 1
+    /// Number added to the forces after multiplication, in N or 1
     #[arg(
         long,
         value_name = "NUMBER",
@@ -71,13 +71,13 @@ pub(super) struct FrictionArgs {
         allow_negative_numbers = true
     )]
     y_offset: f64,
-    /// Number added to the record's times or displacements, in s or m [default: what fits the first run
-    /// best, if nothing else fits about as well]
+    /// Number added to the times or displacements of the record, in s or m [default: the best fit to the
+    /// first run, if it is unique]
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
-    /// Draw the curves as an instrument writes them, and compare the record with that: the table
-    /// `[instrument]` of this file, such as a calibration file. Marks of instants and peaks, which are
-    /// those of friction itself, are left out
+    /// Draw the curves as recorded by an instrument, and compare them with the record. The file, such as a
+    /// calibration file, has a table `[instrument]`. Marks of instants and peaks of the true friction are
+    /// omitted
     #[arg(long, value_name = "FILE", requires = "data")]
     instrument: Option<PathBuf>,
 }
@@ -151,7 +151,7 @@ impl FrictionArgs {
             return Ok(());
         }
         Err(Failure::input(anyhow::anyhow!(
-            "{} for {}: give --name once for each, in their order",
+            "{} for {}: give --name once for each, in the same order",
             count(given, "name"),
             count(runs, "run")
         )))
@@ -169,7 +169,7 @@ impl FrictionArgs {
         let look = self.look(size);
         let drawn = match (self.units, &self.data) {
             (Some(UnitsName::Star), Some(_)) => {
-                let sentence = "a measured record has units, and is drawn in them: leave `--units star` out";
+                let sentence = "a measured record is drawn in its units: leave `--units star` out";
                 return Err(Failure::input(anyhow::anyhow!(sentence)));
             }
             (_, Some(path)) => {
@@ -231,7 +231,7 @@ fn fit_report(folders: &[PathBuf], fit: &Fit, data: &Path) -> String {
     };
     let mut text = format!("{}: shifted by {}\n", data.display(), quantity(fit.shift, x));
     for (folder, misfit) in folders.iter().zip(&fit.misfits) {
-        let misfit = misfit.map_or("too little in common for a misfit".to_owned(), |misfit| {
+        let misfit = misfit.map_or("too little overlap for a misfit".to_owned(), |misfit| {
             format!(
                 "RMS misfit {} over {} of {}",
                 quantity(misfit.rms, y),

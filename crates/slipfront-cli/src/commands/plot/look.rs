@@ -10,20 +10,20 @@ use crate::failure::Failure;
 /// The look of pictures.
 #[derive(Args)]
 pub(super) struct LookArgs {
-    /// Width of the pictures in mm [default: 85 of curves, maps over two axes and bars, at most 175 of maps
+    /// Width of the pictures in mm [default: 85 for curves, maps over two axes and bars, at most 175 for maps
     /// of the slider]
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     width: Option<f64>,
-    /// Height of the pictures in mm; of maps of the slider it follows from the width
+    /// Height of the pictures in mm; for maps of the slider it follows from the width
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     height: Option<f64>,
-    /// Size of all text in pt: titles, numbers and legends alike [default: 7.92]. Subscripts have 0.72 of it,
-    /// and titles and numbers that are too long for their axis or cell seven eighths; lines and marks grow
-    /// with it
+    /// Font size of titles, numbers and legends in pt [default: 7.92]. Subscripts have 0.72 of this size;
+    /// titles and numbers that are too long for their axis or cell have seven eighths. Lines and marks scale
+    /// with the font
     #[arg(long, value_name = "PT", value_parser = points)]
     font_size: Option<f64>,
-    /// Formats of the files, such as pdf or svg,png. PDF has its font inside. For EPS, convert the PDF:
-    /// pdftops -eps -r 1200 NAME.pdf
+    /// File formats, such as pdf or svg,png. PDF files contain their font. For EPS, convert the PDF: pdftops
+    /// -eps -r 1200 NAME.pdf
     #[arg(
         long = "format",
         value_name = "FORMAT",
@@ -31,7 +31,7 @@ pub(super) struct LookArgs {
         default_value = "svg,png"
     )]
     formats: Vec<FormatName>,
-    /// Draw this picture alone, by the name of its files without an ending
+    /// Draw only this picture, given by its file name without extension
     #[arg(long, value_name = "NAME", conflicts_with = "field")]
     picture: Option<String>,
 }

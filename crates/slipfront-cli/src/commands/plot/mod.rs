@@ -26,11 +26,11 @@ use crate::failure::Failure;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Draw the pictures of a run or a study in the size and format of a journal, or compare the curves of runs
+/// Draw the pictures of a run or a study in the size and format of a journal, or compare friction curves of
+/// runs
 ///
-/// The pictures of a run, a study, a convergence, a design or a calibration are drawn again from what the
-/// folder has recorded. The axes of friction are of your choice, and measured records may be drawn over the
-/// curves
+/// The pictures of a run, a study, a convergence, a design or a calibration are drawn from the files in its
+/// folder. Options set the axes of friction curves, and can add a measured record to the curves
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront plot results/baseline
@@ -45,24 +45,24 @@ use crate::threads::set_threads;
   slipfront plot results/circle --field traction -o results/traction
   slipfront plot results/circle --field kymograph -o results/kymograph
 
-Formats are svg, png (300 dots per inch) and pdf; svg and pdf have their font inside. For EPS, convert the PDF: pdftops -eps -r 1200 friction.pdf")]
+Formats are svg, png (300 dots per inch) and pdf; svg and pdf files contain their font. For EPS, convert the PDF: pdftops -eps -r 1200 friction.pdf")]
 pub(crate) struct PlotCommand {
-    /// Folders of runs, or one of a study, a convergence, a design or a calibration
+    /// Folders of runs, or one folder of a study, a convergence, a design or a calibration
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     #[command(flatten)]
     look: LookArgs,
-    /// Draw maps of this field of one run alone; kymograph is the share of sliding blocks against place and
-    /// time, over the whole run
+    /// Draw only maps of this field of one run; kymograph is the fraction of sliding blocks against position
+    /// and time over the whole run
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FIELDS.map(|info| info.name).into_iter().chain([KYMOGRAPH])), conflicts_with_all = ["units", "against", "data", "names", "x_label", "y_label"])]
     field: Option<String>,
     #[command(flatten)]
     friction: FrictionArgs,
-    /// Folder for the pictures [default: the folder's own for all its pictures in their usual size;
-    /// results/overlay for others]
+    /// Folder for the pictures [default: the results folder for all its pictures in their default size,
+    /// otherwise results/overlay]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace pictures that stand there
+    /// Replace existing pictures
     #[arg(long)]
     force: bool,
 }
@@ -122,8 +122,8 @@ impl PlotCommand {
             return Ok(());
         };
         Err(Failure::input(anyhow::anyhow!(
-            "{option} is for pictures of runs, and {} is no folder of a run: leave it out, or name a run, such as one in the folder's \
-             runs/",
+            "{option} applies to pictures of runs, but {} is not a folder of a run: leave it out, or give a run, such as one in \
+             its folder runs/",
             self.folders[0].display()
         )))
     }
@@ -143,7 +143,7 @@ impl PlotCommand {
                 vec![(name, picture.map_err(Failure::input)?)]
             }
             (Some(_), _) => {
-                let sentence = "--field draws the maps of one run: name one folder";
+                let sentence = "--field draws the maps of one run: give one folder";
                 return Err(Failure::input(anyhow::anyhow!(sentence)));
             }
             (None, [folder]) if !self.friction.is_asked_for() => {
@@ -172,7 +172,7 @@ impl PlotCommand {
     fn expect_drawn(&self, folder: &Path, is_empty: bool) -> Result<(), Failure> {
         match self.look.picture() {
             Some(name) if is_empty => Err(Failure::input(anyhow::anyhow!(
-                "{} has no picture {name}: the run has kept nothing that it could show",
+                "{} has no picture {name}: the run has no data for it",
                 folder.display()
             ))),
             _ => Ok(()),

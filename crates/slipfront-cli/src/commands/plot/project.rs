@@ -17,7 +17,7 @@ pub(super) fn of(folders: &[PathBuf]) -> Result<Option<PicturesOf<'_>>, Failure>
     for folder in folders {
         if is_of_figures(folder) {
             return Err(Failure::input(anyhow::anyhow!(
-                "{} holds the figures of the paper, which have the sizes of its print: `slipfront paper` draws them",
+                "{} contains the figures of the paper, which have the printed size: `slipfront paper` draws them",
                 folder.display()
             )));
         }
@@ -26,7 +26,7 @@ pub(super) fn of(folders: &[PathBuf]) -> Result<Option<PicturesOf<'_>>, Failure>
         };
         if folders.len() > 1 {
             return Err(Failure::input(anyhow::anyhow!(
-                "{} is no folder of a run, and curves are drawn over each other of runs alone: name it by itself",
+                "{} is not a folder of a run, and only curves of runs can be combined: give it alone",
                 folder.display()
             )));
         }

@@ -89,15 +89,15 @@ pub(super) fn complete(
 fn files(case: &Case, out: &Path) -> String {
     let pictures = RunPicture::ALL.map(|picture| (format!("{}.svg .png", picture.name()), picture.shows()));
     let tables = tables().map(|table| (table.file, table.shows));
-    let files = [(SERIES, "the curve, row by row")]
+    let files = [(SERIES, "the friction curve, one row per time")]
         .into_iter()
         .chain(tables)
         .chain([
-            (KYMOGRAPH, "sliding blocks against place and time"),
+            (KYMOGRAPH, "sliding blocks against position and time"),
             (FIELDS, "the fields, for ParaView, Python, MATLAB"),
-            (STATE, "the last state, in which another case can begin"),
+            (STATE, "the final state, from which another case can start"),
             (SUMMARY, "the numbers above"),
-            (CASE, "the case, every default filled in"),
+            (CASE, "the case with all defaults"),
         ]);
     let files = files.map(|(name, shows)| (name.to_owned(), shows));
     let mut text = format!("files in {}\n", out.display());
@@ -109,7 +109,7 @@ fn files(case: &Case, out: &Path) -> String {
         }
     }
     if !case.inputs.is_empty() {
-        text += &format!("  {:<18} copies of the files that the case reads\n", "inputs/");
+        text += &format!("  {:<18} copies of the input files of the case\n", "inputs/");
     }
     text
 }

@@ -33,46 +33,44 @@ use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
 /// Help on checkpoints.
-pub(crate) const CHECKPOINTS_HELP: &str = "The whole state of the run is saved in its folder every --checkpoint and on SIGUSR1, \
-after which it goes on, and on Ctrl-C, SIGTERM and SIGHUP, which stop it with status 130, 143 and 129. A run that was stopped \
-and resumed, however often, writes the same bytes as one that was not.";
+pub(crate) const CHECKPOINTS_HELP: &str = "A checkpoint of the complete state is saved in the folder of the run at every \
+--checkpoint interval and on SIGUSR1. Ctrl-C, SIGTERM and SIGHUP also save a checkpoint, and stop the run with status 130, 143 \
+and 129. A run that was stopped and resumed, however often, writes bit-identical files.";
 
 /// Run a case and write its results and pictures
 ///
-/// Prints the physics of the case, shows progress, and prints a summary
+/// Prints the physics of the case, the progress and a summary
 #[derive(Args)]
 pub(crate) struct RunCommand {
     #[command(flatten)]
     case: CaseArgs,
-    /// Folder for the results [default: results/ and the name of the case, which for the case.toml of a
-    /// results folder is the name of this folder; with the next free number where that is taken]
+    /// Folder for the results [default: results/NAME with the name of the case, or of the folder that
+    /// contains case.toml; the next free number is appended if it exists]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace the files of an earlier run in that folder, and nothing else
+    /// Replace the files of an earlier run in this folder, but no other files
     #[arg(long)]
     force: bool,
-    /// Wall time from one checkpoint to the next, such as 30s or 1h, or off; at least 99 times as long as one
-    /// takes to save
+    /// Wall time between checkpoints, such as 30s or 1h, or off; at least 99 times the time to save one
     #[arg(long, value_name = "TIME", default_value = "5min")]
     checkpoint: Interval,
-    /// Go on with the run in this folder where its latest checkpoint was saved; a complete run is left as it
-    /// is
+    /// Resume the run in this folder from its latest checkpoint; a complete run is not changed
     #[arg(long, value_name = "DIR", conflicts_with_all = ["case", "overrides", "seed", "out", "force"])]
     resume: Option<PathBuf>,
-    /// Go on from the checkpoint before the latest one
+    /// Resume from the checkpoint before the latest one
     #[arg(long, requires = "resume")]
     previous: bool,
-    /// Draw neither pictures nor a movie; `slipfront plot` and `slipfront movie` make them from the files of
-    /// the run
+    /// Draw no pictures and no movie; `slipfront plot` and `slipfront movie` can make them later from the
+    /// files of the run
     #[arg(long)]
     no_pictures: bool,
-    /// Most threads to use [default: one per core]; results do not depend on it
+    /// Maximum number of threads [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Show neither physics nor progress nor summary
+    /// Do not print physics, progress and summary
     #[arg(short, long)]
     quiet: bool,
-    /// Print the summary as JSON on stdout, and nothing else there
+    /// Print only the summary to stdout, as JSON
     #[arg(long)]
     json: bool,
 }
@@ -207,7 +205,7 @@ fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Resul
         Ok(()) => Ok(folder),
         Err(_) if signals.stopped().is_some() => {
             folder.discard();
-            let sentence = "stopped while files were copied to the folder; nothing was left there";
+            let sentence = "stopped while files were copied to the folder; they were removed";
             Err(Failure::stopped(signals, anyhow::anyhow!(sentence)))
         }
         Err(error) => Err(Failure::running(error)),
@@ -269,7 +267,7 @@ fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(),
     });
     let Some(path) = replaced else { return Ok(()) };
     let sentence = format!(
-        "the results would replace {}, which the run reads: choose another folder with --out",
+        "the results would replace {}, an input of the run: choose another folder with --out",
         path.display()
     );
     Err(Failure::input(anyhow::anyhow!(sentence)))

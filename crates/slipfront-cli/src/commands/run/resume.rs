@@ -84,7 +84,11 @@ fn begin(
         None => {
             let checkpoints = Checkpoints::new(&run.path, case, clock::now());
             let running = Running::start(case, None, execution);
-            (running, checkpoints, "the start: it has no checkpoint".to_owned())
+            (
+                running,
+                checkpoints,
+                "the start, because it has no checkpoint".to_owned(),
+            )
         }
         Some(loaded) => {
             let checkpoints = Checkpoints::after(case, &loaded);
@@ -98,7 +102,7 @@ fn begin(
             let resumed = loaded.resume(case, execution);
             let resumed = resumed.map_err(|error| refused(ranks, &error, run, case, previous))?;
             let running = resumed.ok_or_else(|| {
-                let sentence = "is not one of a run of its case";
+                let sentence = "does not belong to its case";
                 Failure::input(anyhow::anyhow!(
                     "the checkpoint in {} {sentence}; {ANEW}",
                     run.path.display()
@@ -110,7 +114,7 @@ fn begin(
 }
 
 /// The remedy where no checkpoint can be used.
-const ANEW: &str = "remove the checkpoints, and --resume begins from the start";
+const ANEW: &str = "remove the checkpoints to start again with --resume";
 
 /// The case of the folder, made by all ranks together.
 fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Result<Case, Failure> {
@@ -125,7 +129,7 @@ fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Res
         // What differs between ranks is no trace of a stop.
         Failure::Input(error) if !matches!(error.downcast_ref(), Some(CaseError::Differs(_))) => {
             let hint =
-                "if the run was stopped before all its inputs were copied, begin it again with --force";
+                "if the run was stopped before all its inputs were copied, start it again with --force";
             Failure::input(anyhow::anyhow!("{error}\n{hint}"))
         }
         failure => failure,
@@ -157,12 +161,12 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
     };
     // Whoever wants a longer run may have changed its case.
     let is_case = |name: &str| name == "case.toml" || name.starts_with("inputs/");
-    unchanged(&is_case, "run a changed case to another folder with --out")?;
+    unchanged(&is_case, "run a changed case in another folder with --out")?;
     if options.json {
         let is_summary = |name: &str| name == "summary.json";
         unchanged(
             &is_summary,
-            "run its case.toml again, to another folder with --out",
+            "run its case.toml again in another folder with --out",
         )?;
         let summary = read_summary(path).map_err(Failure::input)?;
         print(&summary_json(&summary))?;
@@ -181,7 +185,7 @@ fn load(
 ) -> Result<Option<LoadedCheckpoint>, Failure> {
     match Checkpoints::load(&run.path, case, previous, &*ranks.communicator()) {
         Ok(None) if previous => {
-            let sentence = "holds no checkpoint before the latest one";
+            let sentence = "has no checkpoint before the latest one";
             Err(Failure::input(anyhow::anyhow!(
                 "{} {sentence}",
                 run.path.display()
@@ -215,16 +219,14 @@ fn remedy(error: &CheckpointError, run: &Inspection, case: &Case, previous: bool
         CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } if !previous => {
             match Checkpoints::load(&run.path, case, true, &Alone) {
                 Ok(Some(loaded)) => format!(
-                    "the one before it, of step {}, is whole: add --previous to go on from there",
+                    "the earlier checkpoint, of step {}, is intact: add --previous to resume from it",
                     loaded.step()
                 ),
-                _ => format!("no whole one is kept beside it: {ANEW}"),
+                _ => format!("there is no intact checkpoint: {ANEW}"),
             }
         }
-        CheckpointError::Differs(_) => {
-            "all of them must see one folder, on a disk that their machines share".to_owned()
-        }
-        CheckpointError::Case { .. } => format!("put back the files with which it was begun, or {ANEW}"),
+        CheckpointError::Differs(_) => "all ranks need the same folder, on a shared disk".to_owned(),
+        CheckpointError::Case { .. } => format!("restore the original input files, or {ANEW}"),
         CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } => ANEW.to_owned(),
         CheckpointError::Layout { .. } | CheckpointError::Program { .. } => format!("or {ANEW}"),
     }

@@ -12,20 +12,19 @@ use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Unite the shards of a study: their records, tables and pictures; may be repeated
+/// Merge the shards of a study: their records, tables and pictures; repeatable
 #[derive(Args)]
 pub(crate) struct Merge {
     /// Folders of the shards
     #[arg(required = true, value_name = "DIR")]
     shards: Vec<PathBuf>,
-    /// Folder of the united study
+    /// Folder of the merged study
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace files of the results that were edited since they were written, and files of others in their
-    /// places
+    /// Replace result files that were edited, and other files with the names of result files
     #[arg(long)]
     force: bool,
-    /// Show no tables
+    /// Do not print tables
     #[arg(short, long)]
     quiet: bool,
 }

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 
 pub(super) use run::{dry_run, run_all};
 
-/// Vary a case over keys and seeds, and tabulate the answers
+/// Vary keys and seeds of a case, and tabulate the results
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "Examples:
@@ -22,7 +22,7 @@ pub(super) use run::{dry_run, run_all};
   slipfront study merge part1 part2 part3 part4 -o results/whole
   slipfront study slurm cases/studies/coverage.toml --tasks 4 > coverage.sbatch
 
-Stopped in any way, the same command goes on where it was: finished runs are never repeated.")]
+If a study is stopped in any way, the same command resumes it: finished runs are never repeated.")]
 pub(crate) struct StudyCommand {
     #[command(subcommand)]
     other: Option<Other>,

@@ -23,41 +23,40 @@ pub(crate) struct StudyRun {
     /// Study file
     #[arg(value_name = "STUDY.toml", required = true)]
     study: Option<PathBuf>,
-    /// Sets a key of the base case, such as drive.v_star=0.05 or texture.0.coverage=5; repeatable
+    /// Set a key of the base case, such as drive.v_star=0.05 or texture.0.coverage=5; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Folder for the results [default: results/ and the name of the study]
+    /// Folder for the results [default: results/NAME with the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace files of the results that were edited since they were written, and files of others in their
-    /// places
+    /// Replace result files that were edited, and other files with the names of result files
     #[arg(long)]
     force: bool,
-    /// Most runs at once [default: one per core]; results do not depend on it
+    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Where runs are computed; results do not depend on it
+    /// Device for the runs; results do not depend on it
     #[arg(long, value_name = "DEVICE", value_enum, default_value_t)]
     device: DeviceChoice,
-    /// Show neither progress nor tables
+    /// Do not print progress and tables
     #[arg(short, long)]
     quiet: bool,
-    /// Print the answer as JSON on stdout, and nothing else there
+    /// Print only the results to stdout, as JSON
     #[arg(long, conflicts_with = "dry_run")]
     json: bool,
-    /// Print the plan and what it will cost, and run nothing
+    /// Print the plan and its cost, without running it
     #[arg(long)]
     dry_run: bool,
-    /// Run only part i of n of the points; `slurm` takes i and n from the array task
+    /// Run only part i of n of the points; `slurm` reads i and n from the array task
     #[arg(long, value_name = "i/n")]
     shard: Option<Shard>,
-    /// Run more than 10 000 runs without asking
+    /// Allow more than 10 000 runs
     #[arg(long)]
     yes: bool,
 }
 
 /// Reason for which the runs of some studies are computed on the CPU.
-const FOLDERS_ON_CPU: &str = "folders of all runs (`study.keep = \"all\"`) are made on the CPU alone: keep those of failed runs, or none";
+const FOLDERS_ON_CPU: &str = "folders of all runs (`study.keep = \"all\"`) are only written on the CPU: keep those of failed runs, or none";
 
 /// Largest number of runs of a study that is run without `--yes`.
 const MAX_UNCONFIRMED_RUNS: u64 = 10_000;
@@ -126,7 +125,7 @@ fn refuse_to_replace(path: &Path, differs: bool, out: &Path) -> Result<(), Failu
         return Ok(());
     }
     let sentence = format!(
-        "the results would replace {}, which the study is read from: move it out of the folder, or choose another with --out",
+        "the results would replace {}, an input of the study: move it out of the folder, or choose another folder with --out",
         path.display()
     );
     Err(Failure::input(anyhow::anyhow!(sentence)))

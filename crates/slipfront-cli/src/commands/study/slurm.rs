@@ -11,19 +11,19 @@ use crate::failure::Failure;
 use crate::print::print;
 use crate::threads::{count_from_one, set_threads};
 
-/// Print a batch script for Slurm: few tasks, each using all cores of its node, that can be requeued
+/// Print a batch script for Slurm with a few tasks, each on all cores of its node; tasks can be requeued
 #[derive(Args)]
 pub(crate) struct Slurm {
     /// Study file
     #[arg(value_name = "STUDY.toml")]
     study: PathBuf,
-    /// Number of tasks, each on a node of its own
+    /// Number of tasks, one per node
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = count_from_one)]
     tasks: u16,
-    /// Folder for the results of all tasks [default: results/ and the name of the study]
+    /// Folder for the results of all tasks [default: results/NAME with the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Make a script for more than 10 000 runs without asking
+    /// Allow more than 10 000 runs
     #[arg(long)]
     yes: bool,
 }

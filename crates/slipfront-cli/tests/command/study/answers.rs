@@ -368,8 +368,8 @@ fn axes_of_quantities_are_drawn_in_their_unit() {
     assert!(map.contains(">\u{b1}0."), "{map}");
 
     workspace.write("study.toml", study([10, 10]));
-    let why = "there are no pictures of curves: a picture would have 10 of them, one for each level of `slider.young_modulus`, and can \
-               have 9; the map shows the values";
+    let why = "there are no pictures of curves: a picture would have 10 curves, one for each level of \
+               `slider.young_modulus`, but at most 9 are possible; the map shows the values";
     for line in ["study study.toml --dry-run", "study study.toml -o out"] {
         let said = unwrapped(&workspace.succeed(line));
         assert_eq!(said.matches(why).count(), 1, "{said}");
@@ -412,7 +412,7 @@ fn directions_have_a_polar_picture_and_their_table() {
     workspace.write("two.toml", two);
     let said = unwrapped(&workspace.succeed("study two.toml -o two"));
     assert!(
-        said.contains("note: static_friction_star: anisotropy cannot be told from chance with 2 replicates")
+        said.contains("note: static_friction_star: with 2 replicates")
             && !said.contains("friction over the directions"),
         "{said}"
     );
@@ -510,7 +510,7 @@ fn a_study_without_an_answer_has_status_1() {
     let refused = |line: &str| {
         let said = unwrapped(&workspace.fail(line, 1));
         assert!(
-            said.contains("no run has a value of static_reduction_percent, since none has a transition"),
+            said.contains("no run has a value of static_reduction_percent, because none has a transition"),
             "{line}: {said}"
         );
     };
@@ -608,13 +608,12 @@ fn what_deserves_a_word_is_said_once() {
             said.contains("for a slider of the same size) (at every point)"),
             "{said}"
         );
-        let merged = "`texture.0.coverage` = 0.2 and 4 are meshed to one coverage: take more blocks to tell them apart";
+        let merged = "`texture.0.coverage` = 0.2 and 4 have the same coverage on this mesh: use more blocks to distinguish them";
         assert_eq!(said.matches(merged).count(), 1, "{said}");
         // Both levels cover the same blocks, which is said where nothing has run yet.
         let idle = said.contains("the axis of `texture.0.coverage` changes nothing");
         assert_eq!(idle, line.ends_with("--dry-run"), "{said}");
-        let small =
-            "`coverage` = 0.2 of texture 1 is 0.2 percent of the area; 20 percent are `coverage` = 20";
+        let small = "`coverage` = 0.2 of texture 1 means 0.2 percent of the area; for 20 percent write `coverage` = 20";
         assert_eq!(said.matches(small).count(), 1, "{said}");
         assert_eq!(said.matches("note: ").count(), 4 + usize::from(idle), "{said}");
     }
@@ -694,7 +693,7 @@ fn coverages_that_are_meshed_to_one_are_told() {
     );
     for line in ["study study.toml --dry-run", "study study.toml -o out"] {
         let said = unwrapped(&workspace.succeed(line));
-        let told = "note: `texture.0.coverage` = 5 and 6 are meshed to one coverage: take more blocks to tell them apart";
+        let told = "note: `texture.0.coverage` = 5 and 6 have the same coverage on this mesh: use more blocks to distinguish them";
         assert_eq!(said.matches(told).count(), 1, "{said}");
     }
     let picture = |name: &str| String::from_utf8(workspace.read(&format!("out/{name}.svg"))).unwrap();
@@ -708,8 +707,8 @@ fn an_axis_that_changes_nothing_is_pointed_out() {
     let axes = "[[axes]]\nkey = 'load.pressure'\nlist = ['50 kPa', '100 kPa', '200 kPa']\n\
                 [[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2, 0.3]\n";
     let workspace = Workspace::with_study(&format!("base.slider.blocks = [30, 30]\n{axes}"));
-    let note = "note: the axis of `load.pressure` changes nothing but the units of results as long as `drive.v_star` is held: \
-                set `drive.speed` in its place";
+    let note = "note: the axis of `load.pressure` changes nothing but the units of results while `drive.v_star` is fixed: set \
+                `drive.speed` instead";
     let said = unwrapped(&workspace.succeed("study study.toml --dry-run"));
     assert_eq!(said.matches(note).count(), 1, "{said}");
     assert!(said.contains("9 points, 1 replicate: at most 9 runs"), "{said}");
@@ -769,7 +768,7 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
         stderr(&output)
     );
     assert!(said.contains("none   0   (interval still too wide)"), "{said}");
-    let missing = "there is no picture of kinetic_friction_star: no run has a value of it";
+    let missing = "there is no picture of kinetic_friction_star: no run has a value";
     assert!(said.contains(missing), "{said}");
     let results = workspace.results("out");
     assert_eq!(results.recorded().len(), 3);

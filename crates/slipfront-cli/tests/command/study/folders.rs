@@ -57,10 +57,10 @@ fn a_changed_study_adds_what_is_new_and_says_what_no_longer_belongs() {
     assert!(output.status.success());
     let (said, warned) = (stdout(&output), stderr(&output));
     assert!(
-        said.contains("18 recorded runs are not part of the study"),
+        said.contains("18 recorded runs are not part of the present study"),
         "{said}"
     );
-    assert!(warned.contains("the study has changed"), "{warned}");
+    assert!(warned.contains("the study was changed"), "{warned}");
     results.assert_each_run_once(SMALL_RUNS + SMALL_RUNS / 2);
     results.assert_same(&workspace.study("fresh"));
 }
@@ -106,7 +106,7 @@ fn a_folder_with_other_things_is_left_alone() {
     workspace.write("out/thesis.tex", "years of work");
     workspace.write("notes/runs.jsonl", "my own records\nof something\n");
     for (out, sentence) in [
-        ("out", "holds other things"),
+        ("out", "is not the folder of a study"),
         ("notes", "runs.jsonl is not a file of an earlier run"),
     ] {
         let output = workspace.output(&format!("study study.toml -o {out}"));

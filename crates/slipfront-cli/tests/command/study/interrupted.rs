@@ -78,7 +78,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
         assert!(
-            stderr(&output).contains("goes on from there"),
+            stderr(&output).contains("resumes from there"),
             "{}",
             stderr(&output)
         );
@@ -128,7 +128,7 @@ fn what_the_system_does_not_give_is_refused_before_it_begins() {
     let output = limited(&workspace, "-v 400000", "--threads 1 -o out");
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(
-        stderr(&output).contains("are available to this process: lower `slider.blocks`"),
+        stderr(&output).contains("are available to this process: reduce `slider.blocks`"),
         "{}",
         stderr(&output)
     );

@@ -34,9 +34,12 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (
             axis("key = 'drive.v_star'\nlist = [0.1]\nname = 'speed'"),
-            "nothing else together",
+            "no other combination",
         ),
-        (axis("key = 'drive.v_star'\nlist = [0.1, 0.1]"), "stands twice"),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1, 0.1]"),
+            "is twice on the axis",
+        ),
         (
             axis("key = 'drive.v_star'\nlogspace = [0, 1, 3]"),
             "must lie above 0",
@@ -46,7 +49,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         // Sixty lines that would make six million levels.
         (
             axis(&vec!["key = 'drive.v_star'\nlinspace = [0.1, 1, 100000]"; 60].join("\n[[axes]]\n")),
-            "multiply to more than 1000000 points",
+            "give more than 1000000 points",
         ),
         (
             axis(&vec!["key = 'drive.v_star'\nlist = [0.1]"; 65].join("\n[[axes]]\n")),
@@ -60,25 +63,28 @@ fn bad_studies_are_refused_with_a_sentence() {
             axis("zip = { 'drive.v_star' = [0.1], 'friction.r_star' = [0.5, 0.6] }"),
             "equally long",
         ),
-        (axis("zip = { drive.v_star = [0.1] }"), "stand in quotes"),
+        (
+            axis("zip = { drive.v_star = [0.1] }"),
+            "write keys with a dot in quotes",
+        ),
         (
             axis("name = 'mean'\nvariants = { a = {} }"),
             "have a column `mean` already",
         ),
         (
             axis("key = 'drive.v_star'\nlist = [0.1]\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.2]"),
-            "stands on two axes",
+            "is on two axes",
         ),
         (
             axis(
                 "key = 'texture.0.coverage'\nlist = [5]\n[[axes]]\nname = 'shape'\n\
                  variants = { groove = { texture = [{ shape = 'groove', coverage = 10 }] } }",
             ),
-            "leaves nothing of `texture.0.coverage`",
+            "overwrites `texture.0.coverage`",
         ),
         (
             axis("key = 'drive.v_star'\nlist = [0.1]\n[[axes]]\nkey = 'drive.speed'\nlist = ['1 mm/s']"),
-            "leaves nothing of `drive.v_star`",
+            "overwrites `drive.v_star`",
         ),
         (
             axis("key = 'drive.v_star'\nlist = [0.1, -1]"),
@@ -97,16 +103,16 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (
             axis("zip = { 'texture.0.coverage' = [5], texture = [[{ shape = 'groove', coverage = 30 }]] }"),
-            "of which one leaves nothing of the other",
+            "and one overwrites the other",
         ),
         (
             axis("name = 'a'\nvariants = { b = { drive.v_star = 0.1, drive.speed = '1 mm/s' } }"),
-            "of which one leaves nothing of the other",
+            "and one overwrites the other",
         ),
-        (axis("key = 'drive.v_star '\nlist = [0.1]"), "has a blank in it"),
+        (axis("key = 'drive.v_star '\nlist = [0.1]"), "contains a blank"),
         (
             axis("key = 'output.stride'\nlist = [1, 2]"),
-            "changes what is written and nothing that a run finds",
+            "changes only the output, not the results of a run",
         ),
         (
             study("reference = { friction.seed = 77 }"),
@@ -126,7 +132,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (
             study("until = { key = 'mu_s', half_width = 0.1, max = 9 }"),
-            "`mu_s` is not a number of the summary",
+            "`mu_s` is not a quantity of the summary",
         ),
         (
             study("until = { key = 'static_friction_star', half_width = 0.1, mim = 2, max = 9 }"),
@@ -172,7 +178,7 @@ fn bad_studies_are_refused_with_a_sentence() {
 fn errors_of_the_base_show_the_lines_of_the_study_file() {
     let large = "study.replicates = 2\n\n[base]\ndrive.v_star = 0.1\nslider.blocks = [60000, 60000]\n";
     for (text, place) in [
-        (large, "study.toml:5:17: this case takes about"),
+        (large, "study.toml:5:17: this case needs about"),
         (
             "study.replicates = 2\n\n[base.slider]\nomega_star = 0.1\nbloks = [4, 4]\n",
             "study.toml:5:9: unknown key `bloks`",
@@ -226,7 +232,7 @@ fn a_very_large_study_is_asked_for() {
     let output = workspace.output("study study.toml -o out");
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        stderr(&output).contains("10100 runs, more than 10000: give --yes"),
+        stderr(&output).contains("10100 runs, more than 10000: confirm with --yes"),
         "{}",
         stderr(&output)
     );

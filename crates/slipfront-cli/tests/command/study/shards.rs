@@ -100,7 +100,7 @@ fn foreign_shards_are_refused() {
         let output = workspace.output(&format!("study merge {} {} -o {out}", shards[0], shards[1]));
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(
-            stderr(&output).contains("belongs to another study"),
+            stderr(&output).contains("belong to different studies"),
             "{}",
             stderr(&output)
         );

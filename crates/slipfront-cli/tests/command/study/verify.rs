@@ -81,7 +81,7 @@ fn run_folders_of_a_study_are_verified_too() {
     );
     std::fs::remove_file(run.path().join("manifest.json")).unwrap();
     let (status, said, _) = verified(&workspace, "out");
-    assert!(status == 1 && said.contains("holds no manifest.json"), "{said}");
+    assert!(status == 1 && said.contains("has no manifest.json"), "{said}");
     // A user may have no use for them.
     std::fs::remove_dir_all(results.path.join("runs")).unwrap();
     let (status, said, _) = verified(&workspace, "out");
@@ -104,7 +104,7 @@ fn records_of_something_else_are_called_so() {
     let (status, _, problems) = verified(&workspace, "other");
     assert_eq!(status, 2);
     assert!(
-        problems.contains("lacks 36 runs, and 36 recorded runs are of another program than slipfront "),
+        problems.contains("lacks 36 runs, and 36 recorded runs are from another program than slipfront "),
         "{problems}"
     );
 }
@@ -149,7 +149,7 @@ fn single_runs_are_repeated_and_studies_are_not() {
     let output = workspace.output("verify --rerun out");
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        stderr(&output).contains("--rerun repeats single runs"),
+        stderr(&output).contains("--rerun repeats only single runs"),
         "{}",
         stderr(&output)
     );
