@@ -26,12 +26,12 @@ const BYTES_PER_BLOCK: usize = 128;
 /// Reason for which a device does not compute a case; none if it does.
 pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     if case.file.output.events {
-        return Some("the catalogue of events (`output.events`) is only available on the CPU".to_owned());
+        return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
     }
     let (blocks, most) = (case.model.lattice.n_blocks(), device.most_blocks());
     if blocks > most {
         return Some(format!(
-            "lattices of more than {most} blocks are only computed on the CPU"
+            "lattices of more than {most} blocks are computed on the CPU alone"
         ));
     }
     let plain = DeviceLattice::check(&case.model);

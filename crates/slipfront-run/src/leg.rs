@@ -362,16 +362,19 @@ mod tests {
         let running = started(&case, 10);
         let refused = |overrides: &[&str]| running.change(&case_of(overrides), 1).err().unwrap().to_string();
         let said = refused(&["slider.blocks = [21, 20]"]);
-        assert!(said.contains("20 x 20 of 0.000001 m and not 21 x 20"), "{said}");
+        assert!(said.contains("20 x 20 of 0.000001 m, not 21 x 20"), "{said}");
         assert!(refused(&["slider.block_size = '2 um'"]).contains("of 0.000002 m"));
-        assert!(refused(&["slider.outline = 'disc'"]).contains("which of them exist"));
+        assert!(refused(&["slider.outline = 'disc'"]).contains("cannot alter the outline"));
         let ageing = "friction.ageing = { law = 'logarithmic', beta = 0.02, time_star = 1 }";
         let springs = [
             "friction.contact = 'springs'",
             "friction.contact_stiffness_star = 1",
         ];
         for law in [&[ageing][..], &springs] {
-            assert!(refused(law).contains("remember more"), "{law:?}");
+            assert!(
+                refused(law).contains("have a state in addition to displacement and velocity"),
+                "{law:?}"
+            );
             let remembering = started(&case_of(law), 10);
             assert_eq!(remembering.change(&case, 1).err(), Some(ChangeError::Memory));
         }

@@ -781,7 +781,7 @@ mod tests {
         );
         let refused = [with_noise(60.0), of(&|x, _| 970.0 - (x - 970.0).abs())];
         for refused in refused {
-            assert!(refused.unwrap_err().to_string().contains("falls"));
+            assert!(refused.unwrap_err().to_string().contains("decreases from"));
         }
     }
 
@@ -811,7 +811,10 @@ mod tests {
     fn times_with_a_date_do_not_pass_midnight_backwards() {
         let text = "t,F (N)\n2024-01-03 10:00:00,1\n2024-01-01 10:00:00,2\n";
         let error = read(text, ["t", "F"], [None; 2]).unwrap_err().to_string();
-        assert!(error.contains("falls, from 0 to -172800 in SI units"), "{error}");
+        assert!(
+            error.contains("decreases from 0 to -172800 in SI units"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -853,8 +856,8 @@ mod tests {
         "line 5 of"
         ; "line of an instrument"
     )]
-    #[test_case("time_s,force_n\n0,1\n1,1\n1,\"2\n2,2\n", ["time", "force"], "goes over several lines"; "quote")]
-    #[test_case("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "falls, from 1 to 0"; "order")]
+    #[test_case("time_s,force_n\n0,1\n1,1\n1,\"2\n2,2\n", ["time", "force"], "spans several lines"; "quote")]
+    #[test_case("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "decreases from 1 to 0"; "order")]
     #[test_case("t (s),mu (1)\n0,000,0,0000\n0,500,0,0175\n", ["t", "mu"], "has 4 fields in line 2 and 2 names in line 1: a comma that separates cannot be a decimal sign too"; "decimal commas between commas")]
     #[test_case("t (s),mu (1),t (s),mu (1)\n0,100,0,0.5\n1,101,1,0.5\n", ["1", "mu"], "has `mu` in several columns, 2, 4: give the number"; "a name twice")]
     #[test_case("t (s),COF\n0,0.5\n1,0.5\n", ["t", "COF"], "such as `--y-unit 1`"; "coefficient without unit")]

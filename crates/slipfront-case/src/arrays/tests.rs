@@ -300,7 +300,7 @@ fn tables_of_one_column_or_one_row() {
 #[test_case("0,1,2,\n3,4,5,\n", "has 4 numbers in line 1")]
 #[test_case("x,y,z\n0,1,2\n", "has `x` in line 1, in row 0, column 0")]
 #[test_case("0,1,2\n3,,5\n", "has `` in line 2, in row 1, column 1")]
-#[test_case("0.5;1;2\n3;4,5;5\n", "where a number with a decimal"; "two decimal signs")]
+#[test_case("0.5;1;2\n3;4,5;5\n", "but must be a number with a decimal"; "two decimal signs")]
 #[test_case(
     "0,1,2\n3,4,nan\n",
     "has NaN in line 2, in row 1, column 2 (both counted from 0), but must be a finite number >= 0"

@@ -341,7 +341,7 @@ fn what_the_stack_leaves_out_is_noted() {
         "{noted}"
     );
     assert!(
-        noted.contains("`slider.longest_wave` = \"200 um\" mends that"),
+        noted.contains("set `slider.longest_wave` = \"200 um\""),
         "{noted}"
     );
     assert!(!notes(DIMPLES, &["slider.longest_wave=\"200 um\""]).contains("stiffer than"));
