@@ -184,7 +184,7 @@ def test_what_a_record_would_show_is_known_before_it_is_measured(tmp_path: Path)
     assert shown[-1] == (120, 120)
     with pytest.raises(ValueError, match="give either records or `until`"):
         made.plan(progress=False)
-    with pytest.raises(sf.CaseError, match="a time is wanted"):
+    with pytest.raises(sf.CaseError, match="give a time"):
         made.plan(until="2 um", progress=False)
 
 

@@ -60,7 +60,7 @@ def test_values_may_be_those_of_numpy_and_of_pint() -> None:
         }
     )
     assert given.numbers == written.numbers
-    with pytest.raises(sf.CaseError, match="a speed is wanted|is wanted"):
+    with pytest.raises(sf.CaseError, match="give a speed"):
         sf.Case({"drive": {"speed": 3 * unit.kg}})
 
 

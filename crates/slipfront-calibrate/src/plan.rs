@@ -343,7 +343,7 @@ mod tests {
             plan(&case, "2 um")
                 .unwrap_err()
                 .to_string()
-                .contains("a time is wanted")
+                .contains("give a time")
         );
     }
 }

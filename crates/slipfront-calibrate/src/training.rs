@@ -119,7 +119,7 @@ mod tests {
             conditions.overrides = vec![Override::parse(program).unwrap()];
         }
         assert!(
-            told(&short).contains("the run ends before record 1 does"),
+            told(&short).contains("the run ends before record 1"),
             "{}",
             told(&short)
         );

@@ -984,7 +984,7 @@ fn what_cannot_be_is_told_with_its_place() {
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'texture.0.lambda' = ['6 um', '2 um'] }}"),
-            "the range of `texture.0.lambda` goes from 6 to 2",
+            "the range of `texture.0.lambda` is 6 to 2",
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'texture.0.lambda' = ['2 um', '6 um'] }}"),

@@ -321,7 +321,7 @@ mod tests {
             assert_eq!(why_no_curves(&axes).is_some(), x.is_none(), "{counts:?}");
         }
         let expected = "there are no pictures of curves: a picture would have 10 curves, one for each level of \
-                        `friction.r_star`, but at most 9; the map shows the values are possible";
+                        `friction.r_star`, but at most 9 are possible; the map shows the values";
         assert_eq!(why_no_curves(&two([10, 10])).unwrap(), expected);
         let names = "[[axes]]\nkey = 'slider.edges'\nlist = ['free', 'periodic']\n[[axes]]\nkey = 'friction.redraw'\nlist = [true, false]\n\
                      [[axes]]\nkey = 'load.redistribute'\nlist = [true, false]";

@@ -712,7 +712,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            said.contains("slider.blocks = [800, 800]") && said.contains("lower `slider.blocks`"),
+            said.contains("slider.blocks = [800, 800]") && said.contains("reduce `slider.blocks`"),
             "{said}"
         );
         // Every run that is kept holds the five fields of six instants until they are written.

@@ -221,11 +221,11 @@ mod tests {
                 .unwrap_err()
                 .to_string()
         };
-        assert!(refused(0.9, 0.3, false).contains("from 0.9 to 0.3"));
+        assert!(refused(0.9, 0.3, false).contains("is 0.9 to 0.3"));
         assert!(refused(f64::NAN, 0.3, false).contains("NaN"));
         assert!(refused(0.0, 0.3, true).contains("begins at 0"));
         assert!(refused(-1e308, 1e308, false).contains("exceeds the largest number"));
-        assert!(refused(1e-300, 1e300, true).contains("from 1e-300 to 1e300"));
+        assert!(refused(1e-300, 1e300, true).contains("is 1e-300 to 1e300"));
         assert!(Unknown::new("friction.seed", 1.0, 2.0, false).is_err());
     }
 

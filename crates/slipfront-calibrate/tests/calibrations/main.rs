@@ -642,7 +642,7 @@ fn what_cannot_be_calibrated_is_refused() {
         (
             "[0.3, 0.9] }",
             "[0.9, 0.3] }",
-            "the range of `drive.stiffness_star` goes from 0.9 to 0.3",
+            "the range of `drive.stiffness_star` is 0.9 to 0.3",
         ),
         ("[0.3, 0.9] }", "'x' }", "is written [0.3, 0.9]"),
         ("[0.3, 0.9] }", "[-1, 0.9] }", "must be more than 0 and at most"),

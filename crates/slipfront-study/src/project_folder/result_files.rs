@@ -555,7 +555,7 @@ mod tests {
             list.write(&path).unwrap();
             let files = ResultFiles::new(&path, "study", false);
             let said = place(&files, &[("a.csv", "1")]).unwrap_err().to_string();
-            assert!(said.contains("lies outside of the folder"), "{said}");
+            assert!(said.contains("is outside the folder"), "{said}");
             place(&ResultFiles::new(&path, "study", true), &[("a.csv", "1")]).unwrap();
             assert!(mine.exists());
         }
