@@ -141,7 +141,7 @@ mod tests {
             format!("{},{}\n", t * unit, 0.6 * (0.05 * t).min(0.7 + 0.02 * (t % 7.0)))
         };
         let rows: String = (0..60).map(row).collect();
-        (text.to_owned(), format!("t (s),mu\n{rows}").into_bytes())
+        (text.to_owned(), format!("t (s),mu (1)\n{rows}").into_bytes())
     }
 
     fn calibration() -> CalibrationInMemory {
