@@ -434,7 +434,7 @@ mod tests {
         let least = Wish::Least(Quantity::KineticFriction);
         for (with, without) in [(&short, &with), (&with, &short)] {
             let said = least.deviation(with, Some(without)).unwrap_err();
-            assert!(said.contains("raise `time.duration_star`"), "{said}");
+            assert!(said.contains("increase `time.duration_star`"), "{said}");
         }
         let slipless = run(1.0, 0.0);
         let said = least.deviation(&with, Some(&slipless)).unwrap_err();

@@ -819,7 +819,7 @@ fn drawings_are_judged() {
         "{text}"
     );
     assert!(
-        told.contains("note: the start 3 of the file violates a limit: a feature is 1 block wide; the minimum is 2; nothing legal"),
+        told.contains("note: the start 3 of the file violates a limit: a feature is 1 block wide; the minimum is 2; no part is within the limits"),
         "{text}"
     );
 }
@@ -968,7 +968,7 @@ fn what_cannot_be_is_told_with_its_place() {
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\nunknowns = {{ 'drive.v_star' = [0.1, 0.2] }}"),
-            "the unknown `drive.v_star` is no key of a texture",
+            "the unknown `drive.v_star` is not a key of a texture",
         ),
         (
             &format!("{wish}\ncoverage = [0, 10]\ntolerance = 0.01"),

@@ -387,7 +387,7 @@ mod tests {
         );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),
-            "map `A` has 7 values where 6 are wanted"
+            "map `A` has 7 values instead of 6"
         );
     }
 

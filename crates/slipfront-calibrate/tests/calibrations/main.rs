@@ -647,7 +647,11 @@ fn what_cannot_be_calibrated_is_refused() {
         ("[0.3, 0.9] }", "'x' }", "is written [0.3, 0.9]"),
         ("[0.3, 0.9] }", "[-1, 0.9] }", "must be more than 0 and at most"),
         ("'drive.stiffness_star'", "'drive.stifness_star'", "stifness_star"),
-        ("'friction.mu_static'", "'friction.seed'", "no unknown"),
+        (
+            "'friction.mu_static'",
+            "'friction.seed'",
+            "it cannot be an unknown",
+        ),
         ("y = 'force_n'", "y = 'load'", "has no column `load`"),
         (
             "y = 'force_n'",
