@@ -144,7 +144,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (
             study("until = { key = 'static_friction_star', half_width = 0.1, min = 1, max = 9 }"),
-            "one run has no interval",
+            "a single run has no interval",
         ),
         (
             study("until = { key = 'static_friction_star', half_width = 0.1, confidence = 95, max = 9 }"),
