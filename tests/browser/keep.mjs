@@ -142,7 +142,7 @@ test('a run goes on being saved when its page is loaded again or closed, and is 
   const folder = path.join(RESULTS, 'reloaded');
   await lab.notice(say('saved', { folder }));
   assert.equal(await lab.find('#saving').isVisible(), false);
-  assert.match(await slipfront('verify', folder), /as slipfront [^ ]+ .*wrote them/);
+  assert.match(await slipfront('verify', folder), /unchanged since slipfront [^ ]+ .*wrote them/);
   // It can be opened without loading the page once more.
   await lab.press('open-presets');
   await lab.find('#presets-search').fill('reloaded');
@@ -156,7 +156,7 @@ test('a run goes on being saved when its page is loaded again or closed, and is 
   await lab.page.close();
   const closed = path.join(RESULTS, 'closed');
   await until(() => existsSync(path.join(closed, 'manifest.json')), 'the run of a page that was closed');
-  assert.match(await slipfront('verify', closed), /as slipfront [^ ]+ .*wrote them/);
+  assert.match(await slipfront('verify', closed), /unchanged since slipfront [^ ]+ .*wrote them/);
 });
 
 test('saves that another page has begun are shown, and can be stopped', onServer, async (t) => {
