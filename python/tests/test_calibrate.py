@@ -161,7 +161,7 @@ def test_a_record_is_checked_alone() -> None:
     assert check.clipped is None and fit.clipped is None
     force = measured["force_n"]
     clipped = made.check({**measured, "force_n": np.minimum(force, np.quantile(force, 0.9))}, progress=False)
-    assert clipped.clipped is not None and any("end of its range" in reason for reason in clipped.reasons)
+    assert clipped.clipped is not None and any("saturated" in reason for reason in clipped.reasons)
     assert 0 <= check.comparison["rank"] <= 1
     foreign = made.check({**measured, "force_n": 100 * measured["force_n"]}, progress=False)
     assert foreign.is_refused and any("of the training runs" in reason for reason in foreign.reasons)

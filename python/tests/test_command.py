@@ -112,7 +112,7 @@ def test_an_export_that_cannot_be_is_refused_in_the_words_of_python(small: sf.Ca
     assert len(warned) == 2 and all(warning.filename == __file__ for warning in warned)
     with pytest.raises(sf.FolderError, match="replace it by `force=True`, or write the crate to a new folder by `folder`"):
         sf.export(run, "ro-crate")
-    with pytest.raises(ValueError, match="name it by `folder`"):
+    with pytest.raises(ValueError, match="give its folder by `folder`"):
         sf.export([run, run], "ro-crate")
     with pytest.raises(ValueError, match="add `author`"):
         sf.export(run, "cff")
