@@ -190,7 +190,7 @@ def test_a_file_that_has_changed_is_refused(tmp_path: Path) -> None:
     picture.write_bytes(Path("cases/herringbone.png").read_bytes())
     case = sf.Case.load("cases/mask.toml", {"texture.0.file": str(picture)})
     picture.write_bytes(picture.read_bytes() + b" ")
-    with pytest.raises(sf.CaseError, match="has changed since the case was made of it"):
+    with pytest.raises(sf.CaseError, match="changed"):
         sf.converge(case, progress=False)
 
 
