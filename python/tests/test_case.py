@@ -363,7 +363,7 @@ def test_what_is_no_number_is_told_by_its_index(small: sf.Case) -> None:
         r"`friction.mu_static_field\[3, 5\]` is NaN": lambda: small.replace({"friction.mu_static_field": holed}),
         r"`load.pressure_field\[0, 1\]` is inf": lambda: small.replace({"load.pressure_field": np.where(np.arange(12) == 1, math.inf, 1.0) * np.ones(small.shape)}),
         r"`texture.0.file\[3, 5\]` is NaN, but must be 0 or 1": lambda: small.replace({"texture": [{"shape": "mask", "file": holed}]}),
-        r"`texture.0.file\[3, 5\]` is NaN": lambda: small.replace({"texture": [texture]}),
+        r"`texture.0.file\[3, 5\]` is NaN, but must have a height": lambda: small.replace({"texture": [texture]}),
         r"`output.snapshots\[1\]` is NaN": lambda: small.replace({"output.snapshots": np.array([1, math.nan])}),
         r"`drive.v_star\[1\]` is NaN": lambda: sf.Study(small, axes={"drive.v_star": np.array([1, math.nan])}),  # type: ignore[dict-item]
         r"`mask\[3, 5\]` is NaN": lambda: design.illegal(holed),

@@ -158,9 +158,9 @@ def test_an_interrupt_ends_it_and_it_goes_on(sheet: Path, tmp_path: Path) -> Non
         ({}, {"levels": 8}, sf.CaseError, "8 meshes are not possible: give 3 to 7 levels"),
         ({}, {"replicates": 0}, sf.CaseError, "`replicates` = 0 must lie between 1 and"),
         ({}, {"threads": 0}, ValueError, "threads are counted from 1, not 0"),
-        ({}, {"max_memory": 0.001}, sf.CaseError, "more than `max_memory` 0.001"),
+        ({}, {"max_memory": 0.001}, sf.CaseError, "more than `max_memory` 0.001;"),
         ({}, {"max_memory": float("nan")}, sf.CaseError, "more than `max_memory`"),
-        ({}, {"max_time": "1ns"}, sf.CaseError, "longer than `max_time` 1ns"),
+        ({}, {"max_time": "1ns"}, sf.CaseError, "longer than `max_time` 1ns:"),
         ({}, {"max_time": "soon"}, ValueError, '`max_time` = "soon" is not a time: give one such as "30min"'),
         ({"slider.blocks": [25, 25]}, {}, sf.CaseError, "cannot be divided"),
         ({"texture.0.coverage": 0.01}, {}, sf.CaseError, "no block is textured"),
@@ -190,12 +190,12 @@ def test_a_file_that_has_changed_is_refused(tmp_path: Path) -> None:
     picture.write_bytes(Path("cases/herringbone.png").read_bytes())
     case = sf.Case.load("cases/mask.toml", {"texture.0.file": str(picture)})
     picture.write_bytes(picture.read_bytes() + b" ")
-    with pytest.raises(sf.CaseError, match="changed"):
+    with pytest.raises(sf.CaseError, match="has changed since the case was prepared: load the case again"):
         sf.converge(case, progress=False)
 
 
 def test_a_folder_of_other_things_is_refused(sheet: Path) -> None:
-    with pytest.raises(sf.FolderError, match="holds other things than a study"):
+    with pytest.raises(sf.FolderError, match="is not the folder of a study: choose another by `folder`"):
         sf.converge(sheet, folder=sheet.parent, progress=False)
 
 
