@@ -88,11 +88,11 @@ impl FittedRecords {
 }
 
 /// A calibration: its file, its records, and the set-up of its runs.
-#[derive(Clone, Copy)]
-pub(crate) struct Fit<'a> {
-    pub(crate) file: &'a CalibrationFile,
-    pub(crate) records: &'a [SampledRecord],
-    pub(crate) set_up: &'a SetUp,
+#[derive(Debug)]
+pub(crate) struct Fit {
+    pub(crate) file: CalibrationFile,
+    pub(crate) records: Vec<SampledRecord>,
+    pub(crate) set_up: SetUp,
 }
 
 /// Results of a calibration.
@@ -106,7 +106,19 @@ pub(crate) struct Found {
     pub(crate) sample: Vec<Vec<f64>>,
 }
 
-impl Fit<'_> {
+impl Fit {
+    /// A calibration by a file from these records.
+    ///
+    /// # Errors
+    /// When the ranges leave the bounds of the case.
+    pub(crate) fn new(file: CalibrationFile, records: Vec<SampledRecord>) -> Result<Self, StudyError> {
+        Ok(Self {
+            set_up: file.set_up(&records)?,
+            file,
+            records,
+        })
+    }
+
     /// Trains, fits the records, and runs blocks of half the size and further experiments.
     ///
     /// # Errors
@@ -116,7 +128,7 @@ impl Fit<'_> {
             file,
             records,
             set_up,
-        } = *self;
+        } = self;
         let instrument = self.instrument()?;
         let keys = &file.keys;
         let (runs, noise) = (keys.runs as usize, keys.noise);
@@ -197,7 +209,7 @@ impl Fit<'_> {
     /// When runs cannot be made or kept, and after a stop.
     pub(crate) fn check(&self, maker: &mut RunMaker) -> Result<RecordCheck, StudyError> {
         let CalibrationKeys { runs, noise, .. } = self.file.keys;
-        let Self { set_up, records, .. } = *self;
+        let Self { set_up, records, .. } = self;
         maker.expect(runs as usize + PREDICTED);
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs as usize)?;
         let told = FittedRecords::of(&training, set_up, records, noise);
@@ -207,7 +219,7 @@ impl Fit<'_> {
 
     /// Frequencies that the instrument passes and that the records have, and their noise.
     fn instrument(&self) -> Result<InstrumentFindings, StudyError> {
-        let set_up = self.set_up;
+        let set_up = &self.set_up;
         let middle = set_up.middle();
         let instrument = set_up.instrument(&middle, &set_up.conditions[0]);
         let instrument = instrument.map_err(|source| TrainingError::Instrument {

@@ -16,7 +16,6 @@ use crate::progress::CalibrationProgress;
 use crate::record_check::RecordCheck;
 use crate::report::{FOUND, Report};
 use crate::runs::{KeptRuns, RunMaker};
-use crate::set_up::SetUp;
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
     Checksums, Derivation, Given, Others, ResultFiles, notes_of_use, read_numbers,
@@ -28,9 +27,7 @@ pub struct CalibrationFolder {
     path: PathBuf,
     files: ResultFiles,
     kept: KeptRuns,
-    file: CalibrationFile,
-    records: Vec<SampledRecord>,
-    set_up: SetUp,
+    fit: Fit,
 }
 
 /// Folders of calibrations.
@@ -95,9 +92,7 @@ impl CalibrationFolder {
             path: path.to_owned(),
             files,
             kept,
-            set_up: file.set_up(&records)?,
-            file,
-            records,
+            fit: Fit::new(file, records)?,
         })
     }
 
@@ -155,14 +150,11 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<String, StudyError> {
-        let fit = Fit {
-            file: &self.file,
-            records: &self.records,
-            set_up: &self.set_up,
-        };
-        let found = fit.find(&mut RunMaker::new(stop, 0, watch).with(&mut self.kept))?;
+        let found = self
+            .fit
+            .find(&mut RunMaker::new(stop, 0, watch).with(&mut self.kept))?;
         let mut batch = self.files.begin();
-        let text = Report::of(&self.set_up, &found.findings).write(&found, &mut batch)?;
+        let text = Report::of(&self.fit.set_up, &found.findings).write(&found, &mut batch)?;
         batch.place(Others::Go)?;
         Ok(text)
     }
@@ -177,12 +169,8 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<RecordCheck, StudyError> {
-        let fit = Fit {
-            file: &self.file,
-            records: &self.records,
-            set_up: &self.set_up,
-        };
-        fit.check(&mut RunMaker::new(stop, 0, watch).with(&mut self.kept))
+        self.fit
+            .check(&mut RunMaker::new(stop, 0, watch).with(&mut self.kept))
     }
 }
 

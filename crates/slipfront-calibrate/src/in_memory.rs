@@ -7,19 +7,17 @@ use std::sync::atomic::AtomicBool;
 use slipfront_case::case::FilesInMemory;
 use slipfront_study::{StudyError, TrainingError};
 
-use crate::file::{CalibrationFile, SampledRecord};
+use crate::file::CalibrationFile;
 use crate::fit::Fit;
 use crate::progress::CalibrationProgress;
 use crate::report::Report;
-use crate::runs::{KeptRuns, RunMaker, WantedRuns};
-use crate::set_up::{Curves, SetUp};
+use crate::runs::{KeptRuns, RunMaker, WantedRun};
+use crate::set_up::Curves;
 
 /// A calibration whose file, record and runs are in memory.
 #[derive(Debug)]
 pub struct CalibrationInMemory {
-    file: CalibrationFile,
-    records: Vec<SampledRecord>,
-    set_up: SetUp,
+    fit: Fit,
     kept: KeptRuns,
 }
 
@@ -40,7 +38,7 @@ pub enum Outcome {
     /// The calibration is done.
     Found(CalibrationResults),
     /// The calibration needs these runs first, by [`add`](CalibrationInMemory::add).
-    Wants(WantedRuns),
+    Wants(Vec<WantedRun>),
 }
 
 impl CalibrationInMemory {
@@ -61,9 +59,7 @@ impl CalibrationInMemory {
         let records = vec![file.read_bytes(0, Path::new(name), bytes)?];
         file.check_memory(&records, threads)?;
         Ok(Self {
-            set_up: file.set_up(&records)?,
-            file,
-            records,
+            fit: Fit::new(file, records)?,
             kept: KeptRuns::default(),
         })
     }
@@ -78,22 +74,17 @@ impl CalibrationInMemory {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<Outcome, StudyError> {
-        let fit = Fit {
-            file: &self.file,
-            records: &self.records,
-            set_up: &self.set_up,
-        };
         let mut maker = RunMaker::new(stop, 0, watch)
             .with(&mut self.kept)
             .elsewhere(is_elsewhere);
-        let found = match fit.find(&mut maker) {
+        let found = match self.fit.find(&mut maker) {
             Err(StudyError::Interrupted) => {
                 let wanted = maker.into_wanted().ok_or(StudyError::Interrupted);
                 return wanted.map(Outcome::Wants);
             }
             found => found?,
         };
-        let report = Report::of(&self.set_up, &found.findings);
+        let report = Report::of(&self.fit.set_up, &found.findings);
         let set = report.set();
         Ok(Outcome::Found(CalibrationResults {
             // Structs of texts and numbers: serialisation cannot fail.
@@ -106,21 +97,17 @@ impl CalibrationInMemory {
         }))
     }
 
-    /// Makes runs that another calibration with the same file and record wants, on rayon's threads; none
-    /// after a stop.
+    /// Makes a run that another calibration with the same file and record wants; none after a stop.
     ///
     /// # Errors
-    /// The error of the first run that has one.
-    pub fn make(&self, wanted: &WantedRuns, stop: &AtomicBool) -> Result<Option<Vec<Curves>>, TrainingError> {
-        wanted.make(&self.set_up, stop)
+    /// The error of the run.
+    pub fn make(&self, wanted: &WantedRun, stop: &AtomicBool) -> Result<Option<Curves>, TrainingError> {
+        wanted.make(&self.fit.set_up, stop)
     }
 
-    /// Adds runs that were wanted and have been made elsewhere.
-    ///
-    /// # Errors
-    /// When the case is not valid in the middle of the ranges.
-    pub fn add(&mut self, wanted: &WantedRuns, made: Vec<Curves>) -> Result<(), StudyError> {
-        self.kept.add(&self.set_up, wanted, made)
+    /// Adds a run that was wanted and has been made elsewhere.
+    pub fn add(&mut self, wanted: WantedRun, made: Curves) {
+        self.kept.add(wanted, made);
     }
 }
 
@@ -161,16 +148,21 @@ mod tests {
         let mut one = calibration();
         let mut stages = Vec::new();
         let elsewhere = loop {
-            match find(&mut one, true) {
+            let mut stage = None;
+            let found = one
+                .find(true, &go_on, &mut |now| stage = Some(now.stage))
+                .unwrap();
+            match found {
                 Outcome::Found(results) => break results,
                 Outcome::Wants(wanted) => {
-                    stages.push((wanted.stage, wanted.count()));
-                    for part in wanted.shared_out(3) {
+                    stages.push((stage.unwrap(), wanted.len()));
+                    let other = calibration();
+                    for run in wanted {
                         // As a message to another worker: every bit of a number comes back.
-                        let sent: WantedRuns =
-                            serde_json::from_str(&serde_json::to_string(&part).unwrap()).unwrap();
-                        let made = calibration().make(&sent, &go_on).unwrap().unwrap();
-                        one.add(&part, made).unwrap();
+                        let sent: WantedRun =
+                            serde_json::from_str(&serde_json::to_string(&run).unwrap()).unwrap();
+                        let made = other.make(&sent, &go_on).unwrap().unwrap();
+                        one.add(run, made);
                     }
                 }
             }

@@ -48,7 +48,7 @@ pub use plan::{ExperimentPlan, PlannedExperiment};
 pub use predicted::{Comparison, Predicted};
 pub use progress::{CalibrationProgress, CalibrationStage};
 pub use record_check::RecordCheck;
-pub use runs::{RunMaker, WantedRuns};
+pub use runs::{RunMaker, WantedRun};
 pub use sample_points::SamplePoints;
 pub use set_up::{Conditions, Curves, SetUp};
 pub use training::Training;

@@ -1,10 +1,7 @@
 //! Progress of a calibration: the purpose of its runs, and how many have ended.
 
-use serde::{Deserialize, Serialize};
-
 /// Purpose of runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationStage {
     /// Runs of the case over the ranges.
     Training,
@@ -33,7 +30,7 @@ impl CalibrationStage {
 }
 
 /// Progress of a calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalibrationProgress {
     /// Present stage.
     pub stage: CalibrationStage,

@@ -29,17 +29,6 @@ impl JournalEntry for CalibrationRun {
     const KEYS: &'static [&'static str] = &["curves"];
 }
 
-/// Identity of a run: a hash of all that decides its curves.
-fn identity(of_set_up: &str, point: &[f64], surface: u64) -> String {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(of_set_up.as_bytes());
-    hasher.update(&surface.to_le_bytes());
-    for share in point {
-        hasher.update(&share.to_le_bytes());
-    }
-    hasher.finalize().to_hex()[..16].to_owned()
-}
-
 /// Runs to be made: points of the ranges, each over a surface of its own.
 pub(crate) struct Runs<'a> {
     set_up: &'a SetUp,
@@ -58,23 +47,29 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// Identities of all runs.
+    /// Identities of all runs: hashes of what decides their curves.
     fn identities(&self) -> Result<Vec<String>, StudyError> {
         let of_set_up = self.set_up.identity()?;
-        let runs = (self.first_surface..).zip(self.points);
-        Ok(runs
-            .map(|(surface, point)| identity(&of_set_up, point, surface))
-            .collect())
+        let of_run = |(surface, point): (u64, &Vec<f64>)| {
+            let mut hasher = blake3::Hasher::new();
+            hasher.update(of_set_up.as_bytes());
+            hasher.update(&surface.to_le_bytes());
+            for share in point {
+                hasher.update(&share.to_le_bytes());
+            }
+            hasher.finalize().to_hex()[..16].to_owned()
+        };
+        Ok((self.first_surface..).zip(self.points).map(of_run).collect())
     }
 
-    /// The runs of these numbers, to be made elsewhere.
-    fn wanted(&self, stage: CalibrationStage, numbers: &[usize]) -> WantedRuns {
-        let run = |number: &usize| (self.points[*number].clone(), self.first_surface + *number as u64);
-        WantedRuns {
-            stage,
+    /// The run of this number and identity, to be made elsewhere.
+    fn wanted(&self, number: usize, id: &str) -> WantedRun {
+        WantedRun {
+            id: id.to_owned(),
             is_finer: self.set_up.is_finer,
             halvings: self.set_up.halvings,
-            runs: numbers.iter().map(run).collect(),
+            point: self.points[number].clone(),
+            surface: self.first_surface + number as u64,
         }
     }
 
@@ -85,56 +80,30 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// Runs that a calibration needs and that are made elsewhere, such as in other Workers of a page.
+/// A run that a calibration needs and that is made elsewhere, such as in another Worker of a page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WantedRuns {
-    /// Purpose of the runs.
-    pub stage: CalibrationStage,
+pub struct WantedRun {
+    /// Identity of the run.
+    id: String,
     is_finer: bool,
     halvings: u32,
-    /// Points of the ranges, and the surface of each run.
-    runs: Vec<(Vec<f64>, u64)>,
+    /// Point of the ranges.
+    point: Vec<f64>,
+    surface: u64,
 }
 
-impl WantedRuns {
-    /// Number of runs.
-    pub fn count(&self) -> usize {
-        self.runs.len()
-    }
-
-    /// Shares the runs out to so many workers, each of which has every `parts`-th run.
-    pub fn shared_out(&self, parts: usize) -> Vec<Self> {
-        let part = |first: usize| Self {
-            runs: self.runs.iter().skip(first).step_by(parts).cloned().collect(),
-            ..self.clone()
-        };
-        (0..parts.min(self.count())).map(part).collect()
-    }
-
-    /// The set-up of the runs in a calibration with this one.
-    fn set_up(&self, set_up: &SetUp) -> SetUp {
-        SetUp {
+impl WantedRun {
+    /// Makes the run in a calibration with this set-up; none after a stop.
+    ///
+    /// # Errors
+    /// When the case is not valid there, the run diverges, or it ends before a record.
+    pub(crate) fn make(&self, set_up: &SetUp, stop: &AtomicBool) -> Result<Option<Curves>, TrainingError> {
+        let set_up = SetUp {
             is_finer: self.is_finer,
             halvings: self.halvings,
             ..set_up.clone()
-        }
-    }
-
-    /// Makes the runs on rayon's threads; none after a stop.
-    ///
-    /// # Errors
-    /// The error of the first run that has one.
-    pub(crate) fn make(
-        &self,
-        set_up: &SetUp,
-        stop: &AtomicBool,
-    ) -> Result<Option<Vec<Curves>>, TrainingError> {
-        let set_up = self.set_up(set_up);
-        let runs = self.runs.par_iter().with_max_len(1);
-        let made: Vec<_> = runs
-            .map(|(point, surface)| set_up.curves(point, *surface, stop))
-            .collect();
-        made.into_iter().collect()
+        };
+        set_up.curves(&self.point, self.surface, stop)
     }
 }
 
@@ -185,23 +154,9 @@ impl KeptRuns {
         self.known.len()
     }
 
-    /// Adds runs that were made elsewhere, in the order in which they were wanted.
-    ///
-    /// # Errors
-    /// When the case is not valid in the middle of the ranges.
-    pub(crate) fn add(
-        &mut self,
-        set_up: &SetUp,
-        wanted: &WantedRuns,
-        made: Vec<Curves>,
-    ) -> Result<(), StudyError> {
-        let of_set_up = wanted.set_up(set_up).identity()?;
-        let ids = wanted
-            .runs
-            .iter()
-            .map(|(point, surface)| identity(&of_set_up, point, *surface));
-        self.known.extend(ids.zip(made));
-        Ok(())
+    /// Adds a run that was made elsewhere.
+    pub(crate) fn add(&mut self, wanted: WantedRun, made: Curves) {
+        self.known.insert(wanted.id, made);
     }
 
     fn keep(&mut self, stage: CalibrationStage, made: Vec<CalibrationRun>) -> Result<(), StudyError> {
@@ -223,7 +178,7 @@ pub struct RunMaker<'a> {
     /// Whether runs that are known before they are needed are made elsewhere.
     is_elsewhere: bool,
     /// The runs for which a calibration was left, to be made elsewhere.
-    wanted: Option<WantedRuns>,
+    wanted: Option<Vec<WantedRun>>,
     ended: usize,
     of: usize,
 }
@@ -262,7 +217,7 @@ impl<'a> RunMaker<'a> {
     }
 
     /// The runs that are to be made elsewhere before the calibration can go on.
-    pub(crate) fn into_wanted(self) -> Option<WantedRuns> {
+    pub(crate) fn into_wanted(self) -> Option<Vec<WantedRun>> {
         self.wanted
     }
 
@@ -284,12 +239,13 @@ impl<'a> RunMaker<'a> {
             CalibrationStage::Closest => self.of + missing.len(),
             _ => self.of.saturating_sub(found.len() - missing.len()),
         };
+        self.show(stage, 0);
         if self.is_elsewhere && stage != CalibrationStage::Closest && !missing.is_empty() {
-            self.wanted = Some(runs.wanted(stage, &missing));
+            let wanted = missing.iter().map(|run| runs.wanted(*run, &ids[*run]));
+            self.wanted = Some(wanted.collect());
             return Err(StudyError::Interrupted);
         }
         let stop = self.stop;
-        self.show(stage, 0);
         for some in missing.chunks(AT_ONCE) {
             let made = some.par_iter().with_max_len(1).map(|run| runs.curves(*run, stop));
             let made: Vec<Result<Option<Curves>, TrainingError>> = made.collect();

@@ -8,8 +8,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::job::WantedRuns;
-use crate::protocol::{CalibratingReply, CalibrationStage, Estimate};
+use crate::protocol::{CalibratingReply, Estimate};
 
 /// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a
 /// run without a transition.
@@ -53,14 +52,25 @@ pub(crate) enum EventKind {
     Replied(String),
     /// How far a calibration is.
     Calibrating(CalibratingReply),
-    /// Runs that a calibration needs before it can go on, of this stage.
-    Wants(CalibrationStage, Vec<WantedRuns>),
+    /// Runs that a calibration needs before it can go on.
+    Wants(Vec<WantedRun>),
     /// The curves of the next of the runs that a calibration wanted, as JSON, or why they cannot be made.
     Made(Result<String, String>),
     /// The results of a calibration as the page is sent them, or why there are none.
     Calibrated(Result<Value, String>),
     /// The work has ended by a defect of its own.
     Lost,
+}
+
+/// A run that a calibration wants, as JSON that the calibration alone understands.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct WantedRun(pub(crate) String);
+
+/// A run that a calibration wanted, with its curves as JSON.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct MadeRun {
+    pub(crate) wanted: WantedRun,
+    pub(crate) curves: String,
 }
 
 /// Textured blocks. They are sent as a text of a digit for each block.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::controls::TwoValues;
 use crate::document::Document;
-use crate::event::Mask;
+use crate::event::{MadeRun, Mask, WantedRun};
 use crate::protocol::{CalibrateRequest, DrawingFormat, RecordFile};
 
 /// A computation beside a session. It reports what it finds by events, and can be sent as JSON.
@@ -30,28 +30,17 @@ pub(crate) enum JobKind {
     Calibrate {
         request: Box<CalibrateRequest>,
         /// Runs that it needs and that have been made, each with its curves.
-        made: Vec<MadeRuns>,
+        made: Vec<MadeRun>,
         /// Whether the runs are made by other jobs, or by the threads of this one.
         is_elsewhere: bool,
     },
     /// Runs of a calibration.
     MakeRuns {
         request: Box<CalibrateRequest>,
-        wanted: Vec<WantedRuns>,
+        wanted: Vec<WantedRun>,
     },
     /// The texture as a drawing.
     Draw(DrawingFormat),
-}
-
-/// Runs that a calibration wants, as JSON that the calibration alone understands.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct WantedRuns(pub(crate) String);
-
-/// Runs that a calibration wanted, with their curves as JSON.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct MadeRuns {
-    pub(crate) wanted: WantedRuns,
-    pub(crate) curves: String,
 }
 
 impl Job {

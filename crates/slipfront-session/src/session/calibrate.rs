@@ -1,147 +1,19 @@
-//! A calibration: begun, shared out to tasks, followed.
+//! A calibration of the case: begun, followed, ended.
 
 use std::time::Duration;
-use std::vec;
 
 use serde_json::Value;
 
+use super::calibration::Calibration;
 use super::clock::is_due;
 use super::state::Session;
-use crate::document::Document;
-use crate::event::EventKind;
-use crate::host::{Host, Task};
-use crate::job::{Job, JobKind, MadeRuns, WantedRuns};
-use crate::protocol::{
-    CalibrateRequest, CalibratedReply, CalibratingReply, CalibrationOutcome, CalibrationStage, Reply,
-};
+use crate::protocol::{CalibrateRequest, CalibratedReply, CalibrationOutcome, Reply};
 
 /// Time between two reports of how far a calibration is.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Unknown keys that a page may ask for.
 const UNKNOWNS: [usize; 2] = [2, 4];
-
-/// Runs of the calibrated model that follow those of the training.
-const FURTHER_RUNS: usize = 160;
-
-/// Why a calibration ends by a defect.
-const LOST: &str = "the calibration failed by a defect of its own";
-
-/// A calibration under way. Dropping it ends its work.
-pub(super) struct Calibration {
-    document: Document,
-    request: Box<CalibrateRequest>,
-    /// Runs that were made for it by other tasks.
-    made: Vec<MadeRuns>,
-    work: Work,
-    progress: CalibratingReply,
-}
-
-/// Work of a calibration.
-enum Work {
-    /// The calibration itself, as far as its runs go.
-    Finding(Box<dyn Task>),
-    /// Runs that it wants, shared out to several tasks.
-    Making(Vec<Part>),
-}
-
-/// The runs that one task makes.
-struct Part {
-    task: Box<dyn Task>,
-    /// Runs of which the task has reported nothing yet, in its order.
-    wanted: vec::IntoIter<WantedRuns>,
-}
-
-impl Calibration {
-    /// Begins the calibration of a case, or goes on with the runs that were made for it.
-    fn find(
-        host: &dyn Host,
-        document: &Document,
-        request: &CalibrateRequest,
-        made: Vec<MadeRuns>,
-    ) -> Result<Box<dyn Task>, String> {
-        let kind = JobKind::Calibrate {
-            request: Box::new(request.clone()),
-            made,
-            is_elsewhere: host.workers() > 1,
-        };
-        host.begin(Job::new(document.clone(), kind))
-    }
-
-    /// Shares runs out to the workers of the host.
-    fn make(&mut self, host: &dyn Host, wanted: &[WantedRuns]) -> Result<(), String> {
-        let workers = host.workers().clamp(1, wanted.len().max(1));
-        let mut parts = Vec::new();
-        for first in 0..workers {
-            let wanted: Vec<WantedRuns> = wanted.iter().skip(first).step_by(workers).cloned().collect();
-            let kind = JobKind::MakeRuns {
-                request: self.request.clone(),
-                wanted: wanted.clone(),
-            };
-            let task = host.begin(Job::new(self.document.clone(), kind))?;
-            let wanted = wanted.into_iter();
-            parts.push(Part { task, wanted });
-        }
-        self.work = Work::Making(parts);
-        Ok(())
-    }
-
-    /// Looks after the work; gives its results once they are there.
-    ///
-    /// # Errors
-    /// A sentence on why there are none.
-    fn follow(&mut self, host: &dyn Host) -> Result<Option<Value>, String> {
-        match &mut self.work {
-            Work::Finding(task) => {
-                while let Some(event) = task.next_event() {
-                    match event.0 {
-                        EventKind::Calibrating(progress) => self.progress = progress,
-                        EventKind::Calibrated(results) => return results.map(Some),
-                        EventKind::Wants(stage, wanted) => {
-                            self.progress.stage = stage;
-                            self.make(host, &wanted)?;
-                            return Ok(None);
-                        }
-                        _ => return Err(LOST.to_owned()),
-                    }
-                }
-            }
-            Work::Making(parts) => {
-                for part in parts.iter_mut() {
-                    part.follow(&mut self.made)?;
-                }
-                parts.retain(|part| part.wanted.len() > 0);
-                self.progress.runs = self.made.len();
-                if parts.is_empty() {
-                    self.work = Work::Finding(Self::find(
-                        host,
-                        &self.document,
-                        &self.request,
-                        self.made.clone(),
-                    )?);
-                }
-            }
-        }
-        Ok(None)
-    }
-}
-
-impl Part {
-    /// Notes the curves that the task has reported since the last look.
-    fn follow(&mut self, made: &mut Vec<MadeRuns>) -> Result<(), String> {
-        while let Some(wanted) = self.wanted.as_slice().first().cloned()
-            && let Some(event) = self.task.next_event()
-        {
-            let EventKind::Made(curves) = event.0 else {
-                return Err(LOST.to_owned());
-            };
-            let curves = curves?;
-            made.push(MadeRuns { wanted, curves });
-            self.wanted.next();
-        }
-        Ok(())
-    }
-}
 
 impl Session {
     /// Begins to calibrate the case.
@@ -159,17 +31,7 @@ impl Session {
         }
         self.apply_edits();
         let document = self.document()?.clone();
-        self.calibration = Some(Calibration {
-            work: Work::Finding(Calibration::find(&*self.host, &document, &request, Vec::new())?),
-            progress: CalibratingReply {
-                stage: CalibrationStage::Training,
-                runs: 0,
-                of: request.runs as usize + FURTHER_RUNS,
-            },
-            document,
-            request,
-            made: Vec::new(),
-        });
+        self.calibration = Some(Calibration::begin(&*self.host, document, request)?);
         Ok(())
     }
 

@@ -1,18 +1,10 @@
 //! Work that ends with one reply: a record is read, a sensitivity is computed, a texture is drawn.
 
-use super::state::Session;
+use super::state::{Errand, Session};
 use crate::controls;
 use crate::event::EventKind;
-use crate::host::Task;
 use crate::job::{Job, JobKind};
 use crate::protocol::{DrawingFormat, RecordFile, Reply};
-
-/// Work that ends with one reply. Dropping it ends the work.
-pub(super) struct Errand {
-    /// Name of the request.
-    of: &'static str,
-    task: Box<dyn Task>,
-}
 
 /// Name of the request whose work does not depend on the case.
 const READ_RECORD: &str = "read_record";

@@ -3,6 +3,7 @@
 mod advance;
 mod brush;
 mod calibrate;
+mod calibration;
 mod clock;
 mod edit;
 mod errands;

@@ -3,9 +3,8 @@
 use std::rc::Rc;
 use std::time::Duration;
 
-use super::calibrate::Calibration;
+use super::calibration::Calibration;
 use super::clock::Clock;
-use super::errands::Errand;
 use super::painting::Painting;
 use super::repetition::Repetition;
 use crate::document::Document;
@@ -45,6 +44,13 @@ pub(super) struct TextureSearch {
     pub(super) tried: Tried,
     /// The texture that is being compared; none while textures are tried.
     pub(super) compared: Option<Mask>,
+}
+
+/// Work that ends with one reply. Dropping it ends the work.
+pub(super) struct Errand {
+    /// Name of the request.
+    pub(super) of: &'static str,
+    pub(super) task: Box<dyn Task>,
 }
 
 /// A case that is edited, its run, and what a page is shown of them.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Map;
 use slipfront_calibrate::{
-    CalibrationInMemory, CalibrationProgress, CalibrationStage as Stage, Outcome, WantedRuns as Wanted,
+    CalibrationInMemory, CalibrationProgress, CalibrationStage as Stage, Outcome, WantedRun as Wanted,
 };
 use slipfront_run::measured::{Measure, columns_of};
 use toml::{Table, Value};
@@ -13,8 +13,7 @@ use toml::{Table, Value};
 use super::record::Chosen;
 use crate::base64;
 use crate::document::Document;
-use crate::event::{Event, EventKind, Worker};
-use crate::job::{MadeRuns, WantedRuns};
+use crate::event::{Event, EventKind, MadeRun, WantedRun, Worker};
 use crate::protocol::{
     CalibrateRequest, CalibratingReply, CalibrationResults, CalibrationStage, UnknownReply,
 };
@@ -24,7 +23,7 @@ use crate::protocol::{
 pub(super) fn calibrate(
     document: &Document,
     request: &CalibrateRequest,
-    made: &[MadeRuns],
+    made: &[MadeRun],
     is_elsewhere: bool,
     worker: &dyn Worker,
 ) {
@@ -34,7 +33,7 @@ pub(super) fn calibrate(
             let results = serde_json::to_value(results).map_err(|error| error.to_string());
             tell(EventKind::Calibrated(results));
         }
-        Ok(Found::Wants(stage, wanted)) => tell(EventKind::Wants(stage, wanted)),
+        Ok(Found::Wants(wanted)) => tell(EventKind::Wants(wanted)),
         Err(sentence) => tell(EventKind::Calibrated(Err(sentence))),
     }
 }
@@ -43,7 +42,7 @@ pub(super) fn calibrate(
 pub(super) fn make_runs(
     document: &Document,
     request: &CalibrateRequest,
-    wanted: &[WantedRuns],
+    wanted: &[WantedRun],
     worker: &dyn Worker,
 ) {
     let tell = |made| worker.tell(Event(EventKind::Made(made)));
@@ -51,9 +50,9 @@ pub(super) fn make_runs(
         Ok(calibration) => calibration,
         Err(sentence) => return tell(Err(sentence)),
     };
-    for runs in wanted {
-        let made = read_wanted(runs).and_then(|runs| {
-            let made = calibration.make(&runs, worker.stop());
+    for run in wanted {
+        let made = read_wanted(run).and_then(|run| {
+            let made = calibration.make(&run, worker.stop());
             made.map_err(|error| error.to_string())
         });
         match made {
@@ -67,13 +66,13 @@ pub(super) fn make_runs(
 /// Results of a calibration, or the runs that it needs first.
 enum Found {
     Results(CalibrationResults),
-    Wants(CalibrationStage, Vec<WantedRuns>),
+    Wants(Vec<WantedRun>),
 }
 
 fn find(
     document: &Document,
     request: &CalibrateRequest,
-    made: &[MadeRuns],
+    made: &[MadeRun],
     is_elsewhere: bool,
     worker: &dyn Worker,
 ) -> Result<Found, String> {
@@ -81,23 +80,21 @@ fn find(
     let mut calibration = request.calibration()?;
     for made in made {
         let curves = serde_json::from_str(&made.curves).map_err(|error| error.to_string())?;
-        let added = calibration.add(&read_wanted(&made.wanted)?, curves);
-        added.map_err(|error| error.to_string())?;
+        calibration.add(read_wanted(&made.wanted)?, curves);
     }
     let mut watch = |now: &CalibrationProgress| {
         worker.tell(Event(EventKind::Calibrating(CalibratingReply {
             stage: stage(now.stage),
-            runs: now.runs,
-            of: now.of,
+            runs: made.len() + now.runs,
+            of: made.len() + now.of,
         })));
     };
     let found = calibration.find(is_elsewhere, worker.stop(), &mut watch);
     match found.map_err(|error| error.to_string())? {
         Outcome::Found(found) => request.results(found).map(Found::Results),
         Outcome::Wants(wanted) => {
-            let each = wanted.shared_out(wanted.count());
-            let each = each.iter().map(|runs| WantedRuns(json(runs)));
-            Ok(Found::Wants(stage(wanted.stage), each.collect()))
+            let wanted = wanted.iter().map(|run| WantedRun(json(run)));
+            Ok(Found::Wants(wanted.collect()))
         }
     }
 }
@@ -105,11 +102,11 @@ fn find(
 /// Something as JSON.
 fn json(of: &impl serde::Serialize) -> String {
     // Structs of texts and finite numbers: serialisation cannot fail.
-    serde_json::to_string(of).expect("runs are JSON")
+    serde_json::to_string(of).expect("a run is JSON")
 }
 
-fn read_wanted(runs: &WantedRuns) -> Result<Wanted, String> {
-    serde_json::from_str(&runs.0).map_err(|error| error.to_string())
+fn read_wanted(run: &WantedRun) -> Result<Wanted, String> {
+    serde_json::from_str(&run.0).map_err(|error| error.to_string())
 }
 
 /// The stage that a page is told; it asks for none of the others.
