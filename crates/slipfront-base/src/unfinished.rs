@@ -346,7 +346,9 @@ mod tests {
             hold(Some(file), &path)
         };
         until_locked(make, is_locked).unwrap();
-        assert_eq!(tries.get(), 4);
+        // More than four where another test starts a process meanwhile: until that runs its own program, it
+        // has a copy of the other process's file, and thus its lock.
+        assert!(tries.get() >= 4);
         assert!(until_locked(make, |_| false).is_err());
     }
 

@@ -179,21 +179,22 @@ function showCursor(plot) {
   find('curve-cursor').textContent = t === null || t === undefined || mu === null || mu === undefined ? '' : say('curve_cursor', { t: t.toFixed(1), mu: mu.toFixed(3) });
 }
 
-/** @param {uPlot[]} of */
+/** Fills plots; gives the points of the measured record. @param {uPlot[]} of */
 function fill([above, below]) {
   // Both plots have all times, so that one stands below the other.
   const record = measuredPoints();
   const [t, mu, sliding, ...others] = Plot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu], [record.t, record.mu]]);
   above.setData([t, mu, ...others]);
   below.setData([t, sliding]);
+  return record;
 }
 
 function draw() {
   if (plots.length === 0) return;
-  fill(plots);
+  const measured = fill(plots);
   find('curve-twin').hidden = twin.t.length === 0;
   find('curve-recorded').hidden = recorded.t.length === 0;
-  find('curve-measured').hidden = measuredPoints().t.length === 0;
+  find('curve-measured').hidden = measured.t.length === 0;
   find('curve-letters').hidden = Object.keys(state.numbers?.instants ?? {}).length === 0;
 }
 const refresh = atMost(draw, SPACING_MS);
