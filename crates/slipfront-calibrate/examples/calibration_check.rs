@@ -392,10 +392,13 @@ fn lagged(y: &[f64], dt: f64, constant: f64) -> Vec<f64> {
 }
 
 fn running_mean(y: &[f64], width: usize) -> Vec<f64> {
-    // Before the drive begins there is no friction.
-    let before = |i: usize| (i + 1).saturating_sub(width);
+    let mut sum = 0.0;
     (0..y.len())
-        .map(|i| y[before(i)..=i].iter().sum::<f64>() / width as f64)
+        .map(|i| {
+            // Before the drive begins there is no friction.
+            sum += y[i] - i.checked_sub(width).map_or(0.0, |left| y[left]);
+            sum / width as f64
+        })
         .collect()
 }
 
