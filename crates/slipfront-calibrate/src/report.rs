@@ -255,7 +255,7 @@ fn row(told: &UnknownEstimate) -> Vec<String> {
         format!("[{from}, {to}]"),
     ];
     if !told.is_determined {
-        row.push("not told".to_owned());
+        row.push("not determined".to_owned());
     } else if told.belongs_to_block {
         row.push("belongs to the block".to_owned());
     } else if told.depends_on_step {
