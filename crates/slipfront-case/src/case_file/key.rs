@@ -134,39 +134,40 @@ impl Key {
     }
 
     pub(super) const fn paper(mut self, symbol: &'static str) -> Self {
-        self.paper = symbol;
+        self.paper = of_reference(symbol);
         self
     }
 
     /// The key with words that follow the bounds of its kind in the reference.
     pub const fn further_bounds(mut self, words: &'static str) -> Self {
-        self.further_bounds = words;
+        self.further_bounds = of_reference(words);
         self
     }
 
     /// The key with sentences that follow its meaning in the reference.
     pub const fn note(mut self, sentences: &'static str) -> Self {
-        self.note = sentences;
+        self.note = of_reference(sentences);
         self
     }
 
     /// The key with words for what a file without it has, in place of a default.
     pub const fn without(mut self, words: &'static str) -> Self {
-        self.without = words;
+        self.without = of_reference(words);
         self
     }
 
     /// The key with its name, and its meaning as a doc comment has it.
     pub const fn named(mut self, name: &'static str, doc: &'static str) -> Self {
         self.name = name;
-        // Pages of reference alone have them, and a module for a browser is smaller without.
-        self.doc = if cfg!(feature = "disk") {
-            doc.trim_ascii()
-        } else {
-            ""
-        };
+        self.doc = of_reference(doc.trim_ascii());
         self
     }
+}
+
+/// The words where the program has a disk, and thus may write pages of reference. A module for a browser has
+/// none of them, and is smaller.
+const fn of_reference(words: &'static str) -> &'static str {
+    if cfg!(feature = "disk") { words } else { "" }
 }
 
 /// A key with a default as TOML, or an empty one, that takes values of a kind.
