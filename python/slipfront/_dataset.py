@@ -1,4 +1,4 @@
-"""Arrays as datasets of xarray, with the units of the CF conventions; where xarray is not installed, as dictionaries."""
+"""Arrays as datasets of xarray, with the units of the CF conventions; as dictionaries if xarray is not installed."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _attributes(name: str) -> dict[str, str]:
 
 
 def read_only(array: npt.ArrayLike) -> npt.NDArray[Any]:
-    """An array that cannot be written to, since all who ask for it get the same one."""
+    """A read-only array, because all callers get the same one."""
     shared = np.asarray(array)
     shared.flags.writeable = False
     return shared

@@ -61,7 +61,7 @@ class FolderSource:
             raise FolderError(f"{folder} is the folder that the run was read from: it stands there already")
         manifest = json.loads((self._folder / "manifest.json").read_bytes())
         _slipfront.make_ready(folder, force)
-        # The manifest is the last: without it a folder is not taken for one of a complete run.
+        # The manifest is the last: without it a folder does not count as a complete run.
         for name in [*(file["name"] for file in manifest["files"]), "manifest.json"]:
             copied = folder / name
             copied.parent.mkdir(parents=True, exist_ok=True)
@@ -74,9 +74,9 @@ class FolderSource:
 class Run:
     """Results of a run: numbers, curve, fields, the slip front.
 
-    Numbers with a star are dimensionless (Eq. 11). All that `summary.json` holds is in `summary`; the most asked for are attributes.
-    So is each table that only some runs have, such as `precursors`, the events of slip of a slider driven at an edge: a dataset as
-    `series` is, or None for a run without it.
+    Numbers with a star are dimensionless (Eq. 11). `summary` has the content of `summary.json`; the most common numbers are
+    attributes. So is each table that only some runs have, such as `precursors`, the events of slip of a slider driven at an edge. It
+    is a dataset like `series`, or None for a run without it.
 
     Examples
     --------
@@ -120,7 +120,7 @@ class Run:
 
     @property
     def kinetic_friction_star_uncertainty(self) -> float | None:
-        """Standard error of mu_k*; None where the window supports none (see `warnings`)."""
+        """Standard error of mu_k*; None if the window supports none (see `warnings`)."""
         return self._optional("kinetic_friction_star_uncertainty")
 
     @property
@@ -171,12 +171,12 @@ class Run:
 
     @property
     def front_speed_c_s(self) -> float | None:
-        """Median speed of the slip front over the speed of long shear waves; None where it passes less than half of the windows."""
+        """Median speed of the slip front over the speed of long shear waves; None if it passes less than half of the windows."""
         return self._optional("front_speed_c_s")
 
     @property
     def front_speed_m_s(self) -> float | None:
-        """Median speed of the slip front, m/s; None where it passes less than half of the windows."""
+        """Median speed of the slip front, m/s; None if it passes less than half of the windows."""
         return self._optional("front_speed_m_s")
 
     @property
@@ -221,7 +221,7 @@ class Run:
 
     @property
     def kymograph(self) -> xr.Dataset | None:
-        """The share of the blocks that slide against time and place along the drive; None in folders of old versions."""
+        """The share of sliding blocks over time and place along the drive; None in folders of old versions."""
         return None if self._kymograph is None else self._kymograph.copy()
 
     @property
@@ -231,16 +231,16 @@ class Run:
 
     @property
     def front(self) -> npt.NDArray[np.float64]:
-        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. The array cannot be written to."""
+        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. The array is read-only."""
         return _dataset.read_only(self._arrays["first_slip_time_star"])
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write the folder of the run, with the bytes of every file that `slipfront run` writes.
+        """Write the folder of the run, byte for byte as `slipfront run` does.
 
         Parameters
         ----------
         folder
-            A new or empty one.
+            A new or empty folder.
         force
             Replace the files of an earlier run there, and nothing else.
 
@@ -257,7 +257,7 @@ class Run:
     def plot(
         self, kind: str = "friction", ax: Axes | None = None, *, instant: str | int = -1, label: str | None = None
     ) -> Axes:
-        """Draw the run with matplotlib, as wide as a column of a journal (85 mm).
+        """Draw the run with matplotlib, as wide as a journal column (85 mm).
 
         Parameters
         ----------
@@ -265,7 +265,7 @@ class Run:
             ``"friction"``: mu* over t* with the instants A to F; ``"front"``: when each block first slid; ``"kymograph"``: the share of
             the blocks that slide over t* and along the drive; or the name of a field, such as ``"traction"``.
         ax
-            Axes to draw in, in their own style; new ones unless given.
+            Axes to draw in, in their own style; by default new ones.
         instant
             The snapshot of a field: a letter, or its number.
         label
@@ -302,8 +302,7 @@ class Run:
             told.append(("mu_k*", with_error(kinetic, error)))
         return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
 
-    # What was asked for once is kept. It is handed out in new datasets, whose arrays are shared and cannot be
-    # written to.
+    # Results are kept after the first use. Each caller gets new datasets with shared, read-only arrays.
 
     @functools.cached_property
     def _summary(self) -> str:
