@@ -346,7 +346,7 @@ class Calibration:
         arrays = {str(name): np.asarray(column) for name, column in columns.items()}
         lengths = {len(array) for array in arrays.values() if array.ndim == 1}
         if len(lengths) != 1:
-            raise ValueError(f"the columns of a record are as long as each other: {', '.join(arrays)} have {sorted(lengths)} values")
+            raise ValueError(f"the columns of a record must have the same length: {', '.join(arrays)} have {sorted(lengths)} values")
         for name, array in arrays.items():
             if array.dtype.kind == "f" and name.startswith(tuple(self._native.columns)):
                 # Values at the end that are not numbers are skipped with a note, as in a file.
@@ -388,16 +388,16 @@ class CalibrationResults:
         self.folder, self.posterior, self.text = folder, posterior, text
         self._found, self._bands = found, bands
         self.intervals = {
-            told["key"]: Interval(
-                median=told["median"],
-                low=told["interval"][0],
-                high=told["interval"][1],
-                unit=told["unit"],
-                is_determined=told["is_determined"],
-                belongs_to_block=told["belongs_to_block"],
-                depends_on_step=told["depends_on_step"],
+            estimate["key"]: Interval(
+                median=estimate["median"],
+                low=estimate["interval"][0],
+                high=estimate["interval"][1],
+                unit=estimate["unit"],
+                is_determined=estimate["is_determined"],
+                belongs_to_block=estimate["belongs_to_block"],
+                depends_on_step=estimate["depends_on_step"],
             )
-            for told in found["unknowns"]
+            for estimate in found["unknowns"]
         }
 
     @classmethod
@@ -405,7 +405,7 @@ class CalibrationResults:
         """Results in a folder, which is kept as `kept` or removed afterwards."""
         found = json.loads((folder / "calibration.json").read_bytes())
         points = np.loadtxt(folder / "posterior.csv", delimiter=",", skiprows=1, ndmin=2)
-        posterior = {told["key"]: points[:, number] for number, told in enumerate(found["unknowns"])}
+        posterior = {estimate["key"]: points[:, number] for number, estimate in enumerate(found["unknowns"])}
         bands = [read_table(folder / f"band-{number}.csv") for number in range(1, len(found["within_band_percent"]) + 1)]
         return cls(kept, found, posterior, (folder / "calibration.txt").read_text(encoding="utf-8"), bands)
 

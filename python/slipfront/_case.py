@@ -62,8 +62,8 @@ class Case:
     def __init__(self, tables: Mapping[str, Any], overrides: Overrides | None = None, *, name: str = "case") -> None:
         if not isinstance(tables, Mapping):
             raise TypeError(
-                f"a case is made of a dictionary of its tables, not of {type(tables).__name__}: "
-                "of a file by Case.load, of a text by Case.parse"
+                f"a case is made from a dictionary of its tables, not from {type(tables).__name__}: "
+                "from a file by Case.load, from a text by Case.parse"
             )
         arrays = _toml.Arrays()
         text, changed = _toml.document(tables, arrays), set_anew(overrides, arrays)
@@ -310,7 +310,7 @@ def set_anew(overrides: Overrides | None, arrays: _toml.Arrays) -> list[str]:
         return []
     if not isinstance(overrides, Mapping):
         raise TypeError(
-            f"behind a case stand keys that are set anew, such as {{'drive.v_star': 0.05}}, not {overrides!r}: give other arguments by name"
+            f"keys to change are a dictionary such as {{'drive.v_star': 0.05}}, not {overrides!r}: give other arguments by name"
         )
     return [f"{key}={_toml.value(value, arrays, key)}" for key, value in _toml.by_key(overrides).items()]
 

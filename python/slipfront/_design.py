@@ -130,8 +130,8 @@ class Design:
             return
         if wish is None or coverage is None:
             raise ValueError("give a case with `wish` and `coverage`, or the path of a design file alone")
-        wished = wish if isinstance(wish, Mapping) else wish._table()
-        tables = {"design": {"wish": wished, "coverage": coverage, **keys}}
+        target = wish if isinstance(wish, Mapping) else wish._table()
+        tables = {"design": {"wish": target, "coverage": coverage, **keys}}
         self._native, self._arrays = of_case(_slipfront.Design, case, overrides, tables, name, "design")
 
     @property
@@ -164,7 +164,7 @@ class Design:
         """The best texture with a known loss, and its loss."""
         found = self._native.best()
         if found is None:
-            raise LookupError("nothing was told yet")
+            raise LookupError("no loss was reported yet")
         return self._mask(found[0]), found[1]
 
     def evaluate(

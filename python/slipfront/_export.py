@@ -107,5 +107,5 @@ def _folder_of(run: RunLike) -> Path:
     if not isinstance(run, Run):
         return Path(run)
     if run.folder is None:
-        raise _slipfront.FolderError(f"the run of the case {run.case.name} has no folder: save it before")
+        raise _slipfront.FolderError(f"the run of the case {run.case.name} has no folder: save it first")
     return run.folder

@@ -57,6 +57,6 @@ def _made(index: int, given: CaseLike, overrides: Overrides | None) -> Case:
     try:
         return as_case(given, overrides)
     except CaseError as error:
-        told = CaseError(f"case {index}: {error}")
-        told.line, told.column = error.line, error.column
-        raise told from error
+        located = CaseError(f"case {index}: {error}")
+        located.line, located.column = error.line, error.column
+        raise located from error

@@ -110,7 +110,7 @@ def _open_as(kind: type[Results], called: str, folder: str | os.PathLike[str], v
     found = open(folder, verify=verify)
     if isinstance(found, kind):
         return found
-    remedy = ": go on with it by `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
+    remedy = ": continue it with `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
     raise _slipfront.FolderError(f"{folder} is not the folder of {called} but holds {found!r}{remedy}")
 
 

@@ -21,6 +21,6 @@ def sealed(make: Callable[..., object], *state: Any) -> tuple[Callable[[bytes], 
 def _unsealed(sealed: bytes) -> object:
     contents = _slipfront.verified(sealed)
     if contents is None:
-        raise pickle.UnpicklingError("this pickle of slipfront is damaged, its checksum is wrong: make it anew")
+        raise pickle.UnpicklingError("this pickle of slipfront is damaged, its checksum is wrong: create it again")
     make, state = pickle.loads(contents)
     return make(*state)

@@ -177,7 +177,7 @@ def plot_points(
         known = ", ".join(dict.fromkeys(f'"{row["quantity"]}"' for row in rows))
         raise ValueError(f'the study has no quantity "{quantity}": it has {known}')
     if not axes:
-        raise ValueError("a study without an axis has one point: `points` tells its mean")
+        raise ValueError("a study without an axis has one point: `points` has its mean")
     columns = {column: place for place, axis in enumerate(axes) for column in axis["columns"]}
     if over is not None and over not in columns:
         raise ValueError(f'the study has no axis "{over}": it has {", ".join(columns)}')

@@ -58,7 +58,7 @@ class FolderSource:
 
     def save(self, folder: Path, force: bool) -> None:
         if folder.resolve() == self._folder.resolve():
-            raise FolderError(f"{folder} is the folder that the run was read from: it stands there already")
+            raise FolderError(f"{folder} is the folder that the run was read from: it is there already")
         manifest = json.loads((self._folder / "manifest.json").read_bytes())
         _slipfront.make_ready(folder, force)
         # The manifest is the last: without it a folder does not count as a complete run.
@@ -66,7 +66,7 @@ class FolderSource:
             copied = folder / name
             copied.parent.mkdir(parents=True, exist_ok=True)
             if copied.exists():
-                raise FolderError(f"{copied} is not of the run that stood there: move it away, or name another folder")
+                raise FolderError(f"{copied} does not belong to the earlier run there: move it away, or name another folder")
             shutil.copyfile(self._folder / name, copied)
         _slipfront.verify(folder)
 
@@ -289,18 +289,18 @@ class Run:
         return [*super().__dir__(), *self._tables]
 
     def __repr__(self) -> str:
-        return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._told())})"
+        return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._main_values())})"
 
     def _repr_html_(self) -> str:
-        rows = [*self._told(), *(("warning", warning) for warning in self.warnings)]
+        rows = [*self._main_values(), *(("warning", warning) for warning in self.warnings)]
         return f"<b>{html.escape(self._case.name)}</b>{picture(self.texture)}{numbers(rows)}"
 
-    def _told(self) -> list[tuple[str, str]]:
+    def _main_values(self) -> list[tuple[str, str]]:
         kinetic, error = self.kinetic_friction_star, self.kinetic_friction_star_uncertainty
-        told = [("mu_s*", f"{self.static_friction_star:.4g}")]
+        values = [("mu_s*", f"{self.static_friction_star:.4g}")]
         if kinetic is not None:
-            told.append(("mu_k*", with_error(kinetic, error)))
-        return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
+            values.append(("mu_k*", with_error(kinetic, error)))
+        return [*values, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
 
     # Results are kept after the first use. Each caller gets new datasets with shared, read-only arrays.
 
@@ -349,7 +349,7 @@ class _Unsaved(FolderSource):
     """A run that was pickled: its numbers without its files."""
 
     def save(self, folder: Path, force: bool) -> None:
-        raise FolderError("a run that was pickled has no files: save it before, or run its case again")
+        raise FolderError("a run that was pickled has no files: save it first, or run its case again")
 
 
 def _unpickled(case: Case, read: dict[str, Any]) -> Run:

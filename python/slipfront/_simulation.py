@@ -283,7 +283,7 @@ class Simulation:
         if math.isnan(time_star):
             raise ValueError("t* is a number, not NaN")
         if time_star < (now := self.time_star):
-            raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start")
+            raise ValueError(f"t* = {time_star:g} has passed: it is {now:g} now")
         in_leg = (time_star - self._past.counted("time_star")) / self._case.numbers["dt_star"]
         last = math.ceil(in_leg - 1e-9) if in_leg < math.inf else _ALL
         while True:
@@ -309,7 +309,7 @@ class Simulation:
         """
         if self._past.legs:
             raise RuntimeError(
-                "a run that was changed on its way has no results of one case: read `series` and the fields, and keep `recipe()`"
+                "a run with changes has no results of one case: read `series` and the fields, and keep `recipe()`"
             )
         shown, watch = parted(progress)
         last = self._case.last_step

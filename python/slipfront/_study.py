@@ -301,8 +301,8 @@ class StudyResults:
         return grid(self._runs, self._axes)
 
     def _repr_html_(self) -> str:
-        told = f"<b>{len(self._runs['point'])} runs, {len(self.failures)} failed</b>"
-        return told + table(*means_by_point(self._tables["points"], self._axes))
+        counts = f"<b>{len(self._runs['point'])} runs, {len(self.failures)} failed</b>"
+        return counts + table(*means_by_point(self._tables["points"], self._axes))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return sealed(type(self), self.folder, self._tables, self._axes, self._failures)

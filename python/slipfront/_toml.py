@@ -83,8 +83,8 @@ def npy(array: np.ndarray[Any, Any]) -> bytes:
     header = _HEADERS.get(kind)
     if header is None:
         file = io.BytesIO()
-        told = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
-        np.lib.format.write_array_header_1_0(file, told)
+        described = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
+        np.lib.format.write_array_header_1_0(file, described)
         header = file.getvalue()
         if len(_HEADERS) == _MOST_HEADERS:
             _HEADERS.clear()
