@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 _LONG_NAMES = {
     "time_star": "dimensionless time t*",
     "time_s": "time since the start of the drive",
-    "drive_time_star": "t* of the drive, which stands while blocks slide",
-    "drive_displacement_m": "how far the drive has moved",
+    "drive_time_star": "t* of the drive, which pauses while blocks slide",
+    "drive_displacement_m": "displacement of the drive",
     "mu_star": "friction coefficient over mu_s",
     "friction_coefficient": "friction coefficient F_T/F_N",
     "mu_lateral_star": "mu* across the drive",

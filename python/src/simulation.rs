@@ -214,8 +214,8 @@ impl Simulation {
     fn resume(py: Python<'_>, case: &Case, checkpoint: &[u8], threads: usize) -> PyResult<Self> {
         let refused = || {
             PyValueError::new_err(format!(
-                "these bytes are no checkpoint of a run of this case by {}, or they are damaged: begin the run anew, or go on with \
-                 the case and the program that it was made with",
+                "these bytes are no checkpoint of a run of this case by {}, or they are damaged: start the run again, or continue with \
+                 the case and the program that made them",
                 program::this_build()
             ))
         };
