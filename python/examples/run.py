@@ -1,4 +1,4 @@
-"""Execute the notebooks of this folder; with --write keep their outputs, without what changes from run to run."""
+"""Execute the notebooks of this folder; with --write keep their outputs, without parts that change from run to run."""
 
 import argparse
 import sys
@@ -13,7 +13,7 @@ HERE = Path(__file__).parent
 
 
 def execute(path: Path) -> nbformat.NotebookNode:
-    """The notebook with its outputs; a warning, or whatever else goes to the error stream, is an error."""
+    """The notebook with its outputs; a warning, or anything else on the error stream, is an error."""
     notebook = nbformat.read(path, as_version=4)
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)
@@ -30,7 +30,7 @@ def execute(path: Path) -> nbformat.NotebookNode:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("notebooks", nargs="*", help="names such as first_run.ipynb; all of them unless given")
+    parser.add_argument("notebooks", nargs="*", help="names such as first_run.ipynb; by default all of them")
     parser.add_argument("--write", action="store_true", help="keep the outputs")
     given = parser.parse_args()
     failed = 0

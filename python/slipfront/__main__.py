@@ -1,4 +1,4 @@
-"""The command: ``python -m slipfront`` does what ``slipfront`` does."""
+"""The command: ``python -m slipfront`` works like ``slipfront``."""
 
 import signal
 import sys
@@ -9,7 +9,7 @@ from ._slipfront import command
 
 def main() -> int:
     """Run the command with the arguments of this process; return its exit status."""
-    # The command stops at signals by itself, with checkpoints; Python would only take note of them.
+    # The command stops at signals itself, with checkpoints; Python would only record them.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["slipfront", *sys.argv[1:]], Path(__file__).parent)
 

@@ -16,21 +16,21 @@ if TYPE_CHECKING:
 
 
 class Axis(TypedDict):
-    """An axis, as the native part tells it."""
+    """An axis, as reported by the native part."""
 
     columns: list[str]
     title: str
     drawn_title: str
     drawn_symbol: str
-    """Titles as in pictures, which have meshed coverages in place of the levels if `is_meshed`."""
+    """Titles as in pictures, which show meshed coverages instead of levels if `is_meshed`."""
     is_meshed: bool
     is_log: bool
     levels: list[tuple[list[str], float | None, str, str]]
-    """The cells of each level in the columns, its number if it has one, its name, and its name beside those of other axes."""
+    """The cells of each level in the columns, its number if any, its name, and its name next to those of other axes."""
 
 
 def levels_of(point: int, axes: Sequence[Axis]) -> tuple[int, ...]:
-    """The levels of a point: the last axis is the fastest."""
+    """The levels of a point; the last axis varies fastest."""
     return tuple(int(level) for level in np.unravel_index(point, [len(axis["levels"]) for axis in axes]))
 
 
@@ -66,7 +66,7 @@ _MAIN = ("static_friction_star", "kinetic_friction_star", "static_reduction_perc
 
 
 def means_by_point(points: dict[str, list[Any]], axes: Sequence[Axis]) -> tuple[list[str], list[list[str]]]:
-    """A table of the means of the most asked for quantities: its header, and a row for each point."""
+    """A table of the means of the main quantities: its header, and a row for each point."""
     means: dict[int, dict[str, str]] = {}
     for point, quantity, mean, low, high in zip(*(points[name] for name in ("point", "quantity", "mean", "low", "high")), strict=True):
         cells = means.setdefault(point, {})

@@ -1,4 +1,4 @@
-"""From measured records to the keys of a case."""
+"""Calibrations: keys of a case from measured records."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class Columns(Protocol):
-    """Columns by their names: a mapping of arrays, or a DataFrame."""
+    """Columns by name: a mapping of arrays, or a DataFrame."""
 
     def items(self) -> Iterable[tuple[Any, Any]]:
         """Names and columns."""
@@ -44,11 +44,11 @@ class Columns(Protocol):
 Found = TypeVar("Found")
 
 Record: TypeAlias = str | os.PathLike[str] | Columns | tuple[npt.ArrayLike, npt.ArrayLike]
-"""A record: the path of a table of text or of a workbook; its columns by their names, which are found as in such a table, with or without
-their units; or two arrays, of the columns `x` and `y`."""
+"""A record: the path of a text table or of a workbook; its columns by name, found as in such a table, with or without their units; or two
+arrays, of the columns `x` and `y`."""
 
 def _without_folder(text: str, folder: Path) -> str:
-    """A sentence that names a record that was given in memory, and not the file in which it was handed on."""
+    """A sentence that names a record in memory, not the file that passes it on."""
     hidden = re.escape(f"{folder}{os.sep}")
     return re.sub(hidden, "", re.sub(rf"{hidden}(record \d+)\.csv", r"\1", text))
 
@@ -60,15 +60,15 @@ class Interval:
     Attributes
     ----------
     median
-        As likely too small as too large.
+        The value is as likely above it as below.
     low, high
-        Ends of the interval that holds the value with 90 %.
+        Ends of the interval that contains the value with a probability of 90 %.
     unit
-        Unit of the numbers, if they have one.
+        Unit of the numbers, if any.
     is_determined
-        Whether the records tell it.
+        Whether the records determine it.
     belongs_to_block
-        Whether it leaves the interval on blocks of half the size, so that it is no value of the material.
+        Whether it leaves the interval on blocks of half the size, so that it is not a value of the material.
     depends_on_step
         Whether it leaves the interval at a finer time step.
     """
@@ -84,14 +84,14 @@ class Interval:
 
 @dataclasses.dataclass(frozen=True)
 class RecordCheck:
-    """Tests of whether the model can have made records.
+    """Tests of whether the model can reproduce records.
 
     Attributes
     ----------
     reasons
-        Sentences that say why it cannot; none if nothing speaks against it.
+        Sentences that say why it cannot; empty without evidence against it.
     clipped, misfit, comparison, closest
-        Numbers of the tests, as `CalibrationResults` has them.
+        Numbers of the tests, as in `CalibrationResults`.
     """
 
     reasons: list[str]
@@ -102,32 +102,31 @@ class RecordCheck:
 
     @property
     def is_refused(self) -> bool:
-        """Whether the model cannot have made the records: some 4 % of those that it has made are refused, too."""
+        """Whether the model cannot reproduce the records; about 4 % of records from the model itself are refused, too."""
         return bool(self.reasons)
 
 
 class Calibration:
-    """The keys of a case that are not known, and what is known of records.
+    """A calibration: unknown keys of a case, and known properties of records.
 
     Parameters
     ----------
     case
-        The case, a dictionary of its tables or the path of its file; or the path of a calibration file, with which nothing but overrides
-        is given.
+        The case, a dictionary of its tables or the path of its file; or the path of a calibration file, with `overrides` alone.
     overrides
-        Keys of the case that are set anew.
+        Keys of the case to change.
     unknowns
-        The keys that are looked for, each with its range.
+        The keys to estimate, each with its range.
     noise
         Standard deviation of the noise of a record, as a share of its mean friction.
     x, y
-        Columns of records: times or displacements, ``time_s`` unless given, and forces, or coefficients if their unit is 1, ``force_n``.
-        Names end in the unit, or `x_unit` and `y_unit` tell it.
+        Columns of records: times or displacements, by default ``time_s``; forces, or coefficients if their unit is 1, by default
+        ``force_n``. Names end in the unit, or `x_unit` and `y_unit` give it.
     instrument
-        What stands between friction and the record, as the table ``[instrument]``: load cell, filter, sampling, gain, offset and range.
-        Unknowns may be keys of it, such as ``"instrument.gain"``.
+        The measuring chain between friction and the record, as the table ``[instrument]``: load cell, filter, sampling, gain, offset
+        and range. Unknowns may be keys of it, such as ``"instrument.gain"``.
     keys
-        Further keys of the table ``[calibrate]``, such as ``against``, ``runs``, ``finer_runs`` or ``next``; ``from`` is ``from_``.
+        Other keys of the table ``[calibrate]``, such as ``against``, ``runs``, ``finer_runs`` or ``next``; ``from`` is ``from_``.
 
     Examples
     --------
@@ -141,12 +140,12 @@ class Calibration:
     >>> fit.intervals["drive.stiffness_star"].is_determined
     True
 
-    Whether the model makes such a record, without the rest:
+    Only the test of whether the model can reproduce such a record:
 
     >>> calibration.check(record, progress=False).is_refused
     False
 
-    How narrow the intervals of a record would be, before there is one:
+    Expected widths of the intervals, before there is a record:
 
     >>> calibration.plan(until="10 ns", progress=False)["as planned"]["drive.stiffness_star"] < 0.8
     True
@@ -165,7 +164,7 @@ class Calibration:
         name: str | None = None,
         **keys: Unpack[CalibrationKeys],
     ) -> None:
-        # Runs of records at the same times are made once.
+        # Records at the same times share their runs.
         self._training = TemporaryFolder()
         given = (unknowns, noise, x, y, instrument, name)
         if isinstance(case, (str, os.PathLike)) and all(one is None for one in given) and not keys:
@@ -174,7 +173,7 @@ class Calibration:
         if unknowns is None or noise is None:
             raise ValueError("give a case with `unknowns` and `noise`, or the path of a calibration file alone")
         records = {"x": x or "time_s", "y": y or "force_n"}
-        # `from` is a word of Python.
+        # `from` is a keyword of Python.
         others = {key.removesuffix("_"): value for key, value in keys.items()}
         tables: dict[str, Mapping[str, Any]] = {"calibrate": {"unknowns": unknowns, "noise": noise, **records, **others}}
         if instrument is not None:
@@ -202,23 +201,23 @@ class Calibration:
         records
             One record, or several in the order of ``records`` of the calibration.
         folder
-            A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront calibrate`; in memory unless
-            it is given.
+            A folder of results, byte for byte that of `slipfront calibrate`, in which a stopped call continues. By default results are in
+            memory.
         training
-            A folder that keeps training runs, which fits of other records at the same times then have in common. In memory, fits of this
-            object have them in common.
+            A folder of training runs, which fits of other records at the same times then share. In memory, fits of this object share
+            them.
         force
             Replace files of the results that were edited since they were written.
         progress
-            True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done and
-            of all.
+            True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of finished runs and of
+            all.
         threads
-            Runs at once, one per core unless given. Results do not depend on it.
+            Runs in parallel, by default one per core. Results do not depend on it.
 
         Raises
         ------
         CaseError
-            When a record cannot be read, or the ranges leave the bounds of the case.
+            When a record cannot be read, or the ranges exceed the bounds of the case.
 
         Warns
         -----
@@ -245,19 +244,19 @@ class Calibration:
         progress: bool | Callable[[int, int], object] | None = None,
         threads: int | None = None,
     ) -> RecordCheck:
-        """Test whether the model makes such records, as `fit` does, without blocks of half the size and next experiments.
+        """Test whether the model can reproduce records, as `fit` does, without blocks of half the size and next experiments.
 
-        Training runs are shared with those fits of this object that are in memory, or are kept in a folder.
+        Training runs are shared with fits of this object in memory, or are kept in a folder.
 
         Parameters
         ----------
         records, training, progress, threads
-            As of `fit`.
+            See `fit`.
 
         Raises
         ------
         CaseError
-            When a record cannot be read, or the ranges leave the bounds of the case.
+            When a record cannot be read, or the ranges exceed the bounds of the case.
 
         Warns
         -----
@@ -280,27 +279,27 @@ class Calibration:
         progress: bool | Callable[[int, int], object] | None = None,
         threads: int | None = None,
     ) -> dict[str, dict[str, float] | str]:
-        """Simulate records before any is measured, and those of longer, slower and faster experiments.
+        """Simulate records before any is measured, and records of longer, slower and faster experiments.
 
         Parameters
         ----------
         records
-            Records at whose times friction is simulated; their values do not count.
+            Records with the times at which friction is simulated; their values are ignored.
         until, values
-            End of the planned records with its unit, such as ``"20 s"``, and their number of values, in place of `records`.
+            End of the planned records with its unit, such as ``"20 s"``, and their number of values, instead of `records`.
         progress, threads
-            As of `fit`.
+            See `fit`.
 
         Returns
         -------
         dict
-            For each experiment the expected width of the interval of 90 % of every unknown, as a share of its range, from 0.8 on that of
-            an unknown that the records do not determine; or the reason why the experiment is not possible.
+            For each experiment the expected width of the 90 % interval of every unknown, as a share of its range. From 0.8 on, the
+            records do not determine the unknown. If the experiment is impossible, the reason.
 
         Raises
         ------
         CaseError
-            When a record cannot be read, or the ranges leave the bounds of the case.
+            When a record cannot be read, or the ranges exceed the bounds of the case.
         """
         if bool(records) == (until is not None):
             raise ValueError("give either records or `until`, the end of the planned ones, such as '20 s'")
@@ -323,7 +322,7 @@ class Calibration:
         threads: int | None,
         work: Callable[[list[Path], int, Callable[[int, int], object]], Found],
     ) -> Found:
-        """Do some work over records, whose files in a temporary folder no error names."""
+        """Do some work on records; errors do not name their files in a temporary folder."""
         shown, watch = parted(progress)
         paths = [self._path(record, temporary.path / f"record {number}.csv") for number, record in enumerate(records, 1)]
         with Bar(shown, None, "run", self.name) as bar:
@@ -340,17 +339,17 @@ class Calibration:
                 raise
 
     def _path(self, record: Record, path: Path) -> Path:
-        """Path of a record; a record that is given as columns is written there."""
+        """Path of a record; a record given as columns is written there."""
         if isinstance(record, (str, os.PathLike)):
             return Path(record)
         columns = dict(zip(self._native.columns, record, strict=True)) if isinstance(record, tuple) else record
         arrays = {str(name): np.asarray(column) for name, column in columns.items()}
         lengths = {len(array) for array in arrays.values() if array.ndim == 1}
         if len(lengths) != 1:
-            raise ValueError(f"the columns of a record are as long as each other: {', '.join(arrays)} have {sorted(lengths)} values")
+            raise ValueError(f"the columns of a record must have the same length: {', '.join(arrays)} have {sorted(lengths)} values")
         for name, array in arrays.items():
             if array.dtype.kind == "f" and name.startswith(tuple(self._native.columns)):
-                # What ends a record without numbers is passed over with a note, as in a file.
+                # Values at the end that are not numbers are skipped with a note, as in a file.
                 ends = np.flatnonzero(np.isfinite(array))
                 check_numbers(name, array[: ends[-1] + 1 if len(ends) else None])
         with path.open("w", newline="", encoding="utf-8") as file:
@@ -369,13 +368,13 @@ class CalibrationResults:
     Attributes
     ----------
     folder
-        Where it stands; None in memory.
+        Its path; None in memory.
     intervals
-        Of every key, what the records tell of it.
+        Estimate of every key.
     posterior
-        Of every key, values that are drawn from what the records tell of all keys together.
+        For every key, draws from the joint posterior.
     text
-        What was found, as the command prints it.
+        The results, as the command prints them.
     """
 
     def __init__(
@@ -389,16 +388,16 @@ class CalibrationResults:
         self.folder, self.posterior, self.text = folder, posterior, text
         self._found, self._bands = found, bands
         self.intervals = {
-            told["key"]: Interval(
-                median=told["median"],
-                low=told["interval"][0],
-                high=told["interval"][1],
-                unit=told["unit"],
-                is_determined=told["is_determined"],
-                belongs_to_block=told["belongs_to_block"],
-                depends_on_step=told["depends_on_step"],
+            estimate["key"]: Interval(
+                median=estimate["median"],
+                low=estimate["interval"][0],
+                high=estimate["interval"][1],
+                unit=estimate["unit"],
+                is_determined=estimate["is_determined"],
+                belongs_to_block=estimate["belongs_to_block"],
+                depends_on_step=estimate["depends_on_step"],
             )
-            for told in found["unknowns"]
+            for estimate in found["unknowns"]
         }
 
     @classmethod
@@ -406,13 +405,13 @@ class CalibrationResults:
         """Results in a folder, which is kept as `kept` or removed afterwards."""
         found = json.loads((folder / "calibration.json").read_bytes())
         points = np.loadtxt(folder / "posterior.csv", delimiter=",", skiprows=1, ndmin=2)
-        posterior = {told["key"]: points[:, number] for number, told in enumerate(found["unknowns"])}
+        posterior = {estimate["key"]: points[:, number] for number, estimate in enumerate(found["unknowns"])}
         bands = [read_table(folder / f"band-{number}.csv") for number in range(1, len(found["within_band_percent"]) + 1)]
         return cls(kept, found, posterior, (folder / "calibration.txt").read_text(encoding="utf-8"), bands)
 
     @property
     def unknowns(self) -> pd.DataFrame:
-        """A row for each key: its median, the ends of its interval, its unit, whether the records tell it, and whether it depends on the block and the step."""
+        """A row for each key: median, ends of the interval, unit, whether the records determine it, and whether it depends on block and step."""
         names = [field.name for field in dataclasses.fields(Interval)]
         columns = {name: [getattr(interval, name) for interval in self.intervals.values()] for name in names}
         return frame({"key": list(self.intervals), **columns})
@@ -434,42 +433,42 @@ class CalibrationResults:
 
     @property
     def clipped(self) -> dict[str, Any] | None:
-        """Values of a record that are exactly its largest, more of them than chance makes, as those of a sensor at the end of its range: number of
-        the record, from 0, number of the values, and their share. None where there are none, or `range` of the instrument is given."""
+        """Values equal to the largest of a record, more than by chance, as from a sensor at the end of its range: number of the record, from 0,
+        number of the values, and their share. None if there are none, or if `range` of the instrument is given."""
         found = self._found["clipped"]
         return None if found is None else dict(found)
 
     @property
     def misfit(self) -> dict[str, Any]:
-        """The records beside the training runs: an interval of their drift as a share of friction, their distance from the runs, and mean
-        friction in the second half of the record that has it farthest outside of the training, with the least and the largest of the training
-        runs. `comparison` and `closest` are the tests beside it."""
+        """The records compared with the training runs: an interval of their drift as a share of friction, and their distance from the runs.
+        Further numbers are the mean friction in the second half of a record, and its least and largest value in the training runs, for the
+        record with the mean farthest outside of them. `comparison` and `closest` are the other tests."""
         return dict(self._found["misfit"])
 
     @property
     def comparison(self) -> dict[str, Any]:
-        """The records beside runs of the calibrated model: `rank`, the share of the runs that are at least as far from the others as the
-        records are; `distance` of the records from the runs, over the one that half of the runs exceed; `differs_in`, what the records differ in
-        with the mean square of the differences in standard deviations of the runs, the largest first."""
+        """The records compared with runs of the calibrated model. `rank` is the share of the runs that are at least as far from the others as
+        the records are. `distance` is that of the records from the runs, over the one that half of the runs exceed. `differs_in` lists
+        differences of the records, with their mean square in standard deviations of the runs, the largest first."""
         return dict(self._found["comparison"])
 
     @property
     def closest(self) -> dict[str, Any] | None:
-        """Differences between the records and the curve of the model that lies closest to them; None where random coefficients make curves of
-        the same keys differ. `noise_ratio` is their root mean square over the noise, `correlation` that of neighbouring values, which is no
-        noise above `most_correlated`, and `share` the part of the records, from their beginning, over which they were compared."""
+        """Differences between the records and the closest curve of the model; None where random coefficients make curves of the same keys
+        differ. `noise_ratio` is their root mean square over the noise. `correlation` is that of neighbouring values; above `most_correlated`
+        they are not noise. `share` is the compared part of the records, from their beginning."""
         found = self._found["closest"]
         return None if found is None else dict(found)
 
     def plot(self, record: int = 1, ax: Axes | None = None) -> Axes:
-        """Draw a record over the band of the calibrated model, as wide as a column of a journal (85 mm): the picture `band-1.png` of the command.
+        """Draw a record over the band of the calibrated model, as wide as a journal column (85 mm): the picture `band-1.png` of the command.
 
         Parameters
         ----------
         record
             Number of the record, from 1.
         ax
-            Axes to draw in, in their own style; new ones unless given.
+            Axes to draw in, in their own style; by default new ones.
 
         Returns
         -------

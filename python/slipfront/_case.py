@@ -1,4 +1,4 @@
-"""Cases, which can be run."""
+"""Cases that can be run."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ Overrides: TypeAlias = Mapping[str, Any]
 class Case:
     """A case that can be run: valid, resolved, and never changed.
 
-    It is made of a dictionary, by `load` of a file or `parse` of a text, and by `replace` of another case. Values are those of a case
-    file: numbers, words, quantities such as ``"50 kPa"`` or of pint, lists and tables. Where a case names the file of a mask or of a
-    field, an array with two dimensions or a list of rows (from y = 0 on) may stand in its place.
+    It is made from a dictionary, by `load` from a file, by `parse` from a text, or by `replace` from another case. Values are those
+    of a case file: numbers, words, quantities such as ``"50 kPa"`` or of pint, lists and tables. An array with two dimensions or
+    a list of rows (from y = 0 on) may replace the file of a mask or of a field.
 
     Parameters
     ----------
     tables
-        Tables by their names; keys may have dots.
+        Tables by name; keys may have dots.
     overrides
-        Keys that are set anew.
+        Keys to change.
     name
-        What the case is called in messages and results.
+        Name of the case in messages and results.
 
     Raises
     ------
     CaseError
-        When the case cannot be run, in the sentence of the command, with `line` and `column`; one that is a `FileNotFoundError` too
-        when there is no such file.
+        When the case cannot be run, with the message of the command, `line` and `column`; for a missing file it is also a
+        `FileNotFoundError`.
 
     Examples
     --------
@@ -62,8 +62,8 @@ class Case:
     def __init__(self, tables: Mapping[str, Any], overrides: Overrides | None = None, *, name: str = "case") -> None:
         if not isinstance(tables, Mapping):
             raise TypeError(
-                f"a case is made of a dictionary of its tables, not of {type(tables).__name__}: "
-                "of a file by Case.load, of a text by Case.parse"
+                f"a case is made from a dictionary of its tables, not from {type(tables).__name__}: "
+                "from a file by Case.load, from a text by Case.parse"
             )
         arrays = _toml.Arrays()
         text, changed = _toml.document(tables, arrays), set_anew(overrides, arrays)
@@ -80,7 +80,7 @@ class Case:
 
     @functools.cached_property
     def _native(self) -> _slipfront.Case:
-        """The case of a pickle that was loaded where none can be made."""
+        """The case of a pickle that was loaded in a process that cannot make one."""
         return self._make()
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -93,9 +93,9 @@ class Case:
         Parameters
         ----------
         path
-            The case file; what it names stands relative to it.
+            The case file; paths in it are relative to its folder.
         overrides
-            Keys that are set anew.
+            Keys to change.
 
         Examples
         --------
@@ -119,13 +119,13 @@ class Case:
         Parameters
         ----------
         text
-            What stands in a case file.
+            The content of a case file.
         overrides
-            Keys that are set anew.
+            Keys to change.
         name
-            What the case is called in messages and results.
+            Name of the case in messages and results.
         folder
-            Where the files stand that it names: the working directory, unless it is given.
+            Folder of the files that it names, by default the working directory.
 
         Examples
         --------
@@ -165,12 +165,12 @@ class Case:
 
     @property
     def last_step(self) -> int:
-        """The last step of a run, unless it ends before."""
+        """The last step of a run, unless it ends earlier."""
         return self._native.last_step
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Dimensionless groups (Eq. 11), the time step, the textured area in %, and the units of what is dimensionless, in SI."""
+        """Dimensionless groups (Eq. 11), the time step, the textured area in %, and the units of dimensionless quantities, in SI."""
         return dict(self._native.numbers)
 
     @property
@@ -180,17 +180,17 @@ class Case:
 
     @property
     def textured(self) -> npt.NDArray[np.bool_]:
-        """Whether each block is textured, (N_y, N_x), the lowest row first. The array cannot be written to."""
+        """Whether each block is textured, (N_y, N_x), the lowest row first. The array is read-only."""
         return self._native.textured
 
     @property
     def mu_static(self) -> npt.NDArray[np.float64]:
-        """Static friction coefficient of every block, (N_y, N_x). The array cannot be written to."""
+        """Static friction coefficient of every block, (N_y, N_x). The array is read-only."""
         return self._native.mu_static
 
     @property
     def mu_kinetic(self) -> npt.NDArray[np.float64]:
-        """Kinetic friction coefficient of every block, (N_y, N_x). The array cannot be written to."""
+        """Kinetic friction coefficient of every block, (N_y, N_x). The array is read-only."""
         return self._native.mu_kinetic
 
     def to_toml(self) -> str:
@@ -198,7 +198,7 @@ class Case:
         return self._native.to_toml()
 
     def to_dict(self) -> dict[str, Any]:
-        """The resolved case as `Case` takes it, with every default, paths of files, and arrays as they are.
+        """The resolved case as a dictionary for `Case`, with every default, paths of files, and arrays.
 
         Examples
         --------
@@ -235,9 +235,9 @@ class Case:
         return found
 
     def _text(self) -> str:
-        """The resolved case with the paths of files or their names in memory, in place of the copies beside its results."""
+        """The resolved case with the paths of files or their names in memory, instead of the copies with its results."""
         text = self.to_toml()
-        # A file that has changed would make another case than this one in what is not replaced.
+        # A changed file would change keys that are not replaced.
         self._native.read_inputs()
         arrays = self._native.arrays
         for copy, original, _ in self._native.inputs:
@@ -276,15 +276,15 @@ def _unpickled(text: str, name: str, files: dict[str, bytes]) -> Case:
         text = text.replace(_toml.word(copy), _toml.word(_toml.IN_MEMORY + copy))
     case = Case.__new__(Case)
     vars(case)["_make"] = functools.partial(_slipfront.Case.parse, text, name, Path(), [], arrays)
-    # A process that was forked too late is told when it uses the case: it would die of an exception here, in
-    # the midst of reading the tasks of multiprocessing.Pool, which would wait for it for ever.
+    # A process that was forked too late gets the error when it uses the case. An exception here would end it while it
+    # reads the tasks of multiprocessing.Pool, which would wait for it for ever.
     with contextlib.suppress(_slipfront.ForkError):
         _ = case._native
     return case
 
 
 def _with_files(value: Any, files: Mapping[str, Any]) -> Any:
-    """A value of a resolved case with files in place of their names there, and without keys that have no value."""
+    """A value of a resolved case with files instead of their names there, and without keys that have no value."""
     if isinstance(value, list):
         return [_with_files(inner, files) for inner in value]
     if not isinstance(value, dict):
@@ -294,7 +294,7 @@ def _with_files(value: Any, files: Mapping[str, Any]) -> Any:
 
 
 def as_case(given: CaseLike, overrides: Overrides | None = None) -> Case:
-    """The case that is given, of its tables, or of its file, with other values of some keys."""
+    """A case, made from its tables or its file if necessary, with other values of some keys."""
     if isinstance(given, Case):
         return given if overrides is None else given.replace(overrides)
     return Case(given, overrides) if isinstance(given, Mapping) else Case.load(given, overrides)
@@ -310,7 +310,7 @@ def set_anew(overrides: Overrides | None, arrays: _toml.Arrays) -> list[str]:
         return []
     if not isinstance(overrides, Mapping):
         raise TypeError(
-            f"behind a case stand keys that are set anew, such as {{'drive.v_star': 0.05}}, not {overrides!r}: give other arguments by name"
+            f"keys to change are a dictionary such as {{'drive.v_star': 0.05}}, not {overrides!r}: give other arguments by name"
         )
     return [f"{key}={_toml.value(value, arrays, key)}" for key, value in _toml.by_key(overrides).items()]
 
@@ -319,4 +319,4 @@ CaseError = _slipfront.CaseError
 
 
 class MissingFileError(CaseError, FileNotFoundError):
-    """A case or a study whose file is not there; the native part raises it."""
+    """Error: the file of a case or a study is missing; the native part raises it."""

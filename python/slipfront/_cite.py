@@ -6,7 +6,7 @@ from ._slipfront import __version__
 
 
 def cite() -> str:
-    """Return the text to cite: the program and the paper whose model it implements.
+    """Return the text to cite: the program, and the paper with its model.
 
     Examples
     --------

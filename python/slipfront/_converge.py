@@ -30,7 +30,7 @@ class QuantityOnMeshes:
     values: tuple[float, ...]
     """Mean over the surfaces of each mesh."""
     scatter: tuple[float | None, ...]
-    """Half width of the interval of each mean, due to the scatter over surfaces; None for one surface."""
+    """Half-width of the interval of each mean, due to the scatter over surfaces; None for one surface."""
     order: float | None
     """Order of convergence, 1/2 to 2; None unless differences decrease."""
     mesh_error: float | None
@@ -43,12 +43,12 @@ class QuantityOnMeshes:
 
 
 class Convergence(StudyResults):
-    """Results of one slider on several meshes, and the tables of the study over them, whose points are the meshes.
+    """Results of one slider on several meshes, and the tables of a study with the meshes as points.
 
     Attributes
     ----------
     folder
-        Where they stand; None in memory.
+        Its path; None in memory.
     text
         The table and the sentences that the command prints.
     """
@@ -74,7 +74,7 @@ class Convergence(StudyResults):
 
     @property
     def block_sizes(self) -> list[str]:
-        """The edge of a block on every mesh, the coarsest first, as a case file has it."""
+        """The edge of a block on every mesh, the coarsest first, as in a case file."""
         return [str(mesh["block_size"]) for mesh in self._found["meshes"]]
 
     @property
@@ -84,7 +84,7 @@ class Convergence(StudyResults):
 
     @property
     def quantities(self) -> dict[str, QuantityOnMeshes]:
-        """The quantities of which all meshes have a value, by their names."""
+        """The quantities with a value on every mesh, by name."""
         # Each has a line that begins with its name.
         lines = (line.strip() for line in self.text.splitlines())
         sentences = {line.split(":")[0]: line for line in lines if ": " in line}
@@ -92,7 +92,7 @@ class Convergence(StudyResults):
 
     @property
     def lengths_of_a_block(self) -> list[str]:
-        """Lengths of the material that equal the length of a block: with any of them every mesh is another material, and no limit is claimed."""
+        """Material lengths that the block size replaces: with any, every mesh is another material, and no limit is claimed."""
         return list(self._found["lengths_of_a_block"])
 
     def to_dict(self) -> dict[str, Any]:
@@ -144,41 +144,42 @@ def converge(
     max_time: str | None = None,
     progress: Progress = None,
 ) -> Convergence:
-    """Run a case on several meshes: its results with their mesh errors.
+    """Run a case on several meshes, for results with their mesh errors.
 
-    The slider, its load, mount, damping, speed and duration stay what they are in metres, seconds and pascals; blocks have twice their
-    size, their own, half of it, and so on. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.
+    The slider, its load, mount, damping, speed and duration stay the same in metres, seconds and pascals. Blocks have twice their
+    size, their own, half of it, and so on. Ctrl-C ends the call with a `KeyboardInterrupt`, and an exception in `progress` ends it
+    with that exception.
 
     Parameters
     ----------
     case
         A case, a dictionary of its tables, or the path of its file.
     overrides
-        Keys of the case that are set anew.
+        Keys of the case to change.
     folder
-        A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront converge`; in memory unless it
-        is given.
+        A folder of results, byte for byte that of `slipfront converge`, in which a stopped call continues. By default results are in
+        memory.
     force
         Replace files of the results that were edited since they were written.
     levels
-        Number of meshes, 3 to 7, each of half the blocks' size of the one before; the second is that of the case.
+        Number of meshes, 3 to 7. Each has half the block size of the one before; the second has that of the case.
     replicates
-        Surfaces of each mesh: unless given, 5 if coefficients scatter, else 1.
+        Surfaces of each mesh, by default 5 if coefficients scatter, else 1.
     threads
-        Runs at once, one per core unless given. Results do not depend on it.
+        Runs in parallel, by default one per core. Results do not depend on it.
     max_memory
-        Nothing is run if all runs together need more memory, in GB.
+        Run nothing if all runs together need more memory, in GB.
     max_time
-        Nothing is run if the runs are estimated to take longer, such as ``"30min"`` or ``"2h"``.
+        Run nothing if the runs are estimated to take longer, such as ``"30min"`` or ``"2h"``.
     progress
-        As of `Study.run`.
+        See `Study.run`.
 
     Raises
     ------
     CaseError
-        When the case cannot be put on these meshes, or takes more than is allowed.
+        When the case cannot have these meshes, or exceeds a limit.
     RunError
-        When a run fails, of which the tables in the folder tell.
+        When a run fails; the tables in the folder say why.
 
     Warns
     -----
@@ -195,7 +196,7 @@ def converge(
     static_friction_star: 0.853 ± 0.021 (discretisation 0.021; order 2.0)
     """
     case = as_case(case, overrides)
-    # A file that has changed would make another case than this one.
+    # A changed file would make another case.
     case._native.read_inputs()
     native, arrays = case._native, _toml.Arrays(case._native.arrays)
     # Its runs read arrays from files.

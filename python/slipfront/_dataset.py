@@ -1,4 +1,4 @@
-"""Arrays as datasets of xarray, with the units of the CF conventions; where xarray is not installed, as dictionaries."""
+"""Arrays as datasets of xarray, with the units of the CF conventions; as dictionaries if xarray is not installed."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 _LONG_NAMES = {
     "time_star": "dimensionless time t*",
     "time_s": "time since the start of the drive",
-    "drive_time_star": "t* of the drive, which stands while blocks slide",
-    "drive_displacement_m": "how far the drive has moved",
+    "drive_time_star": "t* of the drive, which pauses while blocks slide",
+    "drive_displacement_m": "displacement of the drive",
     "mu_star": "friction coefficient over mu_s",
     "friction_coefficient": "friction coefficient F_T/F_N",
     "mu_lateral_star": "mu* across the drive",
@@ -47,7 +47,7 @@ def _attributes(name: str) -> dict[str, str]:
 
 
 def read_only(array: npt.ArrayLike) -> npt.NDArray[Any]:
-    """An array that cannot be written to, since all who ask for it get the same one."""
+    """A read-only array, because all callers get the same one."""
     shared = np.asarray(array)
     shared.flags.writeable = False
     return shared

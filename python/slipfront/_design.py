@@ -1,4 +1,4 @@
-"""From a wish to a texture: the search for the mask with the wished friction."""
+"""Designs: the search for a texture with the desired friction."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 
 @dataclasses.dataclass(frozen=True)
 class Least:
-    """The wish for the least value of a quantity: `static_friction`, `kinetic_friction` or `friction_drop`."""
+    """Target: the least value of a quantity, `static_friction`, `kinetic_friction` or `friction_drop`."""
 
     quantity: str
 
@@ -43,7 +43,7 @@ class Least:
 
 @dataclasses.dataclass(frozen=True)
 class Largest:
-    """The wish for the largest value of a quantity: `static_friction`, `kinetic_friction` or `friction_drop`."""
+    """Target: the largest value of a quantity, `static_friction`, `kinetic_friction` or `friction_drop`."""
 
     quantity: str
 
@@ -53,7 +53,7 @@ class Largest:
 
 @dataclasses.dataclass(frozen=True)
 class Value:
-    """The wish for a value of a quantity, or with ``_star`` behind its name for a share of mu_s; a force is a text such as ``"12 mN"``."""
+    """Target: a value of a quantity, or with ``_star`` after its name, a share of mu_s; a force is a text such as ``"12 mN"``."""
 
     value: float | str
     of: str = "static_friction"
@@ -63,31 +63,30 @@ class Value:
 
 
 Wish: TypeAlias = Least | Largest | Value | Mapping[str, Any]
-"""A wish, or the table `wish` of a design file."""
+"""A target, or the table `wish` of a design file."""
 
 DesignProgress: TypeAlias = bool | Callable[[int, int, float], object] | None
-"""True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done and of all, and
-of what the best draft gives."""
+"""True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of finished runs and of all, and of
+the value of the best draft."""
 
 
 class Design:
-    """A design: a wish, its limits, and the case in which textures are tried.
+    """A design: a target, limits, and the case in which textures are tried.
 
     Parameters
     ----------
     case
-        The case, a dictionary of its tables or the path of its file; or the path of a design file, with which nothing but overrides is
-        given.
+        The case, a dictionary of its tables or the path of its file; or the path of a design file, with `overrides` alone.
     overrides
-        Keys of the case that are set anew.
+        Keys of the case to change.
     wish
-        What the texture is to be good for.
+        The target of the texture.
     coverage
-        Least and largest share of the slider that is textured, %.
+        Least and largest textured share of the slider, %.
     keys
-        Further keys of the table ``[design]``, such as ``feature``, ``gap``, ``runs``, ``tolerance`` or ``forbidden``. Masks in textures
-        may be arrays. With ``unknowns``, such as ``{"texture.0.lambda": ("2 um", "6 um")}``, the search is for numbers of the
-        textures of the case.
+        Other keys of the table ``[design]``, such as ``feature``, ``gap``, ``runs``, ``tolerance`` or ``forbidden``. Masks in textures
+        may be arrays. With ``unknowns``, such as ``{"texture.0.lambda": ("2 um", "6 um")}``, the search is for numbers of the textures
+        of the case.
 
     Examples
     --------
@@ -97,7 +96,7 @@ class Design:
     >>> found.mask.shape, bool(found.coverage <= 15)
     ((16, 16), True)
 
-    Numbers of a shape in place of a mask:
+    Numbers of a shape instead of a mask:
 
     >>> disc = slider | {"texture": [{"shape": "cavity", "lambda": "2 um"}]}
     >>> wish = Value(0.7, "static_friction_star")
@@ -107,7 +106,7 @@ class Design:
     >>> list(found.unknowns), found.within_tolerance[1]
     (['texture.0.lambda'], 64)
 
-    Another search in place of its own: ask for legal textures, or draw some, and tell how good they are.
+    Another search algorithm: ask for legal textures, or draw some, and report their losses.
 
     >>> masks = design.ask(4)
     >>> losses = design.evaluate(masks)
@@ -131,8 +130,8 @@ class Design:
             return
         if wish is None or coverage is None:
             raise ValueError("give a case with `wish` and `coverage`, or the path of a design file alone")
-        wished = wish if isinstance(wish, Mapping) else wish._table()
-        tables = {"design": {"wish": wished, "coverage": coverage, **keys}}
+        target = wish if isinstance(wish, Mapping) else wish._table()
+        tables = {"design": {"wish": target, "coverage": coverage, **keys}}
         self._native, self._arrays = of_case(_slipfront.Design, case, overrides, tables, name, "design")
 
     @property
@@ -141,18 +140,18 @@ class Design:
         return self._native.name
 
     def illegal(self, mask: npt.ArrayLike) -> str | None:
-        """Reason for which a texture breaks a limit; None if it keeps all."""
+        """Reason why a texture breaks a limit; None if it breaks none."""
         return self._native.illegal(self._bytes(mask))
 
     def ask(self, n: int) -> list[Mask]:
-        """Up to `n` legal textures that were not asked for before; fewer where the limits leave few.
+        """Up to `n` legal textures that were not returned before; fewer if the limits leave few.
 
-        The search learns from the losses of every eight: more at once come from several starts beside each other, which suits many runs.
+        The search learns from the losses of every eight. More at once come from several parallel starts, which suits many runs.
         """
         return [self._mask(texture) for texture in self._native.ask(n)]
 
     def tell(self, masks: Iterable[npt.ArrayLike], losses: Sequence[float]) -> None:
-        """Tell the losses of textures, the less the better: of textures that were asked for, and of others."""
+        """Report the losses of textures, from `ask` or from any other source; smaller is better."""
         texts = [self._bytes(mask) for mask in masks]
         if len(texts) != len(losses):
             raise ValueError(f"there are {len(texts)} masks and {len(losses)} losses: give one for each")
@@ -165,28 +164,28 @@ class Design:
         """The best texture with a known loss, and its loss."""
         found = self._native.best()
         if found is None:
-            raise LookupError("nothing was told yet")
+            raise LookupError("no loss was reported yet")
         return self._mask(found[0]), found[1]
 
     def evaluate(
         self, masks: Iterable[npt.ArrayLike], *, surfaces: int = 1, coarse: bool = True, threads: int | None = None
     ) -> list[float]:
-        """Losses of textures, distances from the wish; infinite for one that breaks a limit, and with a warning that tells the reason for
-        one whose run diverges or never comes to rest.
+        """Losses of textures, distances from the target. A texture that breaks a limit has an infinite loss. So has one with a run that
+        diverges or never comes to rest, with a warning that gives the reason.
 
-        Of a wish for the least or the largest it is the ratio to the slider without texture, or that with its sign changed; of a value
-        the relative distance from it; of a curve the root of the mean square of the differences of mu*.
+        For the least value the loss is the ratio to the slider without texture, and for the largest minus that ratio. For a value it
+        is the relative distance from it, and for a curve the root mean square of the differences of mu*.
 
         Parameters
         ----------
         masks
             Textures.
         surfaces
-            Random surfaces of the search over which the mean is taken. The verdict of `run` is found on others.
+            Random surfaces of the search over which the mean is taken. The verdict of `run` uses others.
         coarse
-            Whether the step is coarse, as in the first stage of the search, or that of the case.
+            Whether the time step is coarse, as in the first stage of the search, or that of the case.
         threads
-            Runs at once, one per core unless given. Results do not depend on it.
+            Runs in parallel, by default one per core. Results do not depend on it.
         """
         texts = [self._bytes(mask) for mask in masks]
         legal = [text for text in texts if self._native.illegal(text) is None]
@@ -207,23 +206,23 @@ class Design:
         progress: DesignProgress = None,
         threads: int | None = None,
     ) -> DesignResults:
-        """Search for the texture, and judge it on surfaces that the search has not seen.
+        """Search for the texture, and test it on surfaces that the search did not use.
 
         Parameters
         ----------
         folder
-            A folder of results, in which a call that was stopped goes on, and which has the bytes of `slipfront design`; in memory unless
-            it is given.
+            A folder of results, byte for byte that of `slipfront design`, in which a stopped call continues. By default results are in
+            memory.
         runs
-            Runs of the search, in place of those of the design.
+            Runs of the search, instead of those of the design.
         time
-            Seconds after which the search is cut short; what is found then depends on the speed of the machine.
+            Seconds after which the search stops; results then depend on the speed of the machine.
         force
             Replace files of the results that were edited since they were written.
         progress
-            How far it is, as `DesignProgress` says.
+            See `DesignProgress`.
         threads
-            Runs at once, one per core unless given. Results do not depend on it.
+            Runs in parallel, by default one per core. Results do not depend on it.
 
         Raises
         ------
@@ -274,7 +273,7 @@ class DesignResults:
     Attributes
     ----------
     folder
-        Where it stands; None in memory.
+        Its path; None in memory.
     mask
         The texture, of shape (ny, nx), the smallest y first.
     text
@@ -307,12 +306,12 @@ class DesignResults:
 
     @property
     def unknowns(self) -> dict[str, float]:
-        """Numbers that were found, by their keys and in the units of their ranges; empty for a mask."""
+        """Numbers that were found, by key and in the units of their ranges; empty for a mask."""
         return {found["key"]: float(found["value"]) for found in self._found.get("unknowns", [])}
 
     @property
     def within_tolerance(self) -> tuple[int, int] | None:
-        """Parts within the tolerance of the wish, and all parts that were judged; None without a tolerance."""
+        """Parts within the tolerance of the target, and all tested parts; None without a tolerance."""
         found = self._found["design"].get("within_tolerance")
         return None if found is None else (int(found["within"]), int(found["parts"]))
 

@@ -51,13 +51,13 @@ def export(
         ``"ro-crate"``: write ``ro-crate-metadata.json``, with which a folder is a Process Run Crate; ``"bibtex"``: entries of each run, of
         slipfront and of the article of its model; ``"cff"``: a citation file, which needs an author.
     author
-        Who made the runs: a name, or ``"NAME <https://orcid.org/0000-0000-0000-0000>"``.
+        Author of the runs: a name, or ``"NAME <https://orcid.org/0000-0000-0000-0000>"``.
     licence
-        Licence of the results: an identifier of SPDX such as ``"CC-BY-4.0"``, or an address.
+        Licence of the results: an SPDX identifier such as ``"CC-BY-4.0"``, or an address.
     folder
-        A new folder for the crate, to which the runs are copied; unless given, the folder of the run itself.
+        A new folder for the crate, to which the runs are copied; by default the folder of the run itself.
     force
-        Replace a description that stands in the folder of the run.
+        Replace an existing description in the folder of the run.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def export(
     Raises
     ------
     FolderError
-        When a run has no folder or is not as it was written, or when something stands where the crate would.
+        When a run has no folder or was changed, or when a file is in the place of the crate.
     ValueError
         When an argument is missing, or belongs to another form.
 
@@ -107,5 +107,5 @@ def _folder_of(run: RunLike) -> Path:
     if not isinstance(run, Run):
         return Path(run)
     if run.folder is None:
-        raise _slipfront.FolderError(f"the run of the case {run.case.name} has no folder: save it before")
+        raise _slipfront.FolderError(f"the run of the case {run.case.name} has no folder: save it first")
     return run.folder

@@ -1,4 +1,4 @@
-"""Numbers in arrays of the user that are none."""
+"""Checks of the numbers in arrays of the user."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 
 def check_numbers(name: str, values: npt.ArrayLike, *, may_be_infinite: bool = False) -> None:
-    """Refuse an array with a value that is NaN or infinite, and tell where it stands.
+    """Refuse an array with a value that is NaN or infinite, and report its index.
 
     >>> check_numbers("mask", [[0, 1], [float("nan"), 1]])
     Traceback (most recent call last):

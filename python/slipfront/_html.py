@@ -28,7 +28,7 @@ def numbers(rows: Iterable[tuple[str, str]]) -> str:
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table with a header; of many rows the first."""
+    """A table with a header; of many rows, only the first."""
     shown = rows[:_MAX_ROWS]
     if len(rows) > len(shown):
         shown = [*shown, [f"{len(rows) - len(shown)} more", *[""] * (len(header) - 1)]]
@@ -45,7 +45,7 @@ def with_error(value: float, error: float | None) -> str:
 
 
 def picture(textured: npt.NDArray[np.bool_]) -> str:
-    """A texture, dark, seen from above with y upwards; of a large one every n-th block."""
+    """A texture, dark, seen from above with y upwards; of a large one, every n-th block."""
     stride = -(-max(textured.shape) // _MAX_PIXELS)
     grey = np.where(textured[::-stride, ::stride], 60, 225).astype(np.uint8)
     data = base64.b64encode(_png(grey)).decode("ascii")
@@ -64,7 +64,7 @@ def _png(grey: npt.NDArray[np.uint8]) -> bytes:
         return struct.pack(">I", len(data)) + checked + struct.pack(">I", zlib.crc32(checked))
 
     rows, columns = grey.shape
-    # Each row follows the number of its filter, which is none.
+    # Each row begins with the number of its filter, 0 for none.
     filtered: npt.NDArray[Any] = np.hstack([np.zeros((rows, 1), np.uint8), grey])
     head = chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 0, 0, 0, 0))
     return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress(filtered.tobytes())) + chunk(b"IEND", b"")

@@ -38,7 +38,7 @@ class UntilKeys(TypedDict, total=False):
 
 
 class StudyKeys(TypedDict, total=False):
-    """Keys of ``[study]`` beside `replicates`."""
+    """Keys of ``[study]`` other than `replicates`."""
 
     reference: Table
     keep: Literal["all", "none", "failed"]
@@ -53,7 +53,7 @@ class WritingKeys(TypedDict, total=False):
 
 
 class DesignKeys(TypedDict, total=False):
-    """Keys of ``[design]`` beside `wish` and `coverage`."""
+    """Keys of ``[design]`` other than `wish` and `coverage`."""
 
     tolerance: float | Amount
     feature: Amount
@@ -91,7 +91,7 @@ class InstrumentKeys(TypedDict, total=False):
 
 
 class CalibrationKeys(TypedDict, total=False):
-    """Keys of ``[calibrate]`` beside `unknowns`, `noise`, `x` and `y`; `from_` is ``from``, which is a word of Python."""
+    """Keys of ``[calibrate]`` other than `unknowns`, `noise`, `x` and `y`; `from_` is ``from``, a keyword of Python."""
 
     x_unit: str
     y_unit: str

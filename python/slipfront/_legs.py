@@ -1,4 +1,4 @@
-"""Legs of a simulation whose case was changed on its way."""
+"""Legs of a simulation between changes of its case."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ._case import Case
 
 @dataclasses.dataclass(frozen=True)
 class Past:
-    """The legs of a simulation before its present one.
+    """The legs of a simulation before its current one.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Past:
     counts
         The counts of all legs together, by the columns of the series that count from the start.
     origin
-        Where the drive stood at their end, block by block, m.
+        Position of the drive at their end, block by block, m.
     """
 
     legs: tuple[tuple[Case, int], ...] = ()
@@ -54,7 +54,7 @@ class Past:
         )
 
     def joined(self, curve: dict[str, Any]) -> dict[str, Any]:
-        """The curve of all legs and of this one, whose counts go on."""
+        """The curve of all legs and of this one, with counts that continue."""
         if not self.legs:
             return curve
         curves = [*self.curves, (curve, self._before())]
@@ -65,11 +65,11 @@ class Past:
         return {"step": self.steps, **self.counts}
 
     def _column(self, column: str, own: Mapping[str, Any], before: Mapping[str, float]) -> npt.NDArray[Any]:
-        """A column of a leg, whose counts go on from those before it: NaN if the leg has no such column, and it is no count."""
+        """A column of a leg, with counts that continue those before it; NaN if the leg lacks it and it is not a count."""
         if column in own:
             values = own[column]
         elif column == "drive_time_star":
-            # Of a drive that is not held it is the time itself.
+            # For a drive that is not held, it is the time itself.
             values = own["time_star"]
         else:
             values = np.full(len(own["step"]), 0.0 if column in self.counts else np.nan)

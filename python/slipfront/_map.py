@@ -16,30 +16,30 @@ def map(
 ) -> list[dict[str, Any]]:
     """Run cases, and return the numbers of each.
 
-    Every run has one thread, and ends where its `time.stop` says. No file is written. All cases are in memory until the last run ends, and
-    of each run its numbers alone: `run` gives the curve and the fields of one of them. Other threads of Python go on meanwhile. Ctrl-C ends
-    it with a `KeyboardInterrupt`.
+    Every run has one thread, and ends according to its `time.stop`. No file is written. All cases are in memory until the last run ends,
+    but only the numbers of each run: `run` gives the curve and the fields of a case. Other Python threads continue meanwhile. Ctrl-C ends
+    the call with a `KeyboardInterrupt`.
 
     Parameters
     ----------
     cases
         Cases, dictionaries, or paths of case files.
     overrides
-        Keys that are set anew in every case.
+        Keys to change in every case.
     threads
-        Runs at once, one per core unless given. Results do not depend on it.
+        Runs in parallel, by default one per core. Results do not depend on it.
 
     Returns
     -------
     list of dict
-        `Run.summary` of every case, in their order and to the last bit.
+        `Run.summary` of every case, in their order and bit-identical.
 
     Raises
     ------
     CaseError
-        When one of them is no case, before any is run; the message begins with its place in the list, from 0.
+        When one of them is invalid, before any is run; the message begins with its index in the list, from 0.
     RunError
-        When a run diverges; the message begins with the place of the first one that does.
+        When a run diverges; the message begins with the index of the first one that does.
 
     Examples
     --------
@@ -57,6 +57,6 @@ def _made(index: int, given: CaseLike, overrides: Overrides | None) -> Case:
     try:
         return as_case(given, overrides)
     except CaseError as error:
-        told = CaseError(f"case {index}: {error}")
-        told.line, told.column = error.line, error.column
-        raise told from error
+        located = CaseError(f"case {index}: {error}")
+        located.line, located.column = error.line, error.column
+        raise located from error

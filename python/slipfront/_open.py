@@ -24,14 +24,14 @@ Results = TypeVar("Results", Run, StudyResults)
 
 
 class InterruptedRun:
-    """The folder of a run that was stopped, to be read: `slipfront run --resume` goes on in it.
+    """The folder of a stopped run, for reading; `slipfront run --resume` continues it.
 
     Attributes
     ----------
     folder
-        Where it stands.
+        Its path.
     simulation
-        The run as it goes on from its latest checkpoint, in memory.
+        The run, continued in memory from its latest checkpoint.
     """
 
     def __init__(self, folder: Path, case: Case, simulation: Simulation) -> None:
@@ -50,7 +50,7 @@ class PaperResults:
     Attributes
     ----------
     folder
-        Where it stands.
+        Its path.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -80,28 +80,28 @@ def open_run(folder: str | os.PathLike[str], *, verify: bool = True) -> Run:
     Parameters
     ----------
     folder, verify
-        As of `open`.
+        See `open`.
 
     Raises
     ------
     FolderError
-        When it is not the folder of a complete run, or not as it was written.
+        When it is not the folder of a complete run, or was changed.
     """
     return _open_as(Run, "a complete run", folder, verify)
 
 
 def open_study(folder: str | os.PathLike[str], *, verify: bool = True) -> StudyResults:
-    """Read the folder of a study, or of `slipfront converge`, which is one over meshes.
+    """Read the folder of a study, or of `slipfront converge`, a study over meshes.
 
     Parameters
     ----------
     folder, verify
-        As of `open`.
+        See `open`.
 
     Raises
     ------
     FolderError
-        When it is not the folder of a study, or not as it was written.
+        When it is not the folder of a study, or was changed.
     """
     return _open_as(StudyResults, "a study", folder, verify)
 
@@ -110,30 +110,30 @@ def _open_as(kind: type[Results], called: str, folder: str | os.PathLike[str], v
     found = open(folder, verify=verify)
     if isinstance(found, kind):
         return found
-    remedy = ": go on with it by `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
+    remedy = ": continue it with `slipfront run --resume`" if isinstance(found, InterruptedRun) else ""
     raise _slipfront.FolderError(f"{folder} is not the folder of {called} but holds {found!r}{remedy}")
 
 
 def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | DesignResults | CalibrationResults | PaperResults:
-    """Read a folder of the command; where its kind is known, `open_run` and `open_study` tell a type checker.
+    """Read a folder of the command; for a known kind, `open_run` and `open_study` have its type.
 
     Parameters
     ----------
     folder
-        That of a run, of a run that was stopped, of a study, of `slipfront converge`, of `slipfront design`, of `slipfront calibrate`, or of
+        The folder of a run, of a stopped run, of a study, of `slipfront converge`, of `slipfront design`, of `slipfront calibrate`, or of
         `slipfront paper`.
     verify
-        Compare the folder with what was written. Of an interrupted run its checkpoint is always verified; figures of the paper are compared
-        with their checksums, and not drawn again.
+        Compare the folder with its checksums. The checkpoint of an interrupted run is always verified. Figures of the paper are not drawn
+        again.
 
     Returns
     -------
-    Run, InterruptedRun, StudyResults, DesignResults, CalibrationResults, PaperResults, or of a folder of `slipfront converge` a Convergence
+    Run, InterruptedRun, StudyResults, DesignResults, CalibrationResults, PaperResults, or Convergence for a folder of `slipfront converge`
 
     Raises
     ------
     FolderError
-        When it is none of these, or not as it was written; one that is a `FileNotFoundError` too when there is none.
+        When it is none of these, or was changed; for a missing folder it is also a `FileNotFoundError`.
     """
     path = Path(folder)
     if not path.exists():

@@ -1,4 +1,4 @@
-"""Packages that are used where they are installed."""
+"""Packages that are used if they are installed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def needed(package: str, whom: str) -> Any:
-    """A package without which something cannot be done."""
+    """A package that something needs."""
     try:
         return importlib.import_module(package)
     except ImportError as missing:
@@ -15,7 +15,7 @@ def needed(package: str, whom: str) -> Any:
 
 
 class Columns(dict[str, Any]):
-    """Columns by their names, where pandas or xarray would make a table or a dataset of them if it was installed."""
+    """Columns by name, instead of a table of pandas or a dataset of xarray, if that is not installed."""
 
     package = "xarray"
 
@@ -29,7 +29,7 @@ class Columns(dict[str, Any]):
 
 
 class PandasColumns(Columns):
-    """Columns in place of a table of pandas."""
+    """Columns instead of a table of pandas."""
 
     package = "pandas"
 

@@ -1,6 +1,6 @@
-"""Pickles under a checksum: damaged ones are refused.
+"""Pickles with a checksum: damaged ones are refused.
 
-A checksum finds damage, not malice: loading a pickle can run any program that stands in it, so those of strangers must never be loaded.
+A checksum finds damage, not malice. Loading a pickle can run any program in it, so never load pickles from strangers.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import slipfront._slipfront as _slipfront
 
 
 def sealed(make: Callable[..., object], *state: Any) -> tuple[Callable[[bytes], object], tuple[bytes]]:
-    """The result of `__reduce__` for an object that `make` makes from its state: one function, and all else in bytes with their checksum."""
+    """The result of `__reduce__` for an object that `make` makes from its state: one function, and the rest as bytes with their checksum."""
     contents = pickle.dumps((make, state), pickle.HIGHEST_PROTOCOL)
     return _unsealed, (_slipfront.with_checksum(contents),)
 
@@ -21,6 +21,6 @@ def sealed(make: Callable[..., object], *state: Any) -> tuple[Callable[[bytes], 
 def _unsealed(sealed: bytes) -> object:
     contents = _slipfront.verified(sealed)
     if contents is None:
-        raise pickle.UnpicklingError("this pickle of slipfront is damaged, its checksum is wrong: make it anew")
+        raise pickle.UnpicklingError("this pickle of slipfront is damaged, its checksum is wrong: create it again")
     make, state = pickle.loads(contents)
     return make(*state)

@@ -1,4 +1,4 @@
-"""Pictures of runs by matplotlib, in the sizes of a journal."""
+"""Pictures of runs by matplotlib, in journal sizes."""
 
 from __future__ import annotations
 
@@ -75,12 +75,12 @@ def _with_subscripts(title: str) -> str:
 
 
 def drawn(draw: Callable[[Axes], None], height: float, ax: Axes | None) -> Axes:
-    """Draw in these axes, or in new ones as wide as a column of a journal, of this height over their width."""
+    """Draw in these axes, or in new ones as wide as a journal column, with this ratio of height to width."""
     plt = needed("matplotlib.pyplot", "a picture")
     if ax is not None:
         draw(ax)
         return ax
-    # The first figure chooses the backend, which would be forgotten with the style.
+    # The first figure chooses the backend; within the style it would be lost.
     figure = plt.figure(figsize=(_WIDTH, height * _WIDTH), layout="compressed")
     with plt.rc_context(cast("Any", _STYLE)):
         new: Axes = figure.add_subplot()
@@ -94,7 +94,7 @@ def _friction(run: Drawn, label: str | None, ax: Axes) -> None:
     (line,) = ax.plot(time_star, mu_star, label=label or run.case.name)
     for found in run.summary["instants"]:
         ax.plot(found["time_star"], found["mu_star"], ".", ms=4, color=line.get_color())
-        # Beside the curve, which rises before the peak and falls after it.
+        # Next to the curve, which rises before the peak and falls after it.
         ax.annotate(found["instant"], (found["time_star"], found["mu_star"]), (3, 2), textcoords="offset points", fontsize=7)
     titles = _titles(run)
     ax.set_xlabel(titles["time_star"])
@@ -111,7 +111,7 @@ def _kymograph(run: Drawn, ax: Axes) -> None:
         raise ValueError("the folder of the run is of a version that kept no kymograph: run its case again")
     time_star, place = np.asarray(kymograph["time_star"]), np.asarray(kymograph["place"])
     unit, prefix = _unit(float(place[-1]))
-    # Each value stands for the time and the place around it.
+    # Each value represents the time and the place around it.
     (first, last), (start, end) = _ends(time_star), _ends(place)
     extent = (first, last, start / unit, end / unit)
     share, titles = np.asarray(kymograph["sliding_share"]).T, _titles(run)
@@ -137,8 +137,7 @@ def _map(run: Drawn, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
     unit, prefix = _unit(float(x[-1] + half))
     extent = (0.0, (x[-1] + half) / unit, 0.0, (y[-1] + half) / unit)
     image = ax.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest")
-    # What has no value shows the ground; over a texture that has values, its outline is drawn along the edges
-    # of the blocks.
+    # Blocks without a value show the background; a texture with values gets an outline along the edges of its blocks.
     ax.set_facecolor("0.8")
     textured = run._arrays["textured"]
     if np.isfinite(values[textured]).any():
@@ -178,7 +177,7 @@ def plot_points(
         known = ", ".join(dict.fromkeys(f'"{row["quantity"]}"' for row in rows))
         raise ValueError(f'the study has no quantity "{quantity}": it has {known}')
     if not axes:
-        raise ValueError("a study without an axis has one point: `points` tells its mean")
+        raise ValueError("a study without an axis has one point: `points` has its mean")
     columns = {column: place for place, axis in enumerate(axes) for column in axis["columns"]}
     if over is not None and over not in columns:
         raise ValueError(f'the study has no axis "{over}": it has {", ".join(columns)}')
@@ -194,11 +193,11 @@ def plot_points(
 
 
 Point: TypeAlias = tuple[int, dict[str, Any]]
-"""The level of a point on the axis that is drawn along, and its row."""
+"""The level of a point on the drawn axis, and its row."""
 
 
 def _curve_label(others: Sequence[Axis], levels: Sequence[int], points: Sequence[Point]) -> str:
-    """Name of a curve by its levels of the other axes: the level alone if there is one, for the legend has its title."""
+    """Name of a curve by its levels of the other axes; the level alone if there is one axis, since the legend has its title."""
     names = [axis["levels"][level] for axis, level in zip(others, levels, strict=True)]
     if len(others) != 1:
         return ", ".join(beside for *_, beside in names)
@@ -224,7 +223,7 @@ def _points(curves: Sequence[tuple[str, list[Point]]], axis: Axis, quantity: str
         # One run has no interval.
         errors = np.nan_to_num([mean - low, high - mean])
         ax.errorbar([place for place, _ in rows], mean, errors, marker="o", ms=3, capsize=2, label=label)
-    # What covers no block has no place on a logarithmic scale.
+    # A texture that covers no block has no place on a logarithmic scale.
     if axis["is_log"] and all(x(*point) > 0 for _, points in curves for point in points):
         ax.set_xscale("log")
     ax.set_xlabel(axis["drawn_title"])

@@ -12,23 +12,23 @@ Watch = TypeVar("Watch", bound=Callable[..., object])
 
 
 def parted(progress: bool | Watch | None) -> tuple[bool | None, Watch | None]:
-    """Whether a bar is shown, None where the terminal decides, and the user's function of the progress, if one was given."""
+    """Whether a bar is shown, None where the terminal decides, and the user's progress function, if any."""
     return (False, progress) if callable(progress) else (progress, None)
 
 
 class Bar:
-    """A bar of tqdm, or where that is not installed, a line of text.
+    """A bar of tqdm, or if that is not installed, a line of text.
 
     Parameters
     ----------
     shown
-        Whether there is one; None: in a terminal and in a notebook.
+        Whether it is shown; None: in a terminal or notebook.
     total
-        What is to be done, None if it is not known yet.
+        Total amount, None if it is not known yet.
     unit
-        What is counted.
+        Unit of the amount.
     title
-        What it is called.
+        Title of the bar.
     """
 
     def __init__(self, shown: bool | None, total: int | None, unit: str, title: str) -> None:
@@ -46,7 +46,7 @@ class Bar:
         except ImportError:
             self._text = True
         else:
-            # What is over within a second leaves no trace, in a notebook that is stored for example.
+            # A bar of less than a second leaves no trace, for example in a stored notebook.
             self._bar = tqdm(total=total, unit=unit, desc=title, unit_scale=unit == "step", leave=False, delay=1)
 
     def show(self, done: int, total: int | None = None, said: str = "") -> None:

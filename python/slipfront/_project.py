@@ -1,4 +1,4 @@
-"""Studies, designs and calibrations: a file, or a case and the tables beside it."""
+"""Studies, designs and calibrations: a file, or a case and further tables."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ def of_case(
     ending: str,
     further: Callable[[_toml.Arrays], str] = lambda _: "",
 ) -> tuple[Native, TemporaryFolder | None]:
-    """The project of a case and of tables, called `name`, or as its case with an ending; and the folder of arrays."""
+    """The project of a case and of tables, with the name `name` or that of its case and an ending; and the folder of arrays."""
     case = as_case(case, overrides)
     arrays = _toml.Arrays(case._native.arrays)
     text = _toml.document(tables, arrays) + further(arrays) + _as_base(case)
-    # Runs read arrays from files, which stand as long as there may be some to do.
+    # Runs read arrays from files, which exist as long as there may be runs.
     text, folder = arrays.on_disk(text)
     return kind.parse(text, name or f"{case.name}-{ending}", Path()), folder
 
 
 def _as_base(case: Case) -> str:
-    """The tables of a case as those of the base of a project, with files where they stand."""
+    """The tables of a case as the base of a project, with the paths of files."""
     lines = []
     for line in case._text().splitlines():
         if line.startswith("[["):

@@ -58,15 +58,15 @@ class FolderSource:
 
     def save(self, folder: Path, force: bool) -> None:
         if folder.resolve() == self._folder.resolve():
-            raise FolderError(f"{folder} is the folder that the run was read from: it stands there already")
+            raise FolderError(f"{folder} is the folder that the run was read from: it is there already")
         manifest = json.loads((self._folder / "manifest.json").read_bytes())
         _slipfront.make_ready(folder, force)
-        # The manifest is the last: without it a folder is not taken for one of a complete run.
+        # The manifest is the last: without it a folder does not count as a complete run.
         for name in [*(file["name"] for file in manifest["files"]), "manifest.json"]:
             copied = folder / name
             copied.parent.mkdir(parents=True, exist_ok=True)
             if copied.exists():
-                raise FolderError(f"{copied} is not of the run that stood there: move it away, or name another folder")
+                raise FolderError(f"{copied} does not belong to the earlier run there: move it away, or name another folder")
             shutil.copyfile(self._folder / name, copied)
         _slipfront.verify(folder)
 
@@ -74,9 +74,9 @@ class FolderSource:
 class Run:
     """Results of a run: numbers, curve, fields, the slip front.
 
-    Numbers with a star are dimensionless (Eq. 11). All that `summary.json` holds is in `summary`; the most asked for are attributes.
-    So is each table that only some runs have, such as `precursors`, the events of slip of a slider driven at an edge: a dataset as
-    `series` is, or None for a run without it.
+    Numbers with a star are dimensionless (Eq. 11). `summary` has the content of `summary.json`; the most common numbers are
+    attributes. So is each table that only some runs have, such as `precursors`, the events of slip of a slider driven at an edge. It
+    is a dataset like `series`, or None for a run without it.
 
     Examples
     --------
@@ -120,7 +120,7 @@ class Run:
 
     @property
     def kinetic_friction_star_uncertainty(self) -> float | None:
-        """Standard error of mu_k*; None where the window supports none (see `warnings`)."""
+        """Standard error of mu_k*; None if the window supports none (see `warnings`)."""
         return self._optional("kinetic_friction_star_uncertainty")
 
     @property
@@ -171,12 +171,12 @@ class Run:
 
     @property
     def front_speed_c_s(self) -> float | None:
-        """Median speed of the slip front over the speed of long shear waves; None where it passes less than half of the windows."""
+        """Median speed of the slip front over the speed of long shear waves; None if it passes less than half of the windows."""
         return self._optional("front_speed_c_s")
 
     @property
     def front_speed_m_s(self) -> float | None:
-        """Median speed of the slip front, m/s; None where it passes less than half of the windows."""
+        """Median speed of the slip front, m/s; None if it passes less than half of the windows."""
         return self._optional("front_speed_m_s")
 
     @property
@@ -221,7 +221,7 @@ class Run:
 
     @property
     def kymograph(self) -> xr.Dataset | None:
-        """The share of the blocks that slide against time and place along the drive; None in folders of old versions."""
+        """The share of sliding blocks over time and place along the drive; None in folders of old versions."""
         return None if self._kymograph is None else self._kymograph.copy()
 
     @property
@@ -231,16 +231,16 @@ class Run:
 
     @property
     def front(self) -> npt.NDArray[np.float64]:
-        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. The array cannot be written to."""
+        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid. The array is read-only."""
         return _dataset.read_only(self._arrays["first_slip_time_star"])
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write the folder of the run, with the bytes of every file that `slipfront run` writes.
+        """Write the folder of the run, byte for byte as `slipfront run` does.
 
         Parameters
         ----------
         folder
-            A new or empty one.
+            A new or empty folder.
         force
             Replace the files of an earlier run there, and nothing else.
 
@@ -257,7 +257,7 @@ class Run:
     def plot(
         self, kind: str = "friction", ax: Axes | None = None, *, instant: str | int = -1, label: str | None = None
     ) -> Axes:
-        """Draw the run with matplotlib, as wide as a column of a journal (85 mm).
+        """Draw the run with matplotlib, as wide as a journal column (85 mm).
 
         Parameters
         ----------
@@ -265,7 +265,7 @@ class Run:
             ``"friction"``: mu* over t* with the instants A to F; ``"front"``: when each block first slid; ``"kymograph"``: the share of
             the blocks that slide over t* and along the drive; or the name of a field, such as ``"traction"``.
         ax
-            Axes to draw in, in their own style; new ones unless given.
+            Axes to draw in, in their own style; by default new ones.
         instant
             The snapshot of a field: a letter, or its number.
         label
@@ -289,21 +289,20 @@ class Run:
         return [*super().__dir__(), *self._tables]
 
     def __repr__(self) -> str:
-        return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._told())})"
+        return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._main_values())})"
 
     def _repr_html_(self) -> str:
-        rows = [*self._told(), *(("warning", warning) for warning in self.warnings)]
+        rows = [*self._main_values(), *(("warning", warning) for warning in self.warnings)]
         return f"<b>{html.escape(self._case.name)}</b>{picture(self.texture)}{numbers(rows)}"
 
-    def _told(self) -> list[tuple[str, str]]:
+    def _main_values(self) -> list[tuple[str, str]]:
         kinetic, error = self.kinetic_friction_star, self.kinetic_friction_star_uncertainty
-        told = [("mu_s*", f"{self.static_friction_star:.4g}")]
+        values = [("mu_s*", f"{self.static_friction_star:.4g}")]
         if kinetic is not None:
-            told.append(("mu_k*", with_error(kinetic, error)))
-        return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
+            values.append(("mu_k*", with_error(kinetic, error)))
+        return [*values, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
 
-    # What was asked for once is kept. It is handed out in new datasets, whose arrays are shared and cannot be
-    # written to.
+    # Results are kept after the first use. Each caller gets new datasets with shared, read-only arrays.
 
     @functools.cached_property
     def _summary(self) -> str:
@@ -350,7 +349,7 @@ class _Unsaved(FolderSource):
     """A run that was pickled: its numbers without its files."""
 
     def save(self, folder: Path, force: bool) -> None:
-        raise FolderError("a run that was pickled has no files: save it before, or run its case again")
+        raise FolderError("a run that was pickled has no files: save it first, or run its case again")
 
 
 def _unpickled(case: Case, read: dict[str, Any]) -> Run:

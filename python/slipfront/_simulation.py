@@ -37,19 +37,20 @@ def run(
 ) -> Run:
     """Run a case to its end.
 
-    Other threads of Python go on meanwhile. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.
+    Other Python threads continue meanwhile. Ctrl-C ends the run with a `KeyboardInterrupt`, and an exception in `progress` ends it with that
+    exception.
 
     Parameters
     ----------
     case
         A case, a dictionary of its tables, or the path of its file.
     overrides
-        Keys of the case that are set anew.
+        Keys of the case to change.
     progress
         True for a bar, False for none, None (default) for a bar in terminals and notebooks; or a function that is called with
         the simulation every 50 ms.
     threads
-        At most so many, one per core unless given. Results do not depend on it; a small slider takes one.
+        Largest number of threads, by default one per core. Results do not depend on it; a small slider uses one.
 
     Returns
     -------
@@ -72,14 +73,14 @@ def run(
 
 
 class _Alone:
-    """The native simulation, within `with` for one thread at a time.
+    """The native simulation; `with` gives it to one thread at a time.
 
-    A class and no generator: a step of a small slider takes a few times as long as entering it.
+    It is a class and not a generator, because a step of a small slider takes only a few times as long as entering it.
 
     Parameters
     ----------
     native
-        None of one that was unpickled in a process that cannot use it.
+        None if it was unpickled in a process that cannot use it.
     """
 
     def __init__(self, native: _slipfront.Simulation | None) -> None:
@@ -87,7 +88,7 @@ class _Alone:
         self._lock = threading.Lock()
 
     def __enter__(self) -> _slipfront.Simulation:
-        # The lock of a process that was forked may be one that nobody there holds.
+        # The lock of a forked process may be locked although no thread there holds it.
         _slipfront.check_process()
         assert self._native is not None
         if not self._lock.acquire(blocking=False):
@@ -103,17 +104,17 @@ class _Alone:
 class Simulation:
     """A run in progress, from rest.
 
-    Lengths are in m, velocities in m/s, arrays over blocks have the shape (N_y, N_x) with the lowest row first. It may be copied and
-    pickled: the copy goes on with the same bits. It belongs to one thread at a time.
+    Lengths are in m, velocities in m/s, arrays over blocks have the shape (N_y, N_x) with the lowest row first. It can be copied and
+    pickled; the copy continues bit-identically. It belongs to one thread at a time.
 
     Parameters
     ----------
     case
         A case, a dictionary of its tables, or the path of its file.
     overrides
-        Keys of the case that are set anew.
+        Keys of the case to change.
     threads
-        At most so many, one per core unless given.
+        Largest number of threads, by default one per core.
 
     Examples
     --------
@@ -140,17 +141,17 @@ class Simulation:
 
     @property
     def case(self) -> Case:
-        """The case that is run, since the last change."""
+        """The case since the last change."""
         return self._case
 
     @property
     def ended(self) -> bool:
-        """Whether the run ends here by its case; it goes on after a change, for example of ``time.duration_star``."""
+        """Whether the run ends here by its case; it continues after a change, for example of ``time.duration_star``."""
         return self._ended is not None
 
     @property
     def steps(self) -> int:
-        """Steps since the start, those before changes included."""
+        """Steps since the start, including those before changes."""
         with self._alone as native:
             return self._past.steps + native.step
 
@@ -186,14 +187,14 @@ class Simulation:
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
-        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). The array cannot be written to."""
+        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x). The array is read-only."""
         with self._alone as native:
             moved, _ = native.motion()
         return _dataset.read_only(moved * self._case.numbers["displacement_unit_m"] + self._past.origin)
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
-        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). The array cannot be written to."""
+        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x). The array is read-only."""
         with self._alone as native:
             _, velocity = native.motion()
         return _dataset.read_only(velocity * self._case.numbers["speed_unit_m_s"])
@@ -216,8 +217,9 @@ class Simulation:
     def series(self) -> xr.Dataset:
         """The curve since the start, as `Run.series`.
 
-        After a `change` every column goes on: steps, times, the path of the drive, work and losses add up over the legs; all else,
-        stored energies included, is of its instant under the case of its leg. A column that a leg lacks is NaN there.
+        After a `change` every column continues. Steps, times, the path of the drive, work and losses are summed over the legs. All
+        other columns, stored energies included, are of their instant under the case of their leg. A column that a leg lacks is NaN
+        there.
         """
         return _dataset.table(self._past.joined(self._columns()))
 
@@ -226,7 +228,7 @@ class Simulation:
             return native.series()
 
     def step(self, n: int = 1) -> int:
-        """Take n steps, or fewer if the run ends before.
+        """Take n steps, or fewer if the run ends earlier.
 
         Returns
         -------
@@ -257,11 +259,11 @@ class Simulation:
         Parameters
         ----------
         condition
-            A function of this simulation, asked every `every` steps.
+            A function of this simulation, called every `every` steps.
         time_star
             t* since the start to stop at, rounded up to a step.
         every
-            Steps between two looks of `condition` and `observer`.
+            Steps between two calls of `condition` and `observer`.
         observer
             A function that is called with this simulation, at the start and every `every` steps.
 
@@ -281,7 +283,7 @@ class Simulation:
         if math.isnan(time_star):
             raise ValueError("t* is a number, not NaN")
         if time_star < (now := self.time_star):
-            raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start")
+            raise ValueError(f"t* = {time_star:g} has passed: it is {now:g} now")
         in_leg = (time_star - self._past.counted("time_star")) / self._case.numbers["dt_star"]
         last = math.ceil(in_leg - 1e-9) if in_leg < math.inf else _ALL
         while True:
@@ -298,20 +300,20 @@ class Simulation:
             self.step(min(every, left))
 
     def run(self, progress: Progress = None) -> Run:
-        """Run to the end and return the results; the simulation is then used up.
+        """Run to the end and return the results; the simulation cannot be used afterwards.
 
         Parameters
         ----------
         progress
-            As of `slipfront.run`.
+            See `slipfront.run`.
         """
         if self._past.legs:
             raise RuntimeError(
-                "a run that was changed on its way has no results of one case: read `series` and the fields, and keep `recipe()`"
+                "a run with changes has no results of one case: read `series` and the fields, and keep `recipe()`"
             )
         shown, watch = parted(progress)
         last = self._case.last_step
-        # A short run is over before a bar is worth its while.
+        # A short run ends before a bar would be useful.
         with self._alone as native:
             if self._ended is None:
                 _, self._ended = native.advance(_ALL)
@@ -327,20 +329,20 @@ class Simulation:
             return Run(self._case, native.record(self._ended))
 
     def change(self, overrides: Overrides) -> None:
-        """Go on under another case from here: a new leg of the same slider.
+        """Continue under another case from here: a new leg of the same slider.
 
-        Displacements in m and velocities in m/s are kept; the drive goes on from where it stands. Scales, load per block and what is
-        stuck follow the new case, whose durations and programs count from here; `steps`, `time_s`, `time_star` and `series` go on.
+        Displacements in m, velocities in m/s and the position of the drive are kept. Scales, load and state (stuck or not) of each
+        block are of the new case; its durations and programs count from here. `steps`, `time_s`, `time_star` and `series` continue.
 
         Parameters
         ----------
         overrides
-            Keys of the case that are set anew: speed, direction, load, texture, coefficients, duration.
+            Keys of the case to change: speed, direction, load, texture, coefficients, duration.
 
         Raises
         ------
         CaseError
-            When that is no case, or one with other blocks, or one whose contacts remember more than they show.
+            When the new case is invalid, has other blocks, or has contacts with a further memory, such as an age.
 
         Examples
         --------
@@ -371,20 +373,20 @@ class Simulation:
     def recipe(self) -> list[tuple[str, int]]:
         """Recipe of this state: the resolved case of every leg, and the number of its steps.
 
-        The last leg is the present one. Every change takes the step that was begun to its end.
+        The last leg is the current one. Every change completes the current step.
         """
         with self._alone as native:
             now = native.step
         return [*((case.to_toml(), steps) for case, steps in self._past.legs), (self._case.to_toml(), now)]
 
     def checkpoint(self) -> bytes:
-        """State from which `resume` goes on with the same bits."""
+        """State from which `resume` continues bit-identically."""
         with self._alone as native:
             return native.checkpoint()
 
     @classmethod
     def resume(cls, case: CaseLike, checkpoint: bytes, *, threads: int | None = None) -> Simulation:
-        """The simulation of a case that goes on from a checkpoint.
+        """The simulation of a case, continued from a checkpoint.
 
         Raises
         ------
@@ -417,7 +419,7 @@ class Simulation:
 
 def _unpickled(case: Case, checkpoint: bytes, threads: int, ended: str | None, past: Past) -> Simulation:
     native = None
-    # A process that was forked too late is told when it uses the simulation, as with a case.
+    # A process that was forked too late gets the error when it uses the simulation, as with a case.
     with contextlib.suppress(_slipfront.ForkError):
         native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
     simulation = Simulation._of(case, native, threads)

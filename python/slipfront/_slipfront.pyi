@@ -1,4 +1,4 @@
-"""The native part: its public form is given by the files beside it."""
+"""The native part; the Python files next to it give it its public form."""
 
 from collections.abc import Callable
 from pathlib import Path

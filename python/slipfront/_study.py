@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 Quantities: TypeAlias = Mapping[str, Callable[[Run], float]]
-"""Names of the user's own quantities, and the functions of a run that give them."""
+"""Names of the user's own quantities, and the functions of a run that compute them."""
 
 Progress: TypeAlias = bool | Callable[[int, int, int], object] | None
-"""True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that are done, of all, and of
+"""True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of finished runs, of all, and of
 failed ones."""
 
 Look: TypeAlias = Callable[[_slipfront.Case, _slipfront.RunData, tuple[int, int, bool]], list[float]]
@@ -50,17 +50,17 @@ class Study:
     Parameters
     ----------
     case
-        The case that is varied, a dictionary of its tables or the path of its file; or the path of a study file, with which nothing but
-        overrides is given.
+        The case that is varied, a dictionary of its tables or the path of its file; or the path of a study file, with `overrides`
+        alone.
     overrides
-        Keys of the case that are set anew.
+        Keys of the case to change.
     axes
-        Keys and the lists of their values; all combinations are run, the last axis fastest. Values as in `Case`. Names that are not keys
-        have dictionaries: the names of variants, and the keys that each of them sets.
+        Keys with lists of their values, as in `Case`; all combinations are run, the last axis fastest. A name that is not a key has a
+        dictionary: the names of variants, and the keys that each of them sets.
     replicates
-        Random surfaces per point, 1 unless given.
+        Random surfaces per point, by default 1.
     keys
-        Further keys of the table ``[study]`` of a study file: ``reference``, ``keep`` and ``until``.
+        Other keys of the table ``[study]`` of a study file: ``reference``, ``keep`` and ``until``.
 
     Examples
     --------
@@ -100,7 +100,7 @@ class Study:
 
     @property
     def n_points(self) -> int:
-        """Combinations of levels."""
+        """Number of combinations of levels."""
         return self._native.n_points
 
     @property
@@ -126,7 +126,7 @@ class Study:
         replicate
             The random surface, from 0.
         reference
-            The reference that the reduction of the point is measured against.
+            Whether it is the reference for the reduction of the point.
         """
         if not 0 <= point < self.n_points:
             raise IndexError(f"the study has {self.n_points} points, counted from 0, and none of number {point}")
@@ -148,16 +148,16 @@ class Study:
         Parameters
         ----------
         folder
-            A folder of results, in which a study that was stopped goes on; tables alone, in memory, unless it is given.
+            A folder of results, in which a stopped study continues. By default only tables are kept, in memory.
         force
             Replace files of the results that were edited since they were written.
         progress
-            True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that
-            are done, of all, and of failed ones.
+            True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of finished
+            runs, of all, and of failed ones.
         threads
-            Runs at once, one per core unless given.
+            Runs in parallel, by default one per core.
         quantities
-            Own quantities: functions of a run, whose values are columns of `StudyResults.runs` and, with their statistics, rows
+            Your own quantities: functions of a run. Their values are columns of `StudyResults.runs`, and their statistics are rows
             of `points`. They are called in the threads of the runs.
 
         Warns
@@ -183,7 +183,7 @@ class Study:
             return [float(quantity(result)) for quantity in own.values()]
 
         results, values, why = executed(self._native, StudyResults, folder, force, progress, threads, look if own else None)
-        # Own quantities are an answer, whatever else there is.
+        # Own quantities are a result, even without the main one.
         if why is not None and not own:
             warnings.warn(why, stacklevel=2)
         if own:
@@ -191,7 +191,7 @@ class Study:
         return results
 
     def _add(self, results: StudyResults, own: dict[str, Callable[[Run], float]], values: dict[Any, list[float]]) -> None:
-        """Add own quantities to the runs; those of runs of earlier calls are run again."""
+        """Add own quantities to the runs; runs of earlier calls are repeated for them."""
         rows = results._runs
         for point, replicate, role, status in zip(rows["point"], rows["replicate"], rows["role"], rows["status"], strict=True):
             place = (int(point), int(replicate), role == "reference")
@@ -206,7 +206,7 @@ class Study:
             of_point = [k for k, (p, r) in enumerate(zip(rows["point"], rows["role"], strict=True)) if (p, r) == (point, "point")]
             for name in own:
                 found = dict(self._native.statistics([rows[name][k] for k in of_point if not np.isnan(rows[name][k])]))
-                # Beside an axis of coverages stands what is meshed.
+                # Next to an axis of coverages is the meshed coverage.
                 beside = [*axes, "texture_percent"]
                 row = {"point": point, "quantity": name, **{column: rows[column][of_point[0]] for column in beside}, **found}
                 for column, cells in points.items():
@@ -223,7 +223,7 @@ class StudyResults:
     Attributes
     ----------
     folder
-        Where they stand; None of a study in memory.
+        Its path; None for a study in memory.
     """
 
     def __init__(
@@ -268,16 +268,16 @@ class StudyResults:
         return None if table is None else frame(table)
 
     def plot(self, quantity: str = "static_friction_star", ax: Axes | None = None, *, over: str | None = None) -> Axes:
-        """Draw the means of a quantity with their confidence intervals over an axis of the study, as wide as a column of a journal (85 mm).
+        """Draw the means of a quantity with their confidence intervals over an axis of the study, as wide as a journal column (85 mm).
 
         Parameters
         ----------
         quantity
-            One of the column ``quantity`` of `points`.
+            A quantity of the column ``quantity`` of `points`.
         ax
-            Axes to draw in, in their own style; new ones unless given.
+            Axes to draw in, in their own style; by default new ones.
         over
-            The axis, as its column in `points` is called: the first unless given. Each combination of the others is a curve.
+            Column of the axis in `points`, by default that of the first. Each combination of the others is a curve.
 
         Returns
         -------
@@ -288,7 +288,7 @@ class StudyResults:
         return plot_points(self._tables["points"], self._axes, quantity, ax, over)
 
     def to_xarray(self) -> xr.Dataset:
-        """The numbers of all runs over the axes of the study and the replicates, NaN where a run has none; those of references are left out.
+        """The numbers of all runs over the axes of the study and the replicates, NaN where a run has none; references are omitted.
 
         Examples
         --------
@@ -301,8 +301,8 @@ class StudyResults:
         return grid(self._runs, self._axes)
 
     def _repr_html_(self) -> str:
-        told = f"<b>{len(self._runs['point'])} runs, {len(self.failures)} failed</b>"
-        return told + table(*means_by_point(self._tables["points"], self._axes))
+        counts = f"<b>{len(self._runs['point'])} runs, {len(self.failures)} failed</b>"
+        return counts + table(*means_by_point(self._tables["points"], self._axes))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return sealed(type(self), self.folder, self._tables, self._axes, self._failures)
@@ -326,8 +326,8 @@ def executed(
     threads: int | None,
     look: Look | None = None,
 ) -> tuple[Results, dict[tuple[int, int, bool], list[float]], str | None]:
-    """Make the runs that the folder of a study lacks, a temporary one unless it is given; return its results, the values of own quantities by run,
-    and why no run has a value of the main quantity, if none has."""
+    """Make the runs that the folder of a study lacks, by default a temporary one. Return its results, the values of own quantities by run, and why
+    no run has a value of the main quantity, if none has."""
     shown, watch = parted(progress)
     temporary = TemporaryFolder()
     with Bar(shown, None, "run", native.name) as bar:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def read_table(path: Path) -> dict[str, list[Any]]:
-    """The columns of a table: numbers where all cells are numbers or empty, which are NaN."""
+    """The columns of a table: numbers if all cells are numbers or empty (NaN)."""
     with path.open(newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     columns: dict[str, list[Any]] = {}
@@ -32,7 +32,7 @@ def read_table(path: Path) -> dict[str, list[Any]]:
 
 
 def frame(table: dict[str, list[Any]]) -> pd.DataFrame:
-    """A table of pandas, or where it is not installed, a dictionary of arrays."""
+    """A table of pandas, or if that is not installed, a dictionary of arrays."""
     try:
         import pandas
     except ImportError:

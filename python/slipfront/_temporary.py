@@ -10,7 +10,7 @@ import slipfront._slipfront as _slipfront
 
 
 def _remove(path: Path, parent: _slipfront.TemporaryParent, process: int) -> None:
-    """Remove a folder, unless this is a fork of the process that made it; the parent stands until then."""
+    """Remove a folder, unless this is a fork of the process that made it; the parent exists until then."""
     if os.getpid() == process:
         shutil.rmtree(path, ignore_errors=True)
 
@@ -18,7 +18,7 @@ def _remove(path: Path, parent: _slipfront.TemporaryParent, process: int) -> Non
 class TemporaryFolder:
     """A new folder that is removed when nothing refers to this object any more.
 
-    If the process is killed before, the next one that makes such a folder removes it.
+    If the process is killed earlier, the next one that makes such a folder removes it.
     """
 
     def __init__(self) -> None:

@@ -23,21 +23,21 @@ _IN_QUOTES = json.JSONEncoder(ensure_ascii=False).encode
 
 
 IN_MEMORY = _slipfront.IN_MEMORY
-"""Beginning of the names of files in memory; a number and the key that was given the array follow."""
+"""Beginning of the names of files in memory; a number and the key of the array follow."""
 
 
 class Arrays:
-    """Arrays that are handed over in place of the name of a file: files of numpy in memory.
+    """Arrays instead of the name of a file: files of numpy in memory.
 
     Parameters
     ----------
     others
-        Files in memory that may be named beside them.
+        Other files in memory that may be named.
 
     Attributes
     ----------
     contents
-        All of them, by their names.
+        All files, by name.
     """
 
     def __init__(self, others: Mapping[str, bytes] | None = None) -> None:
@@ -46,9 +46,9 @@ class Arrays:
         self._folder = next(folder for folder in folders if not any(name.startswith(folder) for name in self.contents))
 
     def add(self, array: np.ndarray[Any, Any], of: str) -> str:
-        """Add the array that a key is given and return the name of its file, which errors replace by the key."""
+        """Add the array of a key and return the name of its file, which errors replace with the key."""
         if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
-            # What is masked is not known: NaN, which the case refuses where it cannot do without.
+            # Masked values are unknown: NaN, which the case refuses where it needs a number.
             array = np.ma.filled(array.astype(np.float64), np.nan)
         stem = self._folder + _NOT_IN_NAMES.sub("_", of or "array")
         name = f"{stem}.npy"
@@ -59,7 +59,7 @@ class Arrays:
         return name
 
     def on_disk(self, text: str) -> tuple[str, TemporaryFolder | None]:
-        """A text with files on the disk in place of the arrays, and the folder that holds these; none if there is no array."""
+        """A text with files on the disk instead of the arrays, and their folder; None if there is no array."""
         if not self.contents:
             return text, None
         folder = TemporaryFolder()
@@ -72,7 +72,7 @@ class Arrays:
 
 
 def npy(array: np.ndarray[Any, Any]) -> bytes:
-    """The file in which `numpy.save` writes an array row by row.
+    """The file that `numpy.save` writes for an array, row by row.
 
     >>> file = io.BytesIO()
     >>> np.save(file, np.eye(3))
@@ -83,8 +83,8 @@ def npy(array: np.ndarray[Any, Any]) -> bytes:
     header = _HEADERS.get(kind)
     if header is None:
         file = io.BytesIO()
-        told = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
-        np.lib.format.write_array_header_1_0(file, told)
+        described = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False, "shape": array.shape}
+        np.lib.format.write_array_header_1_0(file, described)
         header = file.getvalue()
         if len(_HEADERS) == _MOST_HEADERS:
             _HEADERS.clear()
@@ -92,8 +92,8 @@ def npy(array: np.ndarray[Any, Any]) -> bytes:
     return header + array.tobytes()
 
 
-# Searches make thousands of cases with arrays of one kind, and numpy writes a header in the time in which a
-# small lattice is set up.
+# Searches make thousands of cases with arrays of one kind, and numpy takes as long to write a header as it takes to
+# set up a small lattice.
 _HEADERS: dict[tuple[np.dtype[Any], tuple[int, ...]], bytes] = {}
 _MOST_HEADERS = 64
 
@@ -102,13 +102,13 @@ _NAMES_OF_FILES = frozenset(("file", "displacement_x", "displacement_y", "veloci
 
 
 def names_file(key: str) -> bool:
-    """Whether the value of a key is the name of a file, in whose place an array may stand."""
+    """Whether the value of a key is the name of a file, which an array may replace."""
     name = key.rpartition(".")[2]
     return name in _NAMES_OF_FILES or name.endswith(("_file", "_field"))
 
 
 def value(given: Any, arrays: Arrays, of: str = "") -> str:
-    """A value as TOML writes it, of a key with dots that says whether it names a file.
+    """A value in TOML; its key, with dots, says whether it names a file.
 
     >>> arrays = Arrays()
     >>> value({"shape": "cavity", "coverage": 10, "center": (1, 2.5)}, arrays)
@@ -131,7 +131,7 @@ def value(given: Any, arrays: Arrays, of: str = "") -> str:
         return _quantities(given)
     if hasattr(given, "__array__"):
         array = np.asanyarray(given)
-        # What has rows is a field or a mask, of which a case names the file, and heights may be missing; the last
+        # An array with rows is a field or a mask, for which a case names a file; heights may be missing. The last
         # state of a run has layers of rows.
         if array.ndim == 2 or (array.ndim == 3 and names_file(of)):
             return word(arrays.add(array, of))
@@ -162,7 +162,7 @@ def _rows(of: str, given: Sequence[Any]) -> np.ndarray[Any, Any]:
 
 
 def by_key(overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Overrides key by key: those of a table that is given by its name are the keys that it has, and leave its others as they are.
+    """Overrides key by key: a table that is given by name sets the keys that it has, and leaves its others as they are.
 
     >>> by_key({"drive": {"v_star": 0.1}, "friction.seed": 2, "output": {"snapshots": {"every": 1.0}}})
     {'drive.v_star': 0.1, 'friction.seed': 2, 'output.snapshots': {'every': 1.0}}
@@ -177,12 +177,12 @@ def by_key(overrides: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def word(text: str) -> str:
-    """A text as TOML writes it."""
+    """A text in TOML."""
     return _IN_QUOTES(text)
 
 
 def key(name: str) -> str:
-    """A key as TOML writes it."""
+    """A key in TOML."""
     return name if _BARE_KEY.fullmatch(name) else word(name)
 
 
@@ -226,14 +226,14 @@ def _number(number: float) -> str:
 
 
 def _quantities(given: Any) -> str:
-    """A quantity of pint, or a list of them, in the units it has."""
+    """A quantity of pint, or a list of them, in its own units."""
     unit = format(given.units, "~C").replace("**", "^").replace("*", " ")
     magnitude = np.asarray(given.magnitude).tolist()
 
     def write(number: Any) -> str:
         if isinstance(number, list):
             return "[" + ", ".join(write(one) for one in number) + "]"
-        # A number without a unit is written as one.
+        # A quantity without a unit is written as a number.
         return word(f"{number!r} {unit}") if unit else value(number, Arrays())
 
     return write(magnitude)

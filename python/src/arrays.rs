@@ -4,7 +4,7 @@ use numpy::ndarray::ArrayView2;
 use numpy::{Element, IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Numbers as an array with rows of `columns`, handed over without a copy.
+/// Numbers as an array with rows of `columns`, passed on without a copy.
 pub(crate) fn rows<T: Element>(
     py: Python<'_>,
     values: Vec<T>,
@@ -33,7 +33,7 @@ pub(crate) fn borrowed<'py, T: Element>(
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
     let rows = values.len().checked_div(columns).unwrap_or(0);
     let view = ArrayView2::from_shape((rows, columns), values).map_err(crate::errors::folder_error)?;
-    // SAFETY: callers hand over numbers that `owner` holds behind an `Arc` and never changes; the array keeps
+    // SAFETY: callers pass numbers that `owner` holds behind an `Arc` and never changes; the array keeps
     // `owner` alive.
     let array = unsafe { PyArray2::borrow_from_array(&view, owner) };
     array.readwrite().make_nonwriteable();

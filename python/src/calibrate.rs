@@ -19,7 +19,7 @@ pub(crate) struct Calibration {
 
 #[pymethods]
 impl Calibration {
-    /// The calibration of a text called `name`; the files it names stand relative to a folder.
+    /// The calibration of a text called `name`; the files it names are relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || CalibrationFile::parse(text, name, name, &folder))
@@ -46,8 +46,8 @@ impl Calibration {
         self.file.keys.columns()
     }
 
-    /// Calibrates in a folder, or goes on there, and returns sentences about lines of the records that were
-    /// passed over. Beside the folder stands whether edited files there are replaced.
+    /// Calibrates in a folder, or continues there, and returns sentences about lines of the records that were
+    /// skipped. `folder` also says whether edited files there are replaced.
     fn execute(
         &self,
         py: Python<'_>,
@@ -63,8 +63,8 @@ impl Calibration {
         Ok(notes)
     }
 
-    /// Tests whether the model can have made the records, and returns the reasons for which it cannot, the
-    /// numbers of the tests as JSON, and sentences about lines of the records that were passed over.
+    /// Tests whether the model can reproduce the records, and returns the reasons why it cannot, the numbers
+    /// of the tests as JSON, and sentences about lines of the records that were skipped.
     fn check(
         &self,
         py: Python<'_>,
@@ -80,8 +80,8 @@ impl Calibration {
         Ok((found.reasons(), tests, notes))
     }
 
-    /// Simulates records that are planned, until a place with its unit with a number of values or at the
-    /// times of records, and returns the expected widths of the intervals as JSON.
+    /// Simulates planned records, up to a place in its unit with a number of values or at the times of
+    /// records, and returns the expected widths of the intervals as JSON.
     fn plan(
         &self,
         py: Python<'_>,
@@ -118,7 +118,7 @@ impl Calibration {
         })
     }
 
-    /// The results folder for these records, and sentences about lines of these that were passed over.
+    /// The results folder for these records, and sentences about their lines that were skipped.
     fn open(
         &self,
         py: Python<'_>,
@@ -139,7 +139,7 @@ impl Calibration {
     }
 }
 
-/// Does some work of a calibration, and tells `watch` how far it is.
+/// Does some work of a calibration, and reports its progress to `watch`.
 fn with_progress<T: Send>(
     py: Python<'_>,
     threads: usize,

@@ -21,8 +21,9 @@ use crate::process::{LOOK_EVERY, detached};
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
 
-/// Makes a case while other threads of Python go on, refused if a run of it has no memory, unless that memory
-/// is [small](Budget::SMALL); `make` gets the function that watches its texture. A signal ends the work.
+/// Makes a case while other Python threads continue. The case is refused if there is no memory for its run,
+/// unless that memory is [small](Budget::SMALL). `make` gets the function that watches its texture. A signal
+/// ends the work.
 pub(crate) fn make(
     py: Python<'_>,
     make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, Error> + Send,
@@ -70,7 +71,7 @@ fn of_surface<'py, T: Element>(
 
 #[pymethods]
 impl Case {
-    /// The case of a file, with overrides of the form KEY=VALUE, which may name arrays that are in memory.
+    /// The case of a file, with overrides of the form KEY=VALUE, which may name arrays in memory.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>, arrays: Arrays) -> PyResult<Self> {
         let arrays = in_memory(&arrays);
@@ -79,8 +80,7 @@ impl Case {
         })
     }
 
-    /// The case of a text called `name`; the files it names are arrays in memory, or stand relative to a
-    /// folder.
+    /// The case of a text called `name`; the files it names are arrays in memory, or relative to a folder.
     #[staticmethod]
     fn parse(
         py: Python<'_>,
@@ -133,7 +133,7 @@ impl Case {
             .collect()
     }
 
-    /// The files that are in memory, by the names that they have there.
+    /// The files in memory, by their names there.
     #[getter]
     fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let files = PyDict::new(py);
@@ -173,7 +173,7 @@ impl Case {
         (self.0.model.lattice.ny, self.0.model.lattice.nx)
     }
 
-    /// The step with which a run ends at the latest.
+    /// The last step of a run, unless it ends earlier.
     #[getter]
     fn last_step(&self) -> u64 {
         self.0.time_plan.last_step
@@ -201,7 +201,7 @@ impl Case {
         ]
     }
 
-    /// Whether a block is texture.
+    /// Whether each block is textured.
     #[getter]
     fn textured<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<bool>>> {
         of_surface(this, |surface| &surface.textured)

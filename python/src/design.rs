@@ -16,7 +16,7 @@ use slipfront_study::StudyError;
 use crate::errors::study_error;
 use crate::process::{detached, on_pool};
 
-/// A design: its file, and the textures that were asked for and told.
+/// A design: its file, and the textures that were returned and reported.
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Design {
     file: DesignFile,
@@ -42,7 +42,7 @@ fn bytes(texture: &[bool]) -> Cow<'static, [u8]> {
 
 #[pymethods]
 impl Design {
-    /// The design of a text called `name`; the files it names stand relative to a folder.
+    /// The design of a text called `name`; the files it names are relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || DesignFile::parse(text, name, name, &folder))
@@ -69,7 +69,7 @@ impl Design {
         self.design.size()
     }
 
-    /// Reason for which a texture is not legal; none if it is.
+    /// Reason why a texture is not legal; none if it is.
     fn illegal(&self, mask: PyBackedBytes) -> Option<String> {
         let [mask] = sets(&[mask]).try_into().ok()?;
         self.design.check(&mask).err().map(|error| error.to_string())
@@ -98,8 +98,8 @@ impl Design {
         search.best().map(|(texture, loss)| (bytes(&texture), loss))
     }
 
-    /// Losses of textures, distances from the wish, on some surfaces; infinite with the reason for a texture
-    /// that has none.
+    /// Losses of textures, distances from the target, on some surfaces; infinite, with the reason, for a
+    /// texture without a loss.
     fn losses(
         &self,
         py: Python<'_>,
@@ -123,8 +123,8 @@ impl Design {
         on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }
 
-    /// Searches in a folder, or goes on there, and writes the results of the design; returns the verdict as a
-    /// text. Beside the folder stands whether edited files there are replaced.
+    /// Searches in a folder, or continues there, and writes the results of the design; returns the verdict as
+    /// a text. `folder` also says whether edited files there are replaced.
     fn execute(
         &self,
         py: Python<'_>,

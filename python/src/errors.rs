@@ -49,11 +49,10 @@ const OPTIONS: [(&str, &str); 13] = [
     ),
 ];
 
-/// Beginning of the names of files that are arrays in memory; a number and the key that was given the array
-/// follow.
+/// Beginning of the names of files that are arrays in memory; a number and the key of the array follow.
 pub(crate) const IN_MEMORY: &str = "memory:/";
 
-/// The sentence of an error in the words of Python: arguments in place of options, keys in place of files in
+/// The sentence of an error in terms of Python: arguments instead of options, keys instead of files in
 /// memory.
 pub(crate) fn in_words_of_python(error: impl Display) -> String {
     let mut sentence = error.to_string();
@@ -75,8 +74,8 @@ pub(crate) fn in_words_of_python(error: impl Display) -> String {
     told
 }
 
-/// The place in an array, and its value, of what is wrong with the file of the array, and the rest of the
-/// sentence after its name.
+/// The index of a wrong value in an array, that value, and the rest of the sentence after the name of the
+/// file of the array.
 fn by_index(after_name: &str) -> Option<(String, &str, &str)> {
     let (value, rest) = after_name.strip_prefix("` has ")?.split_once(" in row ")?;
     let (row, rest) = rest.split_once(", column ")?;
@@ -116,7 +115,7 @@ fn is_missing(error: &Error) -> bool {
     }
 }
 
-/// A case error that is a `FileNotFoundError` too: a class with two bases is made in Python.
+/// A case error that is also a `FileNotFoundError`: a class with two bases is made in Python.
 fn missing_file_error(py: Python<'_>, sentence: String) -> PyErr {
     let class = py
         .import("slipfront._case")

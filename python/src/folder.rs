@@ -49,8 +49,8 @@ impl TemporaryParent {
     }
 }
 
-/// Kind of a folder: `run`, `interrupted`, `study`, `meshes` of a study that tells what its meshes found,
-/// `design`, `paper`, or none of these.
+/// Kind of a folder: `run`, `interrupted`, `study`, `meshes` for a study that compares meshes, `design`,
+/// `calibration`, `paper`, or none of these.
 #[pyfunction]
 pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
     if has_records(&folder) {
@@ -101,7 +101,7 @@ pub(crate) fn make_ready(folder: PathBuf, force: bool) -> PyResult<()> {
     Ok(())
 }
 
-/// The case of a run folder, as the run began from it, under the name of the folder.
+/// The case with which the run of a folder began, under the name of the folder.
 fn case_of(py: Python<'_>, folder: &Path, file: CaseFile) -> PyResult<Case> {
     let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = canonical

@@ -1,4 +1,4 @@
-//! Labels of quantities in pictures, which are those of `slipfront plot` and of studies.
+//! Labels of quantities in pictures, as in `slipfront plot` and studies.
 
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;

@@ -1,8 +1,8 @@
 //! The native part of the Python module `slipfront`: cases, simulations and their results, studies and the
 //! command.
 //!
-//! The Python files beside it in the package give its names their public form. While the engine works, other
-//! threads of Python go on; signals are checked between two calls, or every 50 ms within one.
+//! The Python files next to it in the package give its names their public form. While the engine works, other
+//! Python threads continue; signals are checked between two calls, or every 50 ms within one.
 
 #![expect(
     clippy::needless_pass_by_value,
@@ -30,8 +30,8 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 
 /// Runs the command with these arguments, the first of which is the name of the program, and returns its exit
-/// status. The command needs a process of its own. The session of the laboratory as WebAssembly is looked for
-/// in the folder `package`.
+/// status. The command needs a process of its own. The folder `package` has the session of the laboratory as
+/// WebAssembly.
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<OsString>, package: PathBuf) -> PyResult<u8> {
     process::detached(py, || slipfront_cli::main(arguments, Some(&package)))
@@ -43,7 +43,7 @@ fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("IN_MEMORY", errors::IN_MEMORY)?;
     let case_error = py.get_type::<errors::CaseError>();
-    // Of an error that is not one of a place in a file.
+    // Values of an error that has no place in a file.
     case_error.setattr("line", py.None())?;
     case_error.setattr("column", py.None())?;
     module.add("CaseError", case_error)?;

@@ -1,4 +1,4 @@
-//! Many runs at once, of which only the numbers are kept.
+//! Many runs in one call; only their numbers are kept.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -1,4 +1,4 @@
-//! Checksums of pickles, by which damaged ones are noticed.
+//! Checksums of pickles, which detect damage.
 
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -13,7 +13,7 @@ pub(crate) fn with_checksum<'py>(py: Python<'py>, contents: &[u8]) -> Bound<'py,
     PyBytes::new(py, &checksum::with_checksum(CONTEXT, contents))
 }
 
-/// The contents before their checksum; none if it does not fit.
+/// The contents before their checksum; none if it does not match.
 #[pyfunction]
 pub(crate) fn verified<'py>(py: Python<'py>, sealed: &[u8]) -> Option<Bound<'py, PyBytes>> {
     checksum::verified(CONTEXT, sealed).map(|contents| PyBytes::new(py, contents))

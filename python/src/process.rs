@@ -1,8 +1,7 @@
 //! The process whose threads the engine uses.
 //!
-//! Its pool of threads does not come along when a process forks, and locks that other threads hold stay
-//! locked: a child that used them would wait for ever. All uses of them go through this file, and are refused
-//! in such a child.
+//! A forked process lacks its pool of threads, and locks that other threads held stay locked: a child that
+//! used them would wait for ever. All uses of them go through this file, and are refused in such a child.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -17,11 +16,11 @@ use crate::errors::{ForkError, folder_error, study_error};
 /// Time that the engine works between two checks for signals.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
 
-/// The process that was the first to use the engine, which the children that it forks afterwards inherit; 0
-/// before.
+/// The process that first used the engine; children that it forks afterwards inherit it. 0 before the first
+/// use.
 static FIRST: AtomicU32 = AtomicU32::new(0);
 
-/// Refuses to go on in a process that was forked from one in which the engine had been used.
+/// Refuses to continue in a process that was forked from one in which the engine had been used.
 #[pyfunction]
 pub(crate) fn check_process() -> PyResult<()> {
     let here = std::process::id();
@@ -35,7 +34,7 @@ pub(crate) fn check_process() -> PyResult<()> {
     }
 }
 
-/// Does the work of the engine while other threads of Python go on.
+/// Does the work of the engine while other Python threads continue.
 #[allow(
     clippy::disallowed_methods,
     reason = "this is the place that the others go through"
@@ -45,7 +44,7 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send)
     Ok(py.detach(work))
 }
 
-/// Does `work` on another thread, and checks for signals on this one, to which they come; none if the work
+/// Does `work` on another thread, and checks for signals on this one, which receives them; none if the work
 /// panicked.
 pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
     std::thread::scope(|scope| {

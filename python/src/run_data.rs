@@ -73,7 +73,7 @@ impl RunData {
         detached(py, || {
             let mut run = RunFolder::prepare(&folder, force, &case.inputs).map_err(folder_error)?;
             results::write_case(case, &mut run).map_err(folder_error)?;
-            // Writing takes the fields out of what it is given.
+            // Writing removes the fields from its argument.
             let mut record = self.record.clone();
             pictures::write_run(case, &mut record, run, started, threads).map_err(folder_error)?;
             Ok(())
@@ -92,8 +92,8 @@ pub(crate) fn series<'py>(py: Python<'py>, rows: &[SeriesRow]) -> PyResult<Bound
     Ok(columns)
 }
 
-/// The tables that a run may have beside its series, by name: columns, with NaN for missing numbers; None for
-/// a table that this run does not have.
+/// The tables that a run may have besides its series, by name: columns, with NaN for missing numbers; None
+/// for a table that this run does not have.
 pub(crate) fn tables<'py>(py: Python<'py>, run: RunFiles<'_>) -> PyResult<Bound<'py, PyDict>> {
     let tables = PyDict::new(py);
     for table in observers::tables() {

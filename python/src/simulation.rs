@@ -28,7 +28,7 @@ use crate::run_data::{RunData, series};
 /// A run in progress, which only one thread can use at a time.
 #[pyclass(module = "slipfront._slipfront")]
 pub(crate) struct Simulation {
-    /// The run; none once it was taken as a record.
+    /// The run; none after it was taken as a record.
     running: Option<Running>,
     started: jiff::Timestamp,
 }
@@ -37,8 +37,7 @@ pub(crate) struct Simulation {
 const LENGTH_BYTES: usize = 8;
 
 impl Simulation {
-    /// A simulation of a run that has recorded the instant at which it stands: a checkpoint is made of an
-    /// instant that was recorded.
+    /// A simulation of a run that has recorded its current instant: a checkpoint needs a recorded instant.
     pub(crate) fn of(mut running: Running) -> PyResult<Self> {
         running.advance(0).map_err(run_error)?;
         Ok(Self {
@@ -63,7 +62,7 @@ fn vectors<'py>(
     stacked(py, &[&x, &y], [lattice.ny, lattice.nx])
 }
 
-/// Context of a checkpoint: the build of the program, whose numbers it goes on with, and the case.
+/// Context of a checkpoint: the build of the program, on which the numbers depend, and the case.
 fn context(case: &SlipfrontCase) -> Vec<u8> {
     [program::this_build(), &hash_of(case)].concat().into_bytes()
 }
@@ -86,9 +85,8 @@ impl Simulation {
         })?)
     }
 
-    /// The run that goes on under another case; the position of the drive over each block, x and y in m; the
-    /// steps of this run, and what else it has counted by the names of the columns of its series. This run
-    /// ends with it.
+    /// The run continued under another case; the position of the drive over each block, x and y in m; the
+    /// steps of this run, and its other counts by the names of the columns of its series. This run then ends.
     #[allow(clippy::type_complexity, reason = "a tuple of Python, which has no name")]
     fn change<'py>(
         &mut self,
@@ -123,7 +121,7 @@ impl Simulation {
                 }
             }
         };
-        // Of several threads the present one is to be one: so it need not wake the others at every step.
+        // With several threads, this runs on one of them, so that it need not wake the others at every step.
         let reason = detached(py, || match threads {
             1 => advance(),
             _ => rayon::scope(|_| advance()),
@@ -167,7 +165,7 @@ impl Simulation {
         ])
     }
 
-    /// A field of the present instant, in the unit of `fields.nc`.
+    /// A field at the current instant, in the unit of `fields.nc`.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let running = self.running()?;
         let field =
@@ -194,7 +192,7 @@ impl Simulation {
         series(py, &rows)
     }
 
-    /// State from which the run goes on with the same bits.
+    /// State from which the run continues bit-identically.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let running = self.running()?;
         let state = postcard::to_stdvec(&running.state());
@@ -211,13 +209,13 @@ impl Simulation {
         written.map(|()| PyBytes::new(py, &with_checksum(&context(running.case()), &bytes)))
     }
 
-    /// The run of this case that goes on from a checkpoint.
+    /// The run of this case, continued from a checkpoint.
     #[staticmethod]
     fn resume(py: Python<'_>, case: &Case, checkpoint: &[u8], threads: usize) -> PyResult<Self> {
         let refused = || {
             PyValueError::new_err(format!(
-                "these bytes are no checkpoint of a run of this case by {}, or they are damaged: begin the run anew, or go on with \
-                 the case and the program that it was made with",
+                "these bytes are no checkpoint of a run of this case by {}, or they are damaged: start the run again, or continue with \
+                 the case and the program that made them",
                 program::this_build()
             ))
         };
@@ -247,7 +245,7 @@ impl Simulation {
         Self::of(running)
     }
 
-    /// Results of the run, once it has ended; the simulation is then used up.
+    /// Results of the run, once it has ended; the simulation cannot be used afterwards.
     fn record(&mut self, py: Python<'_>, reason: &str) -> PyResult<RunData> {
         let running = self.running.take().ok_or_else(ended)?;
         let reason = match reason {

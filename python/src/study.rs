@@ -22,7 +22,7 @@ use crate::errors::{folder_error, study_error};
 use crate::process::{detached, watched};
 use crate::run_data::RunData;
 
-/// A study whose every point is a valid case.
+/// A study with a valid case at every point.
 #[pyclass(frozen, module = "slipfront._slipfront")]
 pub(crate) struct Study {
     file: StudyFile,
@@ -86,7 +86,7 @@ impl Study {
         })
     }
 
-    /// The study of a text called `name`; the files it names stand relative to a folder.
+    /// The study of a text called `name`; the files it names are relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
         Self::of(py, || StudyFile::parse(text, name, name, &folder))
@@ -137,15 +137,15 @@ impl Study {
         self.plan.points.len()
     }
 
-    /// Replicates of a point, at least and at most.
+    /// Least and largest number of replicates of a point.
     #[getter]
     fn replicates(&self) -> (usize, usize) {
         let settings = &self.plan.settings;
         (settings.min_replicates(), settings.max_replicates())
     }
 
-    /// The axes: of each the columns of the tables, whose cells name its levels, the labels of pictures, and
-    /// of each level its cells, its number and its label beside those of other axes.
+    /// The axes: for each, the columns of the tables that name its levels, the labels of pictures, and for
+    /// each level its cells, its number and its label next to those of other axes.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let axes = self.plan.axes.iter().zip(study::axis_labels(&self.plan));
@@ -212,11 +212,10 @@ impl Study {
     }
 
     /// Makes the runs that the folder lacks, and writes tables, pictures and the comparison of meshes there.
-    /// Beside the folder stands whether edited files there are replaced. `look` is called with the case, the
-    /// record and the place of every run that ends, and returns the values of the user's own quantities;
-    /// `watch` is called with the numbers of runs that are done, of all, and of failed ones. Returns the
-    /// values by run, the reasons of the runs that failed, and why no run has a value of the main quantity,
-    /// if none has.
+    /// `folder` also says whether edited files there are replaced. `look` is called with the case, the record
+    /// and the place of every run that ends, and returns the values of the user's own quantities. `watch` is
+    /// called with the numbers of finished runs, of all, and of failed ones. Returns the values by run, the
+    /// reasons of the runs that failed, and why no run has a value of the main quantity, if none has.
     fn execute(
         &self,
         py: Python<'_>,
@@ -250,7 +249,7 @@ impl Study {
             })
         };
         let results = detached(py, || {
-            // Signals come to the thread that called, and what is shown is shown by it.
+            // The calling thread receives signals, and shows progress.
             let results = watched(execute, || shared.show(watch.as_ref()));
             shared.show(watch.as_ref());
             results

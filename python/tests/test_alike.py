@@ -41,7 +41,7 @@ def test_cases_tables_and_files_are_taken_with_overrides_behind_them(use: str, p
     for given in (TABLES, path, str(path), sf.Case(TABLES)):
         assert USES[use](given, OVERRIDES) == wanted
     assert sf.Case(TABLES, OVERRIDES) == sf.Case(TABLES).replace(OVERRIDES) == sf.Case.load(path, OVERRIDES)
-    with pytest.raises(TypeError, match=r"behind a case stand keys that are set anew, .* not 'results': give other arguments by name"):
+    with pytest.raises(TypeError, match=r"keys to change are a dictionary .* not 'results': give other arguments by name"):
         USES[use](TABLES, "results")
 
 

@@ -116,7 +116,7 @@ def test_errors_name_no_hidden_file() -> None:
     with pytest.raises(sf.CaseError, match="record 1 has no column `force_n`") as error:
         calibration().fit({"time_s": measured["time_s"], "load_n": measured["force_n"]}, progress=False)
     assert "tmp" not in str(error.value) and ".csv" not in str(error.value)
-    with pytest.raises(ValueError, match="as long as each other"):
+    with pytest.raises(ValueError, match="must have the same length"):
         calibration().fit({"time_s": measured["time_s"], "force_n": measured["force_n"][1:]}, progress=False)
     with pytest.warns(UserWarning) as told:
         calibration().fit({**measured, "force_n": -measured["force_n"]}, progress=False)

@@ -77,7 +77,7 @@ def test_errors_have_the_sentences_of_the_command() -> None:
         sf.Case.load("cases/circle.toml", {"drive.v_star": 0})
     with pytest.raises(TypeError, match="not of object"):
         sf.Case({"drive": {"v_star": object()}})
-    with pytest.raises(TypeError, match="a dictionary of its tables, not of str: of a file by Case.load"):
+    with pytest.raises(TypeError, match="a dictionary of its tables, not from str: from a file by Case.load"):
         sf.Case("cases/circle.toml")  # type: ignore[arg-type]
 
 

@@ -77,7 +77,7 @@ def test_an_interrupted_run_of_the_command_goes_on(tmp_path: Path) -> None:
 
 def test_runs_are_exported_with_the_bytes_of_the_command(small: sf.Case, tmp_path: Path) -> None:
     run = sf.run(small, progress=False)
-    with pytest.raises(sf.FolderError, match="save it before"):
+    with pytest.raises(sf.FolderError, match="save it first"):
         sf.export(run, "bibtex")
     folder, twin = run.save(tmp_path / "run"), tmp_path / "twin" / "run"
     shutil.copytree(folder, twin)

@@ -170,7 +170,7 @@ def test_a_sentence_says_that_a_pickle_is_damaged(objects: dict[str, object]) ->
     for whole in objects.values():
         changed = bytearray(pickle.dumps(whole))
         changed[len(changed) // 2] ^= 4
-        with pytest.raises(pickle.UnpicklingError, match="is damaged, its checksum is wrong: make it anew"):
+        with pytest.raises(pickle.UnpicklingError, match="is damaged, its checksum is wrong: create it again"):
             pickle.loads(bytes(changed))
 
 

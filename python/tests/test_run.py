@@ -64,7 +64,7 @@ def test_a_run_that_was_opened_replaces_the_files_of_a_run_and_nothing_else(smal
         (tmp_path / name / "notes.txt").write_text(name)
     one = sf.open(tmp_path / "one")
     assert isinstance(one, sf.Run)
-    with pytest.raises(sf.FolderError, match="stands there already"):
+    with pytest.raises(sf.FolderError, match="it is there already"):
         one.save(tmp_path / "one", force=True)
     with pytest.raises(sf.FolderError):
         one.save(tmp_path / "other")

@@ -126,7 +126,7 @@ def test_a_change_keeps_where_blocks_are_and_how_fast() -> None:
     last = simulation.series.isel(time_star=-1)
     assert last["step"] == simulation.steps == steps + 6
     assert last["time_s"] == pytest.approx(simulation.time_s, rel=1e-12) and last["time_star"] == pytest.approx(simulation.time_star, rel=1e-12)
-    with pytest.raises(ValueError, match="is over"):
+    with pytest.raises(ValueError, match="has passed"):
         simulation.run_until(time_star=0.1)
     with pytest.raises(RuntimeError, match="no results of one case"):
         simulation.run(progress=False)
