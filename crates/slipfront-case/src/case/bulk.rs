@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-3;
 const STRIP: f64 = 2.316;
 /// Thickness over pitch, and the range of what a texture changes about static friction in a bulk body over
 /// what it changes in the sheet, for a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a
-/// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/model.md`).
+/// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/validation/bulk.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
 /// Excess of the stiffness of the stack over that of the body above which there is a note.
 const LARGE_EXCESS: f64 = 0.1;

@@ -3,7 +3,7 @@
 //! The number of blocks that is enough for each was measured on a sheet of 1 mm with square and round
 //! cavities of 50 to 400 um, on 20 to 320 blocks along a side with everything else held in metres, seconds
 //! and pascals: from this number of blocks on the reduction of static friction by the cavity is within 2 % of
-//! that on the finest mesh (`docs/model.md`, "How many blocks a length needs").
+//! that on the finest mesh (`docs/validation/measures.md`, "Blocks that a length needs").
 
 use slipfront::surface::{Clearance, clearance};
 

@@ -192,7 +192,7 @@ impl Dimples {
 /// Keys of the product for three sheets that are within 0.3 % of a deep body of nu = 1/4, from a longest wave
 /// of so many blocks to a sixteenth of it.
 pub(crate) fn three_sheets(longest: usize) -> [String; 3] {
-    /// In `G/(0.6495 E q_a)` and `G q_a`, by a plain search over all six numbers (`docs/model.md`).
+    /// In `G/(0.6495 E q_a)` and `G q_a`, by a plain search over all six numbers (`docs/validation/bulk.md`).
     const SHEETS: [[f64; 2]; 3] = [[0.0297, 13.25], [0.2146, 3.069], [0.9147, 0.5870]];
     const POISSON: f64 = 0.25;
     let q_a = std::f64::consts::TAU / (longest as f64 * BLOCK);

@@ -95,7 +95,7 @@ fn planes_find_the_speed_of_a_front(tau: f64, (rows, direction, stiffness): (usi
     assert_eq!(front.nucleations, [0]);
 }
 
-/// The factors over the speed of long waves that model.md gives.
+/// The factors over the speed of long waves that `docs/validation/family.md` gives.
 #[test_case(0.6, 1.25)]
 #[test_case(0.8, 1.6667)]
 #[test_case(0.9, 2.2942)]

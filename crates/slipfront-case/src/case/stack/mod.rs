@@ -17,10 +17,9 @@
 //!
 //! The springs of the sheets are [`SpringStiffness::with_ratio`] of `r = 1/(1 - nu)^2 + 1/2`. Without the 1/2
 //! both directions were as those of the body; with it reductions of friction are, since central springs
-//! couple motion along x and along y as if r were 3 (`docs/model.md`). The geometric mean of both directions
-//! is fitted to that of the body, from the wave number q_a of the longest wave length of the texture to 8
-//! q_a, so that the largest relative difference is least. `docs/model.md`, "Bulk bodies", has what that means
-//! for answers.
+//! couple motion along x and along y as if r were 3. The geometric mean of both directions is fitted to that
+//! of the body, from the wave number q_a of the longest wave length of the texture to 8 q_a, so that the
+//! largest relative difference is least. `docs/validation/bulk.md` has what that means for answers.
 
 mod fit;
 
