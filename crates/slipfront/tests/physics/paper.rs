@@ -1,8 +1,7 @@
 //! Claims of the paper (doi 10.1016/j.triboint.2023.108866) that one run or a few can show.
 //!
-//! Numbers beside a claim are those of model.md, section 5, which come from one surface of an independent
-//! program. Tolerances are three standard deviations of the same quantity over ten surfaces of this one,
-//! unless a comment says otherwise.
+//! Numbers in comments come from one surface of an independent program. Tolerances are three standard
+//! deviations of the same quantity over ten surfaces of this one, unless a comment says otherwise.
 
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Distribution, Load, Orientation, Texture};
@@ -80,8 +79,7 @@ fn elongation_across_improves_and_along_worsens() {
     assert!(steps.is_sorted() && steps[0] > circle - 0.4, "{steps:?}");
 }
 
-/// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7 in model.md, scatter
-/// 0.13.
+/// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7, scatter 0.13.
 #[test_matrix([2, 3, 4], [1.0, 0.2])]
 fn shapes_make_no_notable_difference(s: u32, sharpness: f64) {
     let found = reduction(&textured(
@@ -91,8 +89,7 @@ fn shapes_make_no_notable_difference(s: u32, sharpness: f64) {
     assert!((30.3..34.1).contains(&found), "s = {s}: {found} %");
 }
 
-/// Without scatter of kinetic coefficients nothing is random; model.md's 37.4 is rounded, and read off at
-/// another step.
+/// Without scatter of kinetic coefficients nothing is random; 37.4 is rounded, and of another step.
 #[test]
 fn a_groove_without_any_scatter() {
     let slider = Slider {
@@ -106,7 +103,7 @@ fn a_groove_without_any_scatter() {
 
 /// Grooves on periodic edges climb again, higher than the first peak, in the next cycle, so that the rule of
 /// the first peak matters. By how much depends on the step, since nothing breaks the symmetry along the
-/// groove: 1.3 % at 0.02, 2.3 % at 0.1, 4 % in model.md.
+/// groove: 1.3 % at 0.02, 2.3 % at 0.1, 4 % in the other program.
 #[test]
 fn a_groove_on_periodic_edges_climbs_higher_later() {
     let slider = Slider {
@@ -149,7 +146,7 @@ fn static_scatter_attenuates_the_effect_of_a_texture() {
     assert!(found.windows(2).all(|pair| pair[1] < pair[0] - 3.0), "{found:?}");
 }
 
-/// Without redistributing the texture's load, the cavity would take 37 % (section 1 of model.md).
+/// Without redistributing the texture's load, the cavity would take 37 %.
 #[test]
 fn without_redistribution_the_cavity_takes_37_percent() {
     let kept = Slider {

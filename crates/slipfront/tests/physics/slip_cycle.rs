@@ -15,7 +15,7 @@ fn one_block(omega_star: f64, v_star: f64, dt_star: f64) -> Slider {
     }
 }
 
-/// Values of model.md, section 6, problem 2, at R* = 0.5, to the digits given there.
+/// Values of the closed form at R* = 0.5, to the digits given.
 #[test_case(0.0, 0.03, 5.25015, 0.0)]
 #[test_case(0.1, 0.03, 5.27878, 0.104656)]
 #[test_case(0.1, 0.1, 5.60003, 0.117239)]
