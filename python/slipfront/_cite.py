@@ -16,6 +16,6 @@ def cite() -> str:
     return (
         f"The slipfront developers: slipfront, version {__version__}. A two-dimensional lattice spring-block model of the "
         "transition from static to kinetic friction of micro-textured surfaces.\n"
-        "The model: 2D Spring-block model to study the transition from static to kinetic friction of "
-        "complex-micro-textured contact surfaces. Tribology International (2023). doi:10.1016/j.triboint.2023.108866"
+        "The model: S. K. Jalali and N. M. Pugno. 2D Spring-block model to study the transition from static to kinetic friction of "
+        "complex-micro-textured contact surfaces. Tribology International 188 (2023). doi:10.1016/j.triboint.2023.108866"
     )

@@ -193,7 +193,7 @@ impl CalibrationKeys {
 }
 
 impl CalibrationFile {
-    /// Loads a calibration file; a base case that it names stands relative to it.
+    /// Loads a calibration file; a base case that it names is relative to it.
     ///
     /// # Errors
     /// As [`parse`](Self::parse), and when the file cannot be read.
@@ -201,7 +201,7 @@ impl CalibrationFile {
         CALIBRATION.load(path, Self::parse)
     }
 
-    /// Reads a calibration file called `file` in messages; a base case that it names stands relative to
+    /// Reads a calibration file called `file` in messages; a base case that it names is relative to
     /// `folder`.
     ///
     /// # Errors

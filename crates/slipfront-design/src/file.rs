@@ -193,7 +193,7 @@ enum JudgeBy {
 }
 
 impl DesignFile {
-    /// Loads a design file; a base case that it names stands relative to it.
+    /// Loads a design file; a base case that it names is relative to it.
     ///
     /// # Errors
     /// As [`parse`](Self::parse), and when the file cannot be read.
@@ -201,7 +201,7 @@ impl DesignFile {
         DESIGN.load(path, Self::parse)
     }
 
-    /// Reads a design file called `file` in messages; a base case that it names stands relative to `folder`.
+    /// Reads a design file called `file` in messages; a base case that it names is relative to `folder`.
     ///
     /// # Errors
     /// When it is no TOML, has unknown keys, or values out of their bounds.

@@ -60,7 +60,7 @@ impl Legend {
         let room = right - left - SAMPLE_WIDTH - NAME_GAP;
         let whole: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
         let texts = fitted_names(&whole, SIZE_TEXT, room);
-        // Equal columns, so that names stand under each other.
+        // Equal columns, so that names are aligned.
         let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + SAMPLE_WIDTH + NAME_GAP + COLUMN_GAP;
         let columns = ((right - left + COLUMN_GAP) / widest).floor().max(1.0) as usize;
         let middle = |row: usize| MARGIN + ROW * (row as f64 + 0.5);

@@ -87,7 +87,7 @@ pub struct ProjectFile {
 
 impl ProjectFile {
     /// Reads a file called `file` in messages, whose own table has the keys `own`, and whose `further` tables
-    /// are left to [`table`](Self::table); a base case that it names stands relative to `folder`.
+    /// are left to [`table`](Self::table); a base case that it names is relative to `folder`.
     ///
     /// # Errors
     /// When it is no TOML, or has unknown keys.

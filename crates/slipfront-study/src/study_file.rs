@@ -239,12 +239,12 @@ impl StudyFile {
         Ok(self.count_points()? as u64 * self.settings.max_replicates() as u64 * roles)
     }
 
-    /// Loads a study file; a base case that it names stands relative to it.
+    /// Loads a study file; a base case that it names is relative to it.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
         STUDIES.load(path, Self::parse)
     }
 
-    /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
+    /// Reads a study file called `file` in messages; a base case that it names is relative to `folder`.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text);
         let root = parse_noting_places(&mut source, text)?;

@@ -120,7 +120,7 @@ impl Case {
         Self::to_run_with(file, &name, files, watch, ranks)
     }
 
-    /// Makes a case of text alone, as [`load`](Self::load) does; the files it names stand relative to
+    /// Makes a case of text alone, as [`load`](Self::load) does; the files it names are relative to
     /// `folder`.
     pub fn parse(
         text: &str,
@@ -132,7 +132,7 @@ impl Case {
         Self::to_run(file, name, folder.as_ref(), &mut |_| true, Ranks::ALONE)
     }
 
-    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to
+    /// Makes a case of a case file that was read already, to be run; the files it names are relative to
     /// `folder`. All `ranks` make the case at once: each makes the surface of its own rows, and knows the
     /// rest of the case. If one fails, or was given another case or other files, all return the same error.
     pub fn to_run(

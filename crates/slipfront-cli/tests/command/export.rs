@@ -306,6 +306,10 @@ fn runs_are_cited() {
         bibtex.contains("doi = {10.1016/j.triboint.2023.108866}"),
         "{bibtex}"
     );
+    assert!(
+        bibtex.contains("author = {Jalali, S. K. and Pugno, N. M.}"),
+        "{bibtex}"
+    );
     assert!(bibtex.contains(&format!(
         "year = {{{}}}",
         &manifest["finished"].as_str().unwrap()[..4]
@@ -324,6 +328,7 @@ fn runs_are_cited() {
         "  - name: \"A\"",
         "license: \"CC0-1.0\"",
         "  - type: software",
+        "      - family-names: Jalali",
     ] {
         assert!(cff.lines().any(|found| found == line), "{line}\n{cff}");
     }

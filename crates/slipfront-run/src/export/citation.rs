@@ -18,9 +18,13 @@ pub(super) const ARTICLE_TITLE: &str = "2D Spring-block model to study the trans
 const ARTICLE_DOI: &str = "10.1016/j.triboint.2023.108866";
 pub(super) const ARTICLE_URL: &str = "https://doi.org/10.1016/j.triboint.2023.108866";
 const ARTICLE_JOURNAL: &str = "Tribology International";
+/// Family and given names of the authors, and the volume, as the repository of the University of Trento lists
+/// them (<https://iris.unitn.it/handle/11572/437097>).
+const ARTICLE_AUTHORS: [[&str; 2]; 2] = [["Jalali", "S. K."], ["Pugno", "N. M."]];
+const ARTICLE_VOLUME: u16 = 188;
 pub(super) const ARTICLE_YEAR: u16 = 2023;
-/// Remark in place of the names of the article's authors.
-const ARTICLE_NOTE: &str = "The model. The authors' names stand on the publisher's page of this DOI.";
+/// Remark on what the article has to do with the results.
+const ARTICLE_NOTE: &str = "The model";
 
 /// Entries of BibTeX: one for each folder of results, one for slipfront and one for the article. Without an
 /// author the entries of results have none.
@@ -71,7 +75,14 @@ pub fn bibtex(folders: &[Exported], by: &Attribution) -> String {
         "slipfront-model",
         &[
             ("title", format!("{{{ARTICLE_TITLE}}}")),
+            (
+                "author",
+                ARTICLE_AUTHORS
+                    .map(|[family, given]| format!("{family}, {given}"))
+                    .join(" and "),
+            ),
             ("journal", ARTICLE_JOURNAL.to_owned()),
+            ("volume", ARTICLE_VOLUME.to_string()),
             ("year", ARTICLE_YEAR.to_string()),
             ("doi", ARTICLE_DOI.to_owned()),
             ("note", ARTICLE_NOTE.to_owned()),
@@ -169,10 +180,12 @@ pub fn cff(folders: &[Exported], by: &Attribution) -> Result<String, ExportError
         quoted(DEVELOPERS)
     );
     text += &format!(
-        "  - type: article\n    title: {}\n    authors:\n      - name: {}\n    journal: {}\n    year: {ARTICLE_YEAR}\n    \
-         doi: {ARTICLE_DOI}\n    notes: {}\n",
+        "  - type: article\n    title: {}\n    authors:\n{}    journal: {}\n    volume: {ARTICLE_VOLUME}\n    \
+         year: {ARTICLE_YEAR}\n    doi: {ARTICLE_DOI}\n    notes: {}\n",
         quoted(ARTICLE_TITLE),
-        quoted(&format!("Authors of doi:{ARTICLE_DOI}")),
+        ARTICLE_AUTHORS
+            .map(|[family, given]| format!("      - family-names: {family}\n        given-names: {given}\n"))
+            .concat(),
         quoted(ARTICLE_JOURNAL),
         quoted(ARTICLE_NOTE)
     );
