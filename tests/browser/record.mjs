@@ -213,6 +213,19 @@ test('two unknowns of a record are found, with their intervals; using them is on
   await lab.press('calibrate-start');
   await lab.reads('calibrate-problem', say('range_wrong', { name: say('unknown_mu_static') }));
   await lab.find('#unknown-mu_static-from').fill('0.3');
+  for (const [from, to] of [['x', ''], ['', 'x'], ['2', '1'], ['1', '1']]) {
+    await lab.find('#calibrate-from').fill(from);
+    await lab.find('#calibrate-to').fill(to);
+    await lab.press('calibrate-start');
+    await lab.reads('calibrate-problem', say('part_wrong'));
+  }
+  await lab.find('#calibrate-from').fill('');
+  // The last part of the record does not count.
+  const { x } = lab.last.record.curve;
+  const unit = await lab.text('calibrate-part-unit');
+  const last = x[x.length - 1] * 0.9;
+  const of = { ns: 1e-9, '\u00b5s': 1e-6, ms: 1e-3, s: 1 }[unit];
+  await lab.find('#calibrate-to').fill(String(Number((last / of).toPrecision(6))));
   const told = new Set();
   const hear = lab.hear.bind(lab);
   lab.hear = (payload) => {
@@ -251,6 +264,7 @@ test('two unknowns of a record are found, with their intervals; using them is on
   writeFileSync(path.join(WORK, 'rig.csv'), await recordOfTruth());
   const printed = await slipfront('calibrate', 'calibration.toml', 'rig.csv', '--force');
   for (const { key, median } of results.unknowns) assert.match(printed, new RegExp(`${key}\\s+${Number(median.toPrecision(4))}`));
+  near(Number(/^to = "([^ ]+) s"$/m.exec(results.toml)[1]), last, 1e-5);
   const { toml } = lab.last.case;
   const used = await lab.after(() => lab.press('use-numbers'), 'case', ({ why }) => why === 'change');
   near(used.values.r_star.star, results.set['friction.r_star']);

@@ -5,12 +5,12 @@ import { send } from './connection.js';
 import { find, make, onPress } from './element.js';
 import { announce, notice } from './notices.js';
 import { typed } from './quantity.js';
-import { roundedUp } from './record.js';
+import { roundedUp, unitOf } from './record.js';
 import { on, presentCase, put, state } from './store.js';
 import { say } from './text.js';
 import { COUNTS, endText, rangeOf, unknownsOf } from './unknowns.js';
 
-/** @import { CalibratedReply, CalibratingReply, CaseValue } from '../types/protocol' */
+/** @import { CalibratedReply, CalibratingReply, CaseValue, RecordCurve } from '../types/protocol' */
 /** @import { Unknown } from './unknowns.js' */
 
 /** Unknowns that are chosen at first: every record of a slider that begins to slide tells of them. */
@@ -78,16 +78,34 @@ function ranges() {
   return found;
 }
 
+/** The part of the record that counts, in s or m after the shift; null after a problem was said. @param {RecordCurve} curve @returns {{ from?: number, to?: number }|null} */
+function part(curve) {
+  const [factor] = unitOf(curve);
+  const part = /** @type {{ from?: number, to?: number }} */ ({});
+  for (const end of /** @type {const} */ (['from', 'to'])) {
+    const text = find(`calibrate-${end}`).value;
+    const value = typed(text);
+    // Text that is no number is no empty field, which stands for an end of the record.
+    if (text.trim() !== '') part[end] = value === null ? NaN : value * factor;
+  }
+  const { from = -Infinity, to = Infinity } = part;
+  if (from < to) return part;
+  problem(say('part_wrong'));
+  find('calibrate-from').focus();
+  return null;
+}
+
 /** @param {SubmitEvent} event */
 function begin(event) {
   event.preventDefault();
   problem('');
   const unknowns = ranges();
-  if (!state.measured || !unknowns) return;
+  const counts = unknowns && state.measured && part(state.measured.curve);
+  if (!state.measured || !unknowns || !counts) return;
   const { file, shift } = state.measured;
   // Until the session has answered.
   find('calibrate-start').disabled = true;
-  send({ do: 'calibrate', record: file, shift, noise: find('calibrate-noise').valueAsNumber / 100, runs: find('calibrate-runs').valueAsNumber, unknowns });
+  send({ do: 'calibrate', record: file, shift, ...counts, noise: find('calibrate-noise').valueAsNumber / 100, runs: find('calibrate-runs').valueAsNumber, unknowns });
 }
 
 /** @param {CalibratingReply|null} calibrating */
@@ -125,11 +143,15 @@ export function startCalibration() {
   find('calibrate-form').addEventListener('submit', begin);
   onPress('calibrating-stop', () => send({ do: 'calibrate_stop' }));
   const give = () => put('calibrating', null);
-  /** The record whose noise stands in its field. @type {object|null} */
+  /** The record with the noise and the part in the fields. @type {object|null} */
   let noisy = null;
   on('measured', (measured) => {
     if (!measured) find('calibrate').close();
-    else if (measured.curve !== noisy) find('calibrate-noise').value = String(roundedUp(measured.curve.noise_percent));
+    else if (measured.curve !== noisy) {
+      find('calibrate-noise').value = String(roundedUp(measured.curve.noise_percent));
+      find('calibrate-from').value = find('calibrate-to').value = '';
+      find('calibrate-part-unit').textContent = unitOf(measured.curve)[1];
+    }
     noisy = measured?.curve ?? null;
   });
   on('calibrating', showProgress);

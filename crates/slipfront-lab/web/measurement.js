@@ -5,7 +5,6 @@ import { toBase64 } from './base64.js';
 import { send } from './connection.js';
 import { find, make, onPress } from './element.js';
 import { announce, notice } from './notices.js';
-import { sorted } from './record.js';
 import { MOST_BYTES } from './run_folder.js';
 import { on, put, state } from './store.js';
 import { say } from './text.js';
@@ -83,7 +82,7 @@ function take(record) {
   if (record.curve === null) return problem(record.problem ?? '');
   problem('');
   find('measure').close();
-  put('measured', { file, curve: sorted(record.curve), shift: shiftOf(file, record.curve) });
+  put('measured', { file, curve: record.curve, shift: shiftOf(file, record.curve) });
   const { name, notes } = record;
   const text = say('record_drawn', { name, values: record.curve.values });
   notice([text, ...notes].join(' '), { topic: 'record' });

@@ -1,6 +1,8 @@
 // @ts-check
 // A measured record in the units of the curves, t* and mu*, for the case that is shown.
 
+import { prefix } from './quantity.js';
+
 /** @import { CaseReply, RecordCurve } from '../types/protocol' */
 
 /** Seconds or metres of a record in one t*; null if the drive does not tell them. @param {RecordCurve} curve @param {Pick<CaseReply, 'units'|'values'>} shown */
@@ -22,10 +24,10 @@ export function inStars(curve, shift, shown) {
   return { t: curve.x.map((x) => (x + shift) / along), mu: curve.y.map((y) => y / friction) };
 }
 
-/** A record whose times or displacements rise. @param {RecordCurve} curve @returns {RecordCurve} */
-export function sorted(curve) {
-  const order = curve.x.map((_, k) => k).sort((one, other) => curve.x[one] - curve.x[other]);
-  return { ...curve, x: order.map((k) => curve.x[k]), y: order.map((k) => curve.y[k]) };
+/** The prefix of SI that suits the times or displacements of a record, and the unit with it. @param {RecordCurve} curve @returns {[number, string]} */
+export function unitOf({ x, along }) {
+  const [factor, letter] = prefix(Math.max(Math.abs(x[0]), Math.abs(x[x.length - 1])));
+  return [factor, `${letter}${along === 'time' ? 's' : 'm'}`];
 }
 
 /** A share that is rounded up to two digits, at least 0.1 %: noise that is taken for weaker than it is makes intervals too narrow. @param {number} percent */

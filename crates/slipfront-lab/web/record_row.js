@@ -5,8 +5,7 @@ import { curvePoints } from './curves.js';
 import { find, onPress } from './element.js';
 import { fittedShift } from './fit_shift.js';
 import { notice } from './notices.js';
-import { prefix } from './quantity.js';
-import { alongUnit, inStars } from './record.js';
+import { alongUnit, inStars, unitOf } from './record.js';
 import { on, put, state } from './store.js';
 import { say } from './text.js';
 
@@ -15,19 +14,13 @@ const STEPS = 200;
 /** Digits of a shift that is shown: more than a curve on a screen has. */
 const DIGITS = 5;
 
-/** The prefix of SI that suits the times or displacements of the record. */
-function prefixOfRecord() {
-  const x = state.measured?.curve.x ?? [];
-  return prefix(Math.max(Math.abs(x[0]), Math.abs(x[x.length - 1])));
-}
-
 function show() {
   const { measured } = state;
   find('measured-row').hidden = !measured;
   if (!measured) return;
-  const [factor, letter] = prefixOfRecord();
-  const { x, along } = measured.curve;
-  find('shift-unit').textContent = `${letter}${along === 'time' ? 's' : 'm'}`;
+  const { x } = measured.curve;
+  const [factor, unit] = unitOf(measured.curve);
+  find('shift-unit').textContent = unit;
   find('shift').step = String(Number(((x[x.length - 1] - x[0]) / factor / STEPS).toPrecision(1)));
   // What is being typed stays.
   if (document.activeElement !== find('shift')) find('shift').value = String(Number((measured.shift / factor).toPrecision(DIGITS)));
@@ -53,7 +46,7 @@ function fit() {
 export function startRecordRow() {
   find('shift').addEventListener('input', () => {
     const value = find('shift').valueAsNumber;
-    if (Number.isFinite(value)) setShift(value * prefixOfRecord()[0]);
+    if (Number.isFinite(value) && state.measured) setShift(value * unitOf(state.measured.curve)[0]);
   });
   onPress('fit-shift', fit);
   on('measured', show);
