@@ -83,12 +83,12 @@ impl Design {
     }
 
     fn tell(&self, py: Python<'_>, masks: Vec<PyBackedBytes>, losses: Vec<f64>) -> PyResult<()> {
-        let told = sets(&masks).into_iter().zip(losses).collect();
+        let rated = sets(&masks).into_iter().zip(losses).collect();
         detached(py, || {
             self.search
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
-                .tell(told);
+                .tell(rated);
         })
     }
 
@@ -114,11 +114,11 @@ impl Design {
             let losses = self
                 .design
                 .losses(textures, surfaces, is_coarse, &mut known, stop)?;
-            let told = losses.into_iter().map(|loss| match loss {
+            let with_reasons = losses.into_iter().map(|loss| match loss {
                 Ok(loss) => (loss, None),
                 Err(why) => (f64::INFINITY, Some(why)),
             });
-            Ok(told.collect())
+            Ok(with_reasons.collect())
         };
         on_pool(py, threads, evaluate, &mut |_| Ok(()))
     }

@@ -60,18 +60,18 @@ pub(crate) fn in_words_of_python(error: impl Display) -> String {
         sentence = sentence.replace(option, argument);
     }
     let mut parts = sentence.split(IN_MEMORY);
-    let mut told = parts.next().unwrap_or_default().to_owned();
+    let mut in_python = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let named = part.split_once('/').and_then(|(_, rest)| rest.split_once(".npy"));
         match named {
             Some((key, rest)) => match by_index(rest) {
-                Some((index, value, rest)) => told.extend([key, &index, value, rest]),
-                None => told.extend([key, rest]),
+                Some((index, value, rest)) => in_python.extend([key, &index, value, rest]),
+                None => in_python.extend([key, rest]),
             },
-            None => told.extend([IN_MEMORY, part]),
+            None => in_python.extend([IN_MEMORY, part]),
         }
     }
-    told
+    in_python
 }
 
 /// The index of a wrong value in an array, that value, and the rest of the sentence after the name of the

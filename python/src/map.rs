@@ -49,8 +49,8 @@ pub(crate) fn run_summaries(
     let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the runs"))?;
     let named = ended.into_iter().zip(&cases).enumerate();
     let summaries = named.filter_map(|(index, (ended, case))| {
-        let told = |error| RunError::new_err(format!("case {index} ({}): {error}", case.name));
-        Some(ended?.map_err(told))
+        let with_index = |error| RunError::new_err(format!("case {index} ({}): {error}", case.name));
+        Some(ended?.map_err(with_index))
     });
     summaries.collect()
 }

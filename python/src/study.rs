@@ -150,18 +150,18 @@ impl Study {
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let axes = self.plan.axes.iter().zip(study::axis_labels(&self.plan));
         axes.map(|(axis, labels)| {
-            let told = PyDict::new(py);
+            let row = PyDict::new(py);
             let levels = axis.levels.iter().zip(labels.levels);
             let levels =
                 levels.map(|(level, label)| (level.labels.clone(), level.number, level.shown(), label));
-            told.set_item("columns", &axis.columns)?;
-            told.set_item("title", labels.title)?;
-            told.set_item("drawn_title", labels.drawn_title)?;
-            told.set_item("drawn_symbol", labels.drawn_symbol)?;
-            told.set_item("is_meshed", labels.is_meshed)?;
-            told.set_item("is_log", axis.spacing == Spacing::Logarithmic)?;
-            told.set_item("levels", levels.collect::<Vec<_>>())?;
-            Ok(told)
+            row.set_item("columns", &axis.columns)?;
+            row.set_item("title", labels.title)?;
+            row.set_item("drawn_title", labels.drawn_title)?;
+            row.set_item("drawn_symbol", labels.drawn_symbol)?;
+            row.set_item("is_meshed", labels.is_meshed)?;
+            row.set_item("is_log", axis.spacing == Spacing::Logarithmic)?;
+            row.set_item("levels", levels.collect::<Vec<_>>())?;
+            Ok(row)
         })
         .collect()
     }
@@ -170,11 +170,11 @@ impl Study {
     #[getter]
     fn warnings(&self) -> Vec<(String, usize, String)> {
         let plan = &self.plan;
-        let told = plan.warnings().iter().map(|warning| {
+        let warnings = plan.warnings().iter().map(|warning| {
             let first = plan.describe(&plan.points[warning.first]);
             (warning.sentence.clone(), warning.points, first)
         });
-        told.collect()
+        warnings.collect()
     }
 
     /// Whether the tables have a column of this name.

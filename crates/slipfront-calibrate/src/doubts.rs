@@ -120,22 +120,22 @@ mod tests {
 
     #[test]
     fn a_slide_that_begins_at_0_is_told() {
-        let told = doubts_of(0.0, 0.005, |x| 0.5 * slide(0.0)(x) + 0.4);
-        assert!(told[0].starts_with("r.csv begins at 0 with 4"), "{told:?}");
+        let doubts = doubts_of(0.0, 0.005, |x| 0.5 * slide(0.0)(x) + 0.4);
+        assert!(doubts[0].starts_with("r.csv begins at 0 with 4"), "{doubts:?}");
     }
 
     /// Rest of half a second, with the zero of the load cell and without.
     #[test_case(0.0, ""; "zero")]
     #[test_case(0.2, ", and `y_offset` removes the "; "offset")]
     fn rest_is_told(offset: f64, words: &str) {
-        let told = doubts_of(0.0, 0.005, |x| offset + slide(0.5)(x));
+        let doubts = doubts_of(0.0, 0.005, |x| offset + slide(0.5)(x));
         assert!(
-            told[0].contains(" of rest, but the drive of the model starts at 0: `shift = \"-"),
-            "{told:?}"
+            doubts[0].contains(" of rest, but the drive of the model starts at 0: `shift = \"-"),
+            "{doubts:?}"
         );
         assert!(
-            told[0].contains(words) && told[0].contains("y_offset") == (offset > 0.0),
-            "{told:?}"
+            doubts[0].contains(words) && doubts[0].contains("y_offset") == (offset > 0.0),
+            "{doubts:?}"
         );
     }
 }

@@ -141,8 +141,8 @@ impl Fit {
         let of = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_OTHER_STEP;
         maker.expect(of);
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs)?;
-        let told = FittedRecords::of(&training, set_up, records, noise);
-        let estimate = &told.estimate;
+        let fitted = FittedRecords::of(&training, set_up, records, noise);
+        let estimate = &fitted.estimate;
         let unknowns = set_up.unknowns.iter().enumerate();
         let mut unknowns: Vec<UnknownEstimate> = unknowns
             .map(|(number, unknown)| UnknownEstimate::of(unknown, estimate, number))
@@ -152,16 +152,16 @@ impl Fit {
                 let training = Training::run(maker, CalibrationStage::FinerBlocks, &finer, finer_runs)?;
                 let there = FittedRecords::of(&training, &finer, records, noise).estimate;
                 let found = finer.unknowns.iter().zip(&there.distributions);
-                for (told, (unknown, found)) in unknowns.iter_mut().zip(found) {
-                    told.hold_against(unknown, found);
+                for (estimate_of_unknown, (unknown, found)) in unknowns.iter_mut().zip(found) {
+                    estimate_of_unknown.hold_against(unknown, found);
                 }
                 OnFinerBlocks::Runs(finer_runs)
             }
             Ok(None) => OnFinerBlocks::NotAskedFor,
             Err(reason) => OnFinerBlocks::Impossible(reason),
         };
-        let next = weigh(maker, &set_up.grids(), further, &training, &told, noise)?;
-        let (predicted, check) = told.check(set_up, records, noise, maker)?;
+        let next = weigh(maker, &set_up.grids(), further, &training, &fitted, noise)?;
+        let (predicted, check) = fitted.check(set_up, records, noise, maker)?;
         let bands = predicted.bands();
         // Where the calibrated model needs a finer step already, it is held against that of the training.
         let halvings = predicted.halvings();
@@ -176,11 +176,13 @@ impl Fit {
         if halvings > 0 {
             (coarse, fine) = (fine, coarse);
         }
-        let moved = told.calibration.moved(coarse, fine);
-        for (told, (unknown, moved)) in unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved)) {
-            told.hold_against_finer_step(unknown, moved);
+        let moved = fitted.calibration.moved(coarse, fine);
+        for (estimate_of_unknown, (unknown, moved)) in
+            unknowns.iter_mut().zip(set_up.unknowns.iter().zip(moved))
+        {
+            estimate_of_unknown.hold_against_finer_step(unknown, moved);
         }
-        let within = bands.iter().zip(&told.curves);
+        let within = bands.iter().zip(&fitted.curves);
         let findings = Findings {
             runs,
             noise,
@@ -198,8 +200,8 @@ impl Fit {
         Ok(Found {
             findings,
             bands,
-            sample: told.sample(SAMPLE),
-            records: told.curves,
+            sample: fitted.sample(SAMPLE),
+            records: fitted.curves,
         })
     }
 
@@ -212,8 +214,8 @@ impl Fit {
         let Self { set_up, records, .. } = self;
         maker.expect(runs as usize + PREDICTED);
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs as usize)?;
-        let told = FittedRecords::of(&training, set_up, records, noise);
-        let (_, check) = told.check(set_up, records, noise, maker)?;
+        let fitted = FittedRecords::of(&training, set_up, records, noise);
+        let (_, check) = fitted.check(set_up, records, noise, maker)?;
         Ok(check)
     }
 
@@ -249,16 +251,16 @@ fn weigh(
     grids: &[SamplePoints],
     further: Vec<(String, SetUp)>,
     training: &Training,
-    told: &FittedRecords,
+    fitted: &FittedRecords,
     noise: f64,
 ) -> Result<Vec<Further>, StudyError> {
-    let widths = told.calibration.widths(&told.estimate);
+    let widths = fitted.calibration.widths(&fitted.estimate);
     let mut weighed = Vec::new();
     for (set, further) in further {
         let more = Training::run(maker, CalibrationStage::Further, &further, training.points.len())?;
         let grids = [grids, &further.grids()].concat();
         let with = Calibration::new(&training.clone().with(more), &grids, noise);
-        let with = with.widths(&told.estimate);
+        let with = with.widths(&fitted.estimate);
         weighed.push(Further {
             set,
             narrowed_to: with

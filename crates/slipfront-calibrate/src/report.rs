@@ -74,7 +74,7 @@ impl<'a> Report<'a> {
     fn medians(&self) -> Vec<f64> {
         let unknowns = self.findings.unknowns.iter().zip(&self.set_up.unknowns);
         unknowns
-            .map(|(told, unknown)| unknown.share_of(told.median))
+            .map(|(estimate, unknown)| unknown.share_of(estimate.median))
             .collect()
     }
 
@@ -207,8 +207,8 @@ fn in_words(found: &Findings) -> String {
         count(found.runs, "run"),
         four_digits(100.0 * found.noise)
     ));
-    for told in found.unknowns.iter().filter(|told| !told.is_determined) {
-        text += &paragraph(&format!("The records do not determine {}.", told.key));
+    for estimate in found.unknowns.iter().filter(|estimate| !estimate.is_determined) {
+        text += &paragraph(&format!("The records do not determine {}.", estimate.key));
     }
     for pair in &found.pairs {
         let [one, other] = &pair.keys;
@@ -244,21 +244,21 @@ fn paragraph(sentence: &str) -> String {
     format!("{}\n", wrapped(sentence, COLUMNS))
 }
 
-fn row(told: &UnknownEstimate) -> Vec<String> {
-    let [low, high] = told.interval;
-    let [from, to] = told.range.map(four_digits);
+fn row(estimate: &UnknownEstimate) -> Vec<String> {
+    let [low, high] = estimate.interval;
+    let [from, to] = estimate.range.map(four_digits);
     let mut row = vec![
-        told.key.clone(),
-        told.text(told.median),
-        told.text(low),
-        told.text(high),
+        estimate.key.clone(),
+        estimate.text(estimate.median),
+        estimate.text(low),
+        estimate.text(high),
         format!("[{from}, {to}]"),
     ];
-    if !told.is_determined {
+    if !estimate.is_determined {
         row.push("not determined".to_owned());
-    } else if told.belongs_to_block {
+    } else if estimate.belongs_to_block {
         row.push("belongs to the block".to_owned());
-    } else if told.depends_on_step {
+    } else if estimate.depends_on_step {
         row.push("depends on the step".to_owned());
     }
     row
@@ -334,8 +334,8 @@ fn at_finer_step(found: &Findings) -> String {
     let moved: Vec<String> = found
         .unknowns
         .iter()
-        .filter(|told| told.depends_on_step)
-        .map(|told| format!("{} ({})", told.key, told.text(told.at_finer_step)))
+        .filter(|estimate| estimate.depends_on_step)
+        .map(|estimate| format!("{} ({})", estimate.key, estimate.text(estimate.at_finer_step)))
         .collect();
     let step = match found.finer_step {
         2 => "half the time step".to_owned(),
@@ -363,8 +363,14 @@ fn on_finer_blocks(found: &Findings) -> String {
             let moved: Vec<String> = found
                 .unknowns
                 .iter()
-                .filter(|told| told.belongs_to_block)
-                .filter_map(|told| Some(format!("{} ({})", told.key, told.text(told.on_finer_blocks?.0))))
+                .filter(|estimate| estimate.belongs_to_block)
+                .filter_map(|estimate| {
+                    Some(format!(
+                        "{} ({})",
+                        estimate.key,
+                        estimate.text(estimate.on_finer_blocks?.0)
+                    ))
+                })
                 .collect();
             let runs = count(*runs, "run");
             paragraph(&if moved.is_empty() {
@@ -387,12 +393,12 @@ fn further(found: &Findings) -> String {
     }
     let mut header = vec!["key"];
     header.extend(found.next.iter().map(|further| further.set.as_str()));
-    let row = |(number, told): (usize, &UnknownEstimate)| {
+    let row = |(number, estimate): (usize, &UnknownEstimate)| {
         let widths = found
             .next
             .iter()
             .map(|further| format!("{:.2}", further.narrowed_to[number]));
-        std::iter::once(told.key.clone()).chain(widths).collect()
+        std::iter::once(estimate.key.clone()).chain(widths).collect()
     };
     let rows: Vec<Vec<String>> = found.unknowns.iter().enumerate().map(row).collect();
     format!(

@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_run_is_told_with_its_unknowns() {
-        let told = |set_up: &SetUp| trained(set_up, 1).unwrap_err().to_string();
+        let message = |set_up: &SetUp| trained(set_up, 1).unwrap_err().to_string();
         // A program of speeds moves the drive as far as its case runs.
         let mut short = set_up([0.5, 1.0], 50.0);
         for conditions in &mut short.conditions {
@@ -119,11 +119,11 @@ mod tests {
             conditions.overrides = vec![Override::parse(program).unwrap()];
         }
         assert!(
-            told(&short).contains("the run ends before record 1"),
+            message(&short).contains("the run ends before record 1"),
             "{}",
-            told(&short)
+            message(&short)
         );
-        let out_of_bounds = told(&set_up([-3.0, -2.0], 5.0));
+        let out_of_bounds = message(&set_up([-3.0, -2.0], 5.0));
         assert!(
             out_of_bounds.starts_with("the unknowns friction.r_star=-2."),
             "{out_of_bounds}"

@@ -84,21 +84,25 @@ impl Report<'_> {
             let design = &verdict.design;
             let numbers = numbers_found(searched, shares.as_deref());
             let half = design.loss_half_width.unwrap_or(f64::NAN);
-            let ends = [design.loss - half, design.loss + half].map(|loss| wish.told(loss));
+            let ends = [design.loss - half, design.loss + half].map(|loss| wish.reported_loss(loss));
             curve.x.push(design.coverage_percent);
-            curve.mean.push(wish.told(design.loss));
+            curve.mean.push(wish.reported_loss(design.loss));
             curve.low.push(ends[0].min(ends[1]));
             curve.high.push(ends[0].max(ends[1]));
             rows.push(vec![
                 format!("{} %", four_digits(*limit)),
                 format!("{} %", four_digits(design.coverage_percent)),
-                format!("{}{}", four_digits(wish.told(design.loss)), wish.loss_unit()),
+                format!(
+                    "{}{}",
+                    four_digits(wish.reported_loss(design.loss)),
+                    wish.loss_unit()
+                ),
                 if numbers.is_empty() {
                     design.name.clone()
                 } else {
                     numbers
                         .iter()
-                        .map(FoundNumber::told)
+                        .map(FoundNumber::key_and_value)
                         .collect::<Vec<_>>()
                         .join(", ")
                 },

@@ -339,7 +339,7 @@ mod tests {
                     assert!(seen.insert(one.texture.clone()));
                 }
                 // A loss without any meaning: how far the texture lies to the left.
-                let told: Vec<_> = asked
+                let rated: Vec<_> = asked
                     .into_iter()
                     .map(|proposal| {
                         let columns = (0..nx * ny).filter(|&block| proposal.texture[block]);
@@ -348,7 +348,7 @@ mod tests {
                     })
                     .collect();
                 for search in &mut twins {
-                    search.tell(&told);
+                    search.tell(&rated);
                 }
             }
         }

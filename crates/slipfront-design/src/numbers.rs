@@ -33,7 +33,7 @@ impl FoundNumber {
     }
 
     /// The key with its value, for a sentence.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn key_and_value(&self) -> String {
         format!("{} = {}", self.key, self.with_unit(self.value))
     }
 

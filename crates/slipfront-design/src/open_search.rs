@@ -37,8 +37,8 @@ impl OpenSearch {
     }
 
     /// Takes textures with their losses, the less the better; the textures may be asked for or others.
-    pub fn tell(&mut self, told: Vec<(Vec<bool>, f64)>) {
-        let found = told.into_iter().map(|(texture, loss)| {
+    pub fn tell(&mut self, rated: Vec<(Vec<bool>, f64)>) {
+        let found = rated.into_iter().map(|(texture, loss)| {
             let asked = self.asked.remove(&hash(&texture));
             let proposal = asked.unwrap_or_else(|| self.search.of_other(texture));
             RatedTexture { proposal, loss }

@@ -376,12 +376,12 @@ fn headline(design: &Design, verdict: &Verdict) -> String {
         return "no verdict: every tested texture failed on new surfaces".to_owned();
     }
     let design = &verdict.design;
-    let loss = wish.told(design.loss);
-    let half_width = design.loss_half_width.map(|half| wish.difference_told(half));
+    let loss = wish.reported_loss(design.loss);
+    let half_width = design.loss_half_width.map(|half| wish.reported_difference(half));
     let found = match design.cases.as_slice() {
         [one] => one
             .wished_star
-            .map_or("nothing".to_owned(), |mean| unit.told_mean(&mean)),
+            .map_or("nothing".to_owned(), |mean| unit.mean_text(&mean)),
         _ => String::new(),
     };
     let mut text = wish.headline(loss, half_width, &found);
@@ -405,7 +405,7 @@ fn headline(design: &Design, verdict: &Verdict) -> String {
     if let Some((name, by)) = better.min_by(|one, other| one.1.mean.total_cmp(&other.1.mean)) {
         text += &format!(
             ". Another texture is better, by {}{}: {name}",
-            four_digits(-wish.difference_told(by.mean)),
+            four_digits(-wish.reported_difference(by.mean)),
             wish.loss_unit()
         );
     }
@@ -415,13 +415,13 @@ fn headline(design: &Design, verdict: &Verdict) -> String {
 /// The scatter of the design from part to part in the unit of the wish, for a sentence, where parts differ.
 fn scatter(unit: &FrictionUnit, verdict: &Verdict) -> Option<String> {
     let mean = verdict.design.cases[0].wished_star?;
-    let deviation = unit.told_scatter(mean.deviation?);
+    let deviation = unit.scatter_text(mean.deviation?);
     Some(format!("parts scatter by {deviation} (1 s.d.)"))
 }
 
 /// The parts of the design within the tolerance of the wish, and the tolerance as told.
 fn design_within(wish: &Wish, verdict: &Verdict) -> Option<(WithinTolerance, String)> {
-    Some((verdict.design.within_tolerance?, wish.tolerance_told()?))
+    Some((verdict.design.within_tolerance?, wish.tolerance_text()?))
 }
 
 /// A line on the friction of the design in the unit of the wish, for a wish whose headline does not say it.
@@ -436,14 +436,14 @@ fn friction_of_parts(unit: &FrictionUnit, wish: &Wish, verdict: &Verdict) -> Opt
     Some(format!(
         "The {} of the design is {}{end}.\n",
         wish.quantity().name(),
-        unit.told_mean(&one.wished_star?)
+        unit.mean_text(&one.wished_star?)
     ))
 }
 
 /// Rows of the table: one for every texture that was judged, and every case.
 fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
     let within = wish
-        .tolerance_told()
+        .tolerance_text()
         .map(|tolerance| format!("within \u{b1} {tolerance}"));
     let mut header = vec![
         "texture",
@@ -495,7 +495,11 @@ fn loss_cell(wish: &Wish, found: &OnFresh, is_first: bool) -> String {
     if is_first && found.lost.is_some() {
         "lost".to_owned()
     } else if is_first && found.loss.is_finite() {
-        format!("{}{}", four_digits(wish.told(found.loss)), wish.loss_unit())
+        format!(
+            "{}{}",
+            four_digits(wish.reported_loss(found.loss)),
+            wish.loss_unit()
+        )
     } else {
         "-".to_owned()
     }
@@ -509,15 +513,15 @@ fn within_cell(found: Option<WithinTolerance>) -> String {
 fn better_cell(wish: &Wish, better: Option<Mean>) -> String {
     let finite = better.filter(|better| better.mean.is_finite());
     finite.map_or("-".to_owned(), |better| {
-        let half_width = better.half_width.map(|half| wish.difference_told(half));
-        with_half_width(wish.difference_told(better.mean), half_width)
+        let half_width = better.half_width.map(|half| wish.reported_difference(half));
+        with_half_width(wish.reported_difference(better.mean), half_width)
     })
 }
 
 fn optimism(wish: &Wish, verdict: &Verdict) -> String {
     format!(
         "On the surfaces of the search the design was better by {}.",
-        four_digits(wish.difference_told(verdict.optimism))
+        four_digits(wish.reported_difference(verdict.optimism))
     )
 }
 
@@ -529,7 +533,7 @@ fn under_changes(design: &Design, verdict: &Verdict) -> String {
         _ => None,
     };
     let within = wish
-        .tolerance_told()
+        .tolerance_text()
         .map(|tolerance| format!("within \u{b1} {tolerance}"));
     let mut header = vec!["change"];
     if unit.is_some() {
@@ -543,8 +547,8 @@ fn under_changes(design: &Design, verdict: &Verdict) -> String {
             // A mean over those surfaces alone on which the design is not lost would flatter it.
             let found = changed.wished_star.filter(|_| changed.lost.is_none());
             let deviation = found.and_then(|mean| mean.deviation);
-            row.push(found.map_or("-".to_owned(), |mean| unit.told_mean(&mean)));
-            row.push(deviation.map_or("-".to_owned(), |deviation| unit.told_scatter(deviation)));
+            row.push(found.map_or("-".to_owned(), |mean| unit.mean_text(&mean)));
+            row.push(deviation.map_or("-".to_owned(), |deviation| unit.scatter_text(deviation)));
         }
         if within.is_some() {
             row.push(within_cell(changed.within_tolerance));
@@ -552,7 +556,7 @@ fn under_changes(design: &Design, verdict: &Verdict) -> String {
         row.push(if changed.lost.is_some() {
             "lost".to_owned()
         } else {
-            let loss = wish.told(changed.loss.mean);
+            let loss = wish.reported_loss(changed.loss.mean);
             format!("{}{}", four_digits(loss), wish.loss_unit())
         });
         row.push(better_cell(wish, changed.better_by));

@@ -306,7 +306,7 @@ impl<'a> Stages<'a> {
             } else {
                 DesignStage::Exploring
             },
-            best: best.map_or(f64::NAN, |found| self.evaluator.wish().told(found.loss)),
+            best: best.map_or(f64::NAN, |found| self.evaluator.wish().reported_loss(found.loss)),
             best_texture: best.map(|found| Arc::clone(&found.proposal.texture)),
             best_shares: best.and_then(|found| found.proposal.shares()),
             work: RunCost {

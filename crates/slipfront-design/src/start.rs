@@ -26,7 +26,7 @@ pub(crate) struct Start {
     from: Draft,
     adaptation: Adaptation,
     /// Losses since the distribution was adapted, each with the standard normal numbers that made the draft.
-    told: Vec<(f64, Vec<f64>)>,
+    losses: Vec<(f64, Vec<f64>)>,
     /// Generations since drafts have become better.
     idle: usize,
     /// Least loss when drafts last became better.
@@ -40,7 +40,7 @@ impl Start {
             number,
             adaptation: Adaptation::new(space.numbers(&from), spread),
             from,
-            told: Vec::new(),
+            losses: Vec::new(),
             idle: 0,
             reached: f64::INFINITY,
         }
@@ -61,26 +61,26 @@ impl Start {
 
     /// Takes the loss of a draft of this start.
     pub(crate) fn tell(&mut self, loss: f64, normal: &[f64]) {
-        self.told.push((loss, normal.to_vec()));
+        self.losses.push((loss, normal.to_vec()));
         // Adaptation compares drafts of one distribution, so that it stays until all of a generation are
         // told.
-        if self.told.len() < GENERATION {
+        if self.losses.len() < GENERATION {
             return;
         }
-        let mut told = std::mem::take(&mut self.told);
-        told.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if told[0].0 < self.reached - PROGRESS {
-            (self.reached, self.idle) = (told[0].0, 0);
+        let mut losses = std::mem::take(&mut self.losses);
+        losses.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if losses[0].0 < self.reached - PROGRESS {
+            (self.reached, self.idle) = (losses[0].0, 0);
         } else {
             self.idle += 1;
         }
-        let normal: Vec<&[f64]> = told.iter().map(|(_, normal)| normal.as_slice()).collect();
+        let normal: Vec<&[f64]> = losses.iter().map(|(_, normal)| normal.as_slice()).collect();
         self.adaptation.adapt(&normal);
     }
 
     /// Forgets losses, because later ones are measured otherwise; the distribution stays as it is.
     pub(crate) fn forget_losses(&mut self) {
-        self.told.clear();
+        self.losses.clear();
         (self.reached, self.idle) = (f64::INFINITY, 0);
     }
 

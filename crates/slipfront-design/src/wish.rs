@@ -87,19 +87,19 @@ impl FrictionUnit {
     }
 
     /// A number of mu_s in this unit.
-    pub(crate) fn told(&self, star: f64) -> String {
+    pub(crate) fn text(&self, star: f64) -> String {
         four_digits(star * self.mu_s) + &self.name
     }
 
     /// A scatter of numbers of mu_s in this unit, to its second digit.
-    pub(crate) fn told_scatter(&self, star: f64) -> String {
+    pub(crate) fn scatter_text(&self, star: f64) -> String {
         let scatter = star * self.mu_s;
         let digits = (1.0 - libm::floor(libm::log10(scatter))).clamp(0.0, 12.0);
         format!("{scatter:.0$}{1}", digits as usize, self.name)
     }
 
     /// A mean of numbers of mu_s in this unit, with its interval.
-    pub(crate) fn told_mean(&self, mean: &Mean) -> String {
+    pub(crate) fn mean_text(&self, mean: &Mean) -> String {
         let half_width = mean.half_width.map(|half| half * self.mu_s);
         with_half_width(mean.mean * self.mu_s, half_width) + &self.name
     }
@@ -212,8 +212,8 @@ impl Wish {
         if deviation.is_finite() {
             return Ok(deviation);
         }
-        let is_told = |found: &Measured| found.get(quantity).is_finite();
-        Err(if is_told(with) && without.is_none_or(is_told) {
+        let is_measured = |found: &Measured| found.get(quantity).is_finite();
+        Err(if is_measured(with) && without.is_none_or(is_measured) {
             format!(
                 "the {} of the untextured slider is 0, so a comparison is not possible: give a target value, or another quantity",
                 quantity.name()
@@ -273,20 +273,20 @@ impl Wish {
     }
 
     /// The tolerance of the wish in its unit, as a text.
-    pub(crate) fn tolerance_told(&self) -> Option<String> {
+    pub(crate) fn tolerance_text(&self) -> Option<String> {
         match self {
-            Self::Value(target) => Some(target.unit.told(target.tolerance_star?)),
+            Self::Value(target) => Some(target.unit.text(target.tolerance_star?)),
             _ => None,
         }
     }
 
     /// A loss as reported: a reduction or a rise in %, the distance from a value in %, or the distance from a
     /// curve.
-    pub(crate) fn told(&self, loss: f64) -> f64 {
+    pub(crate) fn reported_loss(&self, loss: f64) -> f64 {
         match self {
-            Self::Least(_) => self.difference_told(1.0 - loss),
-            Self::Largest(_) => self.difference_told(-loss - 1.0),
-            Self::Value(..) | Self::Curve(_) => self.difference_told(loss),
+            Self::Least(_) => self.reported_difference(1.0 - loss),
+            Self::Largest(_) => self.reported_difference(-loss - 1.0),
+            Self::Value(..) | Self::Curve(_) => self.reported_difference(loss),
         }
     }
 
@@ -334,7 +334,7 @@ impl Wish {
                 };
                 format!(
                     "target {of} of {}: result {found}, {} % difference{root}",
-                    target.unit.told(target.star),
+                    target.unit.text(target.star),
                     four_digits(loss)
                 )
             }
@@ -353,7 +353,7 @@ impl Wish {
     }
 
     /// A difference of losses as reported: in points of %; for a curve as it is.
-    pub(crate) fn difference_told(&self, difference: f64) -> f64 {
+    pub(crate) fn reported_difference(&self, difference: f64) -> f64 {
         match self {
             Self::Curve(_) => difference,
             _ => 100.0 * difference,
@@ -400,10 +400,10 @@ mod tests {
     #[test]
     fn friction_is_told_in_the_unit_of_the_wish() {
         let force = FrictionUnit::force(0.012, 0.04);
-        assert_eq!(force.told(0.3), "12 mN");
-        assert_eq!(force.told_scatter(0.000_123), "0.0049 mN");
-        assert_eq!(FrictionUnit::share().told(0.3), "0.3 mu_s");
-        assert_eq!(FrictionUnit::coefficient(0.5).told(0.6), "0.3");
+        assert_eq!(force.text(0.3), "12 mN");
+        assert_eq!(force.scatter_text(0.000_123), "0.0049 mN");
+        assert_eq!(FrictionUnit::share().text(0.3), "0.3 mu_s");
+        assert_eq!(FrictionUnit::coefficient(0.5).text(0.6), "0.3");
     }
 
     #[test]
@@ -415,18 +415,19 @@ mod tests {
             misfit: Some(0.25),
         };
         let (with, without) = (run(0.75, 0.5), run(1.0, 0.25));
-        let told = |wish: Wish| wish.told(wish.loss(&[wish.deviation(&with, Some(&without)).unwrap()]));
-        assert_eq!(told(Wish::Least(Quantity::StaticFriction)), 25.0);
-        assert_eq!(told(Wish::Largest(Quantity::StaticFriction)), -25.0);
-        assert_eq!(told(Wish::Largest(Quantity::KineticFriction)), 100.0);
+        let reported =
+            |wish: Wish| wish.reported_loss(wish.loss(&[wish.deviation(&with, Some(&without)).unwrap()]));
+        assert_eq!(reported(Wish::Least(Quantity::StaticFriction)), 25.0);
+        assert_eq!(reported(Wish::Largest(Quantity::StaticFriction)), -25.0);
+        assert_eq!(reported(Wish::Largest(Quantity::KineticFriction)), 100.0);
         assert_eq!(
-            told(Wish::Least(Quantity::FrictionDrop)),
+            reported(Wish::Least(Quantity::FrictionDrop)),
             100.0 * (1.0 - 0.25 / 0.75)
         );
-        assert_eq!(told(value(1.5, None)), 50.0);
-        assert_eq!(told(value(0.5, None)), 50.0);
-        assert_eq!(told(value(0.5, Some(0.1))), 50.0);
-        assert_eq!(told(Wish::Curve(Vec::new())), 0.25);
+        assert_eq!(reported(value(1.5, None)), 50.0);
+        assert_eq!(reported(value(0.5, None)), 50.0);
+        assert_eq!(reported(value(0.5, Some(0.1))), 50.0);
+        assert_eq!(reported(Wish::Curve(Vec::new())), 0.25);
         let short = Measured {
             kinetic_star: None,
             ..with.clone()

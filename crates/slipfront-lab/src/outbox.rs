@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn answers_to_a_page_that_does_not_read_wait_until_it_reads_or_is_gone() {
         let outbox = Arc::new(Outbox::default());
-        let (done, told) = channel();
+        let (done, replied) = channel();
         let filled = Arc::clone(&outbox);
         let session = thread::spawn(move || {
             // Two are more than may wait.
@@ -139,11 +139,11 @@ mod tests {
                 done.send(number).unwrap();
             }
         });
-        let next = || told.recv_timeout(TIMEOUT).unwrap();
+        let next = || replied.recv_timeout(TIMEOUT).unwrap();
         assert_eq!([next(), next()], [0, 1]);
         // Nothing tells that somebody waits: a session that does not would be done by now.
         thread::sleep(Duration::from_millis(50));
-        assert!(told.try_recv().is_err());
+        assert!(replied.try_recv().is_err());
         assert!(outbox.take().is_some());
         assert_eq!(next(), 2);
         outbox.close();

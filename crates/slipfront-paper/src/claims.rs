@@ -240,9 +240,9 @@ impl ClaimResult {
         let why = match self.verdict {
             ClaimVerdict::HoldsWithCondition => words_of(&claim.condition),
             ClaimVerdict::NotAsStated => {
-                let told =
+                let condition =
                     words_of(&claim.condition).unwrap_or_else(|| "by the present criterion".to_owned());
-                Some(format!("it holds {told}"))
+                Some(format!("it holds {condition}"))
             }
             ClaimVerdict::Misprint => words_of(&claim.correction),
             ClaimVerdict::Holds | ClaimVerdict::DoesNotHold => None,
@@ -356,18 +356,18 @@ mod tests {
             assert_eq!(verdict(revised(condition), 0.5, other), ClaimVerdict::NotAsStated);
             assert_eq!(verdict(revised(condition), 2.0, other), ClaimVerdict::DoesNotHold);
         }
-        let told = |condition| {
+        let verdict_with = |condition| {
             let numbers = [("fig99.main", 0.5), ("fig99.other", 2.0)];
             let numbers = numbers.map(|(name, value)| (name.to_owned(), MeasuredNumber::exact(value)));
             let result = revised(condition).judge(&BTreeMap::from(numbers)).unwrap();
             result.verdict_in_full()
         };
         assert_eq!(
-            told(Some([0.0, 1.0])),
+            verdict_with(Some([0.0, 1.0])),
             "not reproduced as stated: it holds on Sundays"
         );
         assert_eq!(
-            told(None),
+            verdict_with(None),
             "not reproduced as stated: it holds by the present criterion"
         );
     }

@@ -355,10 +355,10 @@ mod tests {
                 at(&logs).value
             };
             let slope = (moved(step) - moved(-step)) / (2.0 * step);
-            let told = found.of_weights.get(k).copied().unwrap_or(found.of_ridge);
+            let known = found.of_weights.get(k).copied().unwrap_or(found.of_ridge);
             // A central difference is off by a third derivative times step^2/6, and by rounding over the
             // step.
-            assert!((slope - told).abs() < 1e-5, "{k} {slope} {told}");
+            assert!((slope - known).abs() < 1e-5, "{k} {slope} {known}");
         }
     }
 

@@ -636,10 +636,10 @@ mod tests {
         let record = read(text, ["1", "2"], [None; 2]).unwrap();
         assert_eq!(record.x, [0.0, 1.0]);
         let footer = record.footer.unwrap();
-        let told = format!(
+        let ending = format!(
             "ends with {} without numbers, starting at line {from}",
             count(lines, "line")
         );
-        assert!(footer.ends_with(&told), "{footer}");
+        assert!(footer.ends_with(&ending), "{footer}");
     }
 }

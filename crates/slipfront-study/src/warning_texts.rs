@@ -10,18 +10,18 @@ const MAX_WARNINGS: usize = 8;
 /// the number of the others.
 pub fn warning_texts(plan: &Plan) -> Vec<String> {
     let all = plan.warnings();
-    let mut told: Vec<String> = all
+    let mut texts: Vec<String> = all
         .iter()
         .take(MAX_WARNINGS)
         .map(|warning| format!("{} ({})", warning.sentence, place(warning, plan)))
         .collect();
     if all.len() > MAX_WARNINGS {
         let more = all.len() - MAX_WARNINGS;
-        told.push(format!(
+        texts.push(format!(
             "and {more} similar notes, which `slipfront check` prints for a case"
         ));
     }
-    told
+    texts
 }
 
 /// The points that a warning concerns.

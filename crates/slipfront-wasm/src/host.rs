@@ -19,7 +19,7 @@ type EventQueues = Rc<RefCell<HashMap<u32, VecDeque<Event>>>>;
 pub(crate) struct WorkerHost {
     presets: Presets,
     opening: Document,
-    told: EventQueues,
+    events: EventQueues,
     /// How many Workers beside the session share the parts of one computation.
     workers: u32,
     n_tasks: Cell<u32>,
@@ -39,7 +39,7 @@ impl WorkerHost {
         Self {
             presets,
             opening,
-            told: EventQueues::default(),
+            events: EventQueues::default(),
             workers,
             n_tasks: Cell::new(0),
             unread: Cell::new(0),
@@ -52,8 +52,8 @@ impl WorkerHost {
 
     /// Notes what work tells, unless nobody waits for it any more.
     pub(crate) fn hear(&self, task: u32, event: Event) {
-        if let Some(told) = self.told.borrow_mut().get_mut(&task) {
-            told.push_back(event);
+        if let Some(events) = self.events.borrow_mut().get_mut(&task) {
+            events.push_back(event);
         }
     }
 }
@@ -109,10 +109,10 @@ impl Host for WorkerHost {
     fn begin(&self, job: Job) -> Result<Box<dyn Task>, String> {
         let number = self.n_tasks.get() + 1;
         self.n_tasks.set(number);
-        self.told.borrow_mut().insert(number, VecDeque::new());
+        self.events.borrow_mut().insert(number, VecDeque::new());
         tell(Saying::Job, number, &json(&job));
-        let told = Rc::clone(&self.told);
-        Ok(Box::new(WorkerTask { number, told }))
+        let events = Rc::clone(&self.events);
+        Ok(Box::new(WorkerTask { number, events }))
     }
 
     fn save(&self, document: Document, name: &str) -> Result<(), String> {
@@ -134,18 +134,18 @@ impl Host for WorkerHost {
 /// Work that another Worker does.
 struct WorkerTask {
     number: u32,
-    told: EventQueues,
+    events: EventQueues,
 }
 
 impl Task for WorkerTask {
     fn next_event(&mut self) -> Option<Event> {
-        self.told.borrow_mut().get_mut(&self.number)?.pop_front()
+        self.events.borrow_mut().get_mut(&self.number)?.pop_front()
     }
 }
 
 impl Drop for WorkerTask {
     fn drop(&mut self) {
-        self.told.borrow_mut().remove(&self.number);
+        self.events.borrow_mut().remove(&self.number);
         tell(Saying::End, self.number, &[]);
     }
 }

@@ -23,19 +23,19 @@ impl Case {
         let too_small: Vec<(&str, f64, f64)> = too_small.collect();
         let finer = too_small.iter().map(|(_, blocks, needed)| needed / blocks);
         let finer = finer.reduce(f64::max)?;
-        let told = |(place, (name, blocks, _)): (usize, &(&str, f64, f64))| match place {
+        let clause = |(place, (name, blocks, _)): (usize, &(&str, f64, f64))| match place {
             0 if *blocks == 1.0 => format!("the {name} is 1 block across"),
             0 => format!("the {name} is {} blocks across", four_digits(*blocks)),
             _ => format!("the {name} {}", four_digits(*blocks)),
         };
-        let told: Vec<String> = too_small.iter().enumerate().map(told).collect();
+        let clauses: Vec<String> = too_small.iter().enumerate().map(clause).collect();
         let needed: Vec<String> = too_small
             .iter()
             .map(|(_, _, needed)| needed.to_string())
             .collect();
         Some(format!(
             "{}; the outline needs {}, {}",
-            told.join(" and "),
+            clauses.join(" and "),
             needed.join(" and "),
             self.blocks_for(finer)
         ))

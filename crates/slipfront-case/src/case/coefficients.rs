@@ -19,18 +19,18 @@ pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {
     let Some(blocks) = correlation_length(file) else {
         return Ok(());
     };
-    let told = format!("this makes the correlation length {} blocks", four_digits(blocks));
+    let length = format!("this makes the correlation length {} blocks", four_digits(blocks));
     let sentence = if blocks < least {
         let kept = deviation_along(blocks).powi(2);
         format!(
-            "{told}; at least {least} are needed: neighbouring blocks are then almost uncorrelated, and independent \
+            "{length}; at least {least} are needed: neighbouring blocks are then almost uncorrelated, and independent \
              coefficients are adequate; leave it out and multiply `sigma_static_star` and `sigma_kinetic_star` by {}, the spread \
              of means over a block, or use smaller blocks",
             four_digits(kept)
         )
     } else if blocks > most {
         format!(
-            "{told}; at most {most} are possible: the coefficients are then uniform; leave it out, set the spreads to 0, and \
+            "{length}; at most {most} are possible: the coefficients are then uniform; leave it out, set the spreads to 0, and \
              `mu_static` to the coefficient"
         )
     } else {

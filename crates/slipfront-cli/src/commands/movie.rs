@@ -56,7 +56,7 @@ pub(crate) struct MovieCommand {
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Duration of the movie in seconds; instants A-F are shown five times as long as other snapshots
-    /// [default: about 16]
+    /// [default: about 16, and 1 more for each of these instants]
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
     /// Snapshots per second, all shown for the same time

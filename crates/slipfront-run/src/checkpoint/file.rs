@@ -276,9 +276,9 @@ struct ErrorKeepingReader<'a> {
 impl Read for ErrorKeepingReader<'_> {
     fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
         self.file.read(bytes).map_err(|error| {
-            let told = error.kind().into();
+            let kind = error.kind().into();
             self.error = Some(error);
-            told
+            kind
         })
     }
 }

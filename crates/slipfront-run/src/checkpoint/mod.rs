@@ -329,12 +329,12 @@ mod tests {
             });
             // The others tell whose it is, unless it is that of the first.
             let own = &errors[failing];
-            let told = match failing {
+            let of_others = match failing {
                 0 => own.clone(),
                 _ => format!("rank {failing}: {own}"),
             };
             for (rank, error) in errors.iter().enumerate() {
-                assert_eq!(error, if rank == failing { own } else { &told }, "{rank}");
+                assert_eq!(error, if rank == failing { own } else { &of_others }, "{rank}");
             }
             assert!(latest(folder.path()) == before);
             let temporary = Unfinished::of(folder.path()).temporary();

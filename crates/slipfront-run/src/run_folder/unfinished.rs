@@ -136,10 +136,12 @@ impl Unfinished {
     }
 }
 
-/// Makes a folder; an error names the path `told`.
-fn make_folder(path: &Path, told: &Path) -> Result<(), FolderError> {
+/// Makes a folder; an error names `path_in_error`.
+fn make_folder(path: &Path, path_in_error: &Path) -> Result<(), FolderError> {
     match std::fs::create_dir(path) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(FolderError::unwritable(told)(error)),
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+            Err(FolderError::unwritable(path_in_error)(error))
+        }
         Err(_) if !is_folder(path).map_err(FolderError::read(path))? => {
             let path = path.to_owned();
             Err(FolderError::Foreign { path })

@@ -25,12 +25,12 @@ impl Part {
         while let Some(seed) = self.seeds.as_slice().first().copied()
             && let Some(event) = self.task.next_event()
         {
-            let told = match event.0 {
-                EventKind::Repeated(told) => told,
+            let outcome = match event.0 {
+                EventKind::Repeated(outcome) => outcome,
                 _ => Err("the runs over seeds failed by a defect of their own".to_owned()),
             };
-            let goes_on = told.is_ok();
-            found.note(seed, told);
+            let goes_on = outcome.is_ok();
+            found.note(seed, outcome);
             self.seeds.next();
             if !goes_on {
                 return false;

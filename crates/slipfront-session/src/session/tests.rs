@@ -188,8 +188,8 @@ fn the_stages_of_a_transition_are_told_at_once() {
         let before = tried.session.live.as_mut().unwrap().look_for_stages();
         assert_eq!(before, stages, "a stage was not told");
         tried.now = tried.advance().unwrap().max(tried.now + Duration::from_millis(1));
-        let told = tried.replies();
-        for numbers in told.iter().filter(|reply| reply["is"] == "numbers") {
+        let replies = tried.replies();
+        for numbers in replies.iter().filter(|reply| reply["is"] == "numbers") {
             let seen = [
                 !numbers["instants"]["B"].is_null(),
                 numbers["peak"]["certain"] == true,

@@ -36,14 +36,14 @@ pub fn run_archive(
     let (started, began) = now();
     let case = Arc::new(document.case(&mut |_| true).map_err(sentence)?);
     let mut running = Running::start(&case, None, Execution::default());
-    let mut told = 0.0;
+    let mut reported = 0.0;
     let reason = loop {
         if let Some(reason) = running.advance(case.steps_per_poll()).map_err(sentence)? {
             break reason;
         }
         let share = running.snapshot().drive_steps as f64 / case.time_plan.last_step as f64;
-        if share >= told + SHARE {
-            told = share;
+        if share >= reported + SHARE {
+            reported = share;
             report_progress(share);
         }
     };
