@@ -59,7 +59,9 @@ impl Calibration {
     ) -> PyResult<Vec<String>> {
         let (folder, force) = folder;
         let (mut opened, notes) = self.open(py, &folder, force, training.as_deref(), &records, threads)?;
-        with_progress(py, threads, watch.as_ref(), |stop, show| opened.find(stop, show))?;
+        with_progress(py, threads, watch.as_ref(), |stop, show| {
+            opened.find(None, stop, show)
+        })?;
         Ok(notes)
     }
 

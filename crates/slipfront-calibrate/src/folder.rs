@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf, absolute};
 use std::sync::atomic::AtomicBool;
 
 use serde::Deserialize;
+use slipfront::device::Device;
 use slipfront_base::disk::is_same;
 use slipfront_plot::PictureLook;
 use slipfront_run::manifest::ManifestFile;
@@ -48,7 +49,7 @@ fn find_again(
     let mut again = CalibrationFolder::again(folder, other)?;
     again.files = again.files.with_look(look.clone());
     let kept = again.n_kept();
-    again.find(stop, &mut |_| {})?;
+    again.find(None, stop, &mut |_| {})?;
     Ok([kept, again.n_kept()])
 }
 
@@ -141,18 +142,18 @@ impl CalibrationFolder {
     }
 
     /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings,
-    /// and returns them as a text.
+    /// and returns them as a text. A device, if there is one, makes the runs, with the same findings.
     ///
     /// # Errors
     /// When runs cannot be made or kept, after a stop, and when the system refuses to write.
     pub fn find(
         &mut self,
+        device: Option<&dyn Device>,
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<String, StudyError> {
-        let found = self
-            .fit
-            .find(&mut RunMaker::new(stop, 0, watch).with(&mut self.kept))?;
+        let maker = RunMaker::new(stop, 0, watch).with(&mut self.kept);
+        let found = self.fit.find(&mut maker.on_device(device))?;
         let mut batch = self.files.begin();
         let text = Report::of(&self.fit.set_up, &found.findings).write(&found, &mut batch)?;
         batch.place(Others::Go)?;

@@ -13,6 +13,8 @@ mod calibration;
 mod clipping;
 mod closest;
 mod design_point;
+#[cfg(not(target_family = "wasm"))]
+mod device_training;
 mod doubts;
 mod file;
 mod findings;

@@ -6,15 +6,21 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use slipfront::device::{Device, DeviceError};
 use slipfront_study::project_folder::{Journal, JournalEntry};
 use slipfront_study::{StudyError, TrainingError};
 
+#[cfg(not(target_family = "wasm"))]
+use crate::device_training::curves_on_device;
 use crate::file::CALIBRATION;
 use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::set_up::{Curves, SetUp};
 
 /// Number of runs that are made before they are kept and shown.
 const AT_ONCE: usize = 32;
+
+/// Number of runs that a device makes before they are kept and shown.
+const AT_ONCE_ON_DEVICE: usize = 1024;
 
 /// A line of the journal.
 #[derive(Serialize, Deserialize)]
@@ -73,10 +79,32 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// The curves of the run of this number; none after a stop.
-    fn curves(&self, run: usize, stop: &AtomicBool) -> Result<Option<Curves>, TrainingError> {
-        self.set_up
-            .curves(&self.points[run], self.first_surface + run as u64, stop)
+    /// Point of the ranges and surface of the run of this number.
+    fn point(&self, run: usize) -> (&[f64], u64) {
+        (&self.points[run], self.first_surface + run as u64)
+    }
+
+    /// The curves of the runs of these numbers; none of a run that was stopped.
+    #[cfg_attr(
+        target_family = "wasm",
+        expect(unused_variables, reason = "a page has no device")
+    )]
+    fn curves(
+        &self,
+        runs: &[usize],
+        device: Option<&dyn Device>,
+        stop: &AtomicBool,
+    ) -> Result<Vec<Result<Option<Curves>, TrainingError>>, DeviceError> {
+        #[cfg(not(target_family = "wasm"))]
+        if let Some(device) = device {
+            let points: Vec<_> = runs.iter().map(|run| self.point(*run)).collect();
+            return curves_on_device(self.set_up, &points, device, stop);
+        }
+        let made = runs.par_iter().with_max_len(1).map(|run| {
+            let (point, surface) = self.point(*run);
+            self.set_up.curves(point, surface, stop)
+        });
+        Ok(made.collect())
     }
 }
 
@@ -175,6 +203,7 @@ pub struct RunMaker<'a> {
     stop: &'a AtomicBool,
     watch: &'a mut dyn FnMut(&CalibrationProgress),
     kept: Option<&'a mut KeptRuns>,
+    device: Option<&'a dyn Device>,
     /// Whether runs that are known before they are needed are made elsewhere.
     is_elsewhere: bool,
     /// The runs for which a calibration was left, to be made elsewhere.
@@ -190,6 +219,7 @@ impl<'a> RunMaker<'a> {
             stop,
             watch,
             kept: None,
+            device: None,
             is_elsewhere: false,
             wanted: None,
             ended: 0,
@@ -208,6 +238,11 @@ impl<'a> RunMaker<'a> {
             kept: Some(kept),
             ..self
         }
+    }
+
+    /// Makes runs on a device, which gives the same curves.
+    pub(crate) fn on_device(self, device: Option<&'a dyn Device>) -> Self {
+        Self { device, ..self }
     }
 
     /// Leaves runs to others, but for those of a search for the closest curve, where each depends on those
@@ -246,9 +281,11 @@ impl<'a> RunMaker<'a> {
             return Err(StudyError::Interrupted);
         }
         let stop = self.stop;
-        for some in missing.chunks(AT_ONCE) {
-            let made = some.par_iter().with_max_len(1).map(|run| runs.curves(*run, stop));
-            let made: Vec<Result<Option<Curves>, TrainingError>> = made.collect();
+        // The runs of a search are too few for a device.
+        let device = self.device.filter(|_| stage != CalibrationStage::Closest);
+        let at_once = device.map_or(AT_ONCE, |_| AT_ONCE_ON_DEVICE);
+        for some in missing.chunks(at_once) {
+            let made = runs.curves(some, device, stop)?;
             let made: Option<Vec<Curves>> = made.into_iter().collect::<Result<_, _>>()?;
             let made = made.ok_or(StudyError::Interrupted)?;
             if let Some(kept) = &mut self.kept {

@@ -2,10 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use slipfront::RunError;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
 use slipfront_run::instrument::{Instrument, InstrumentError, InstrumentKeys};
-use slipfront_run::run_curve::{run_curve_unless, steps_to};
+use slipfront_run::run_curve::{RunCurve, run_curve_unless, steps_to};
 
 use crate::sample_points::SamplePoints;
 use slipfront_study::Base;
@@ -209,35 +210,54 @@ impl SetUp {
     ) -> Result<Option<Curves>, TrainingError> {
         let mut curves = Vec::new();
         for (number, conditions) in self.conditions.iter().enumerate() {
-            let case = self.case(shares, seed, conditions);
-            let case = case.map_err(|source| TrainingError::Case {
-                point: self.point(shares),
-                source: Box::new(source),
-            })?;
+            let case = self.training_case(shares, seed, conditions)?;
             let grid = &conditions.grid;
             let ends = || stop.load(Ordering::Relaxed);
             let Some(curve) = run_curve_unless(&case, grid.along(), grid.end(), &ends) else {
                 return Ok(None);
             };
-            let curve = curve.map_err(|source| TrainingError::Run {
+            curves.push(self.recorded(shares, number, curve)?);
+        }
+        Ok(Some(curves))
+    }
+
+    /// The case of a record, with an error that names the point of the ranges.
+    pub(crate) fn training_case(
+        &self,
+        shares: &[f64],
+        seed: u64,
+        conditions: &Conditions,
+    ) -> Result<Case, TrainingError> {
+        let case = self.case(shares, seed, conditions);
+        case.map_err(|source| TrainingError::Case {
+            point: self.point(shares),
+            source: Box::new(source),
+        })
+    }
+
+    /// Friction at the places of a record, as its instrument shows the curve of a run.
+    pub(crate) fn recorded(
+        &self,
+        shares: &[f64],
+        record: usize,
+        curve: Result<RunCurve, RunError>,
+    ) -> Result<Vec<f64>, TrainingError> {
+        let conditions = &self.conditions[record];
+        let curve = curve.map_err(|source| TrainingError::Run {
+            point: self.point(shares),
+            source,
+        })?;
+        let instrument = self
+            .instrument(shares, conditions)
+            .map_err(|source| TrainingError::Instrument {
                 point: self.point(shares),
                 source,
             })?;
-            let instrument =
-                self.instrument(shares, conditions)
-                    .map_err(|source| TrainingError::Instrument {
-                        point: self.point(shares),
-                        source,
-                    })?;
-            let curve = grid
-                .curve(&curve, instrument.as_ref())
-                .ok_or_else(|| TrainingError::Short {
-                    point: self.point(shares),
-                    record: number + 1,
-                })?;
-            curves.push(curve);
-        }
-        Ok(Some(curves))
+        let recorded = conditions.grid.curve(&curve, instrument.as_ref());
+        recorded.ok_or_else(|| TrainingError::Short {
+            point: self.point(shares),
+            record: record + 1,
+        })
     }
 
     /// A hash of all that decides the curves, but for the number of runs.

@@ -3,39 +3,23 @@
 
 use std::sync::Arc;
 
-use slipfront::device::{Device, DeviceError, DeviceLattice, EnergySteps, StepRecord};
+use slipfront::device::{Device, DeviceError, EnergySteps};
 use slipfront::observe::{Instants, Scheduled};
-use slipfront::parallel::*;
-use slipfront::{RunError, Simulation, StopReason};
+use slipfront::{RunError, Simulation, Stop, StopReason};
 use slipfront_case::case::Case;
 
+use crate::device_runs::{self, DeviceRun, Outcome, make_runs};
 use crate::run_summary::{run_summary_unless, summary};
 use crate::running::instants_of;
 use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
 
-/// Steps that a device records before they are replayed.
-const STEPS_AT_ONCE: u64 = 1024;
-
-/// Memory for the records and numbers of the runs that are computed at once.
-const MEMORY: usize = 1 << 30;
-
-/// Bytes of a block on its way through a device.
-const BYTES_PER_BLOCK: usize = 128;
-
-/// Reason for which a device does not compute a case; none if it does.
+/// Reason for which the summary of a case is not found by a device; none if it is.
 pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     if case.file.output.events {
         return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
     }
-    let (blocks, most) = (case.model.lattice.n_blocks(), device.most_blocks());
-    if blocks > most {
-        return Some(format!(
-            "lattices of more than {most} blocks are computed on the CPU alone"
-        ));
-    }
-    let plain = DeviceLattice::check(&case.model);
-    plain.err().map(|reason| reason.to_string())
+    device_runs::refusal(case, device)
 }
 
 /// Runs cases up to the ends that their `time.stop` set, and returns the numbers of their `summary.json` in
@@ -52,143 +36,56 @@ pub fn device_summaries(
     device: &dyn Device,
     ends: &(dyn Fn() -> bool + Sync),
 ) -> Result<Vec<Option<Result<Summary, RunError>>>, DeviceError> {
-    let blocks = cases
-        .iter()
-        .map(|case| case.model.lattice.n_blocks())
-        .max()
-        .unwrap_or(1);
-    let bytes = STEPS_AT_ONCE as usize * size_of::<StepRecord>() + blocks * BYTES_PER_BLOCK;
-    let mut summaries = Vec::with_capacity(cases.len());
-    for some in cases.chunks((MEMORY / bytes).max(1)) {
-        summaries.extend(run_at_once(some, device, ends)?);
-    }
-    Ok(summaries)
+    let runs = cases.iter().map(|case| SummaryRun {
+        case,
+        numbers: SummaryObservers::without_curve(case),
+        instants: instants_of(case, Vec::new()),
+    });
+    make_runs(runs.collect(), device, ends)
 }
 
 /// A run on a device, with the observers of its numbers.
-struct DeviceRun<'a> {
+struct SummaryRun<'a> {
     case: &'a Arc<Case>,
-    simulation: Simulation,
     numbers: SummaryObservers,
     instants: Option<Instants>,
 }
 
-/// A run that goes on, or one that has ended.
-enum Replayed<'a> {
-    Going(Box<DeviceRun<'a>>),
-    Ended(Box<Option<Result<Summary, RunError>>>),
-}
+impl DeviceRun for SummaryRun<'_> {
+    type Kept = Summary;
 
-fn run_at_once(
-    cases: &[Arc<Case>],
-    device: &dyn Device,
-    ends: &(dyn Fn() -> bool + Sync),
-) -> Result<Vec<Option<Result<Summary, RunError>>>, DeviceError> {
-    let longest = cases
-        .iter()
-        .map(|case| case.time_plan.last_step + 1)
-        .max()
-        .unwrap_or(1);
-    // Parts of equal length, so that little is computed beyond the end.
-    let steps = longest.div_ceil(longest.div_ceil(STEPS_AT_ONCE)) as u32;
-    let begun = cases.par_iter().map(|case| {
-        let state = case.state();
-        DeviceLattice::new(
-            Arc::clone(&case.model),
-            case.time_plan.dt_star,
-            state.as_ref(),
-            energies(case),
-        )
-    });
-    let mut lattices: Vec<DeviceLattice> = begun
-        .collect::<Result<_, _>>()
-        .unwrap_or_else(|reason| panic!("a device was given a case that it refuses: {reason}"));
-    device.run(&mut lattices.iter_mut().collect::<Vec<_>>(), steps)?;
-    let mut runs: Vec<Replayed> = cases
-        .par_iter()
-        .zip(lattices)
-        .map(|(case, lattice)| {
-            Replayed::Going(Box::new(DeviceRun {
-                case,
-                simulation: Simulation::replay(lattice),
-                numbers: SummaryObservers::without_curve(case),
-                instants: instants_of(case, Vec::new()),
-            }))
-        })
-        .collect();
-    loop {
-        runs = runs
-            .into_par_iter()
-            .map(|run| match run {
-                Replayed::Going(run) => run.replay(ends),
-                ended @ Replayed::Ended(_) => ended,
-            })
-            .collect();
-        let mut going: Vec<&mut DeviceLattice> = runs.iter_mut().filter_map(Replayed::lattice).collect();
-        if going.is_empty() {
-            return Ok(runs.into_iter().map(Replayed::ended).collect());
-        }
-        device.run(&mut going, steps)?;
+    fn case(&self) -> &Case {
+        self.case
     }
-}
 
-/// Steps whose energies a summary needs: those of its last step, which is not known before where a run stops
-/// at its onset.
-fn energies(case: &Case) -> EnergySteps {
-    let plan = &case.time_plan;
-    EnergySteps {
-        every: if plan.stop.is_after_onset() { 1 } else { u64::MAX },
-        last: plan.last_step,
+    fn stop(&self) -> Stop {
+        self.case.time_plan.stop
     }
-}
 
-impl<'a> DeviceRun<'a> {
-    /// Goes through the steps that have been recorded.
-    fn replay(mut self: Box<Self>, ends: &dyn Fn() -> bool) -> Replayed<'a> {
-        if ends() {
-            return Replayed::Ended(Box::new(None));
+    fn last_step(&self) -> u64 {
+        self.case.time_plan.last_step
+    }
+
+    /// Returns the last step, which is not known before where a run stops at its onset.
+    fn energies(&self) -> EnergySteps {
+        EnergySteps {
+            every: if self.stop().is_after_onset() { 1 } else { u64::MAX },
+            last: self.last_step(),
         }
-        let recorded = self
-            .simulation
-            .device_lattice()
-            .map_or(0, |lattice| lattice.records.len());
+    }
+
+    fn observers(&mut self) -> Vec<Scheduled<'_>> {
         let mut observers = self.numbers.scheduled();
         observers.extend(self.instants.as_mut().map(|instants| Scheduled::always(instants)));
-        let stop = self.case.time_plan.stop;
-        match self.simulation.advance(stop, recorded as u64, &mut observers) {
-            Ok(None) => Replayed::Going(self),
-            Ok(Some(reason)) => Replayed::Ended(Box::new(Some(Ok(self.summary(reason))))),
-            // The sentence names the block that went farthest at the step at which the run diverged, which
-            // the device has left behind.
-            Err(_) => Replayed::Ended(Box::new(run_summary_unless(self.case, ends))),
-        }
+        observers
     }
 
-    fn summary(self, reason: StopReason) -> Summary {
-        let Self {
-            case,
-            simulation,
-            numbers,
-            instants,
-        } = self;
-        summary(case, simulation, reason, &numbers, instants)
-    }
-}
-
-impl Replayed<'_> {
-    /// The lattice that the device takes on.
-    fn lattice(&mut self) -> Option<&mut DeviceLattice> {
-        match self {
-            Self::Going(run) => run.simulation.device_lattice(),
-            Self::Ended(_) => None,
-        }
+    fn end(self, simulation: Simulation, reason: StopReason) -> Summary {
+        summary(self.case, simulation, reason, &self.numbers, self.instants)
     }
 
-    fn ended(self) -> Option<Result<Summary, RunError>> {
-        match self {
-            Self::Going(_) => None,
-            Self::Ended(summary) => *summary,
-        }
+    fn on_cpu(self, ends: &dyn Fn() -> bool) -> Outcome<Self> {
+        run_summary_unless(self.case, ends)
     }
 }
 
@@ -197,6 +94,7 @@ mod tests {
     use slipfront::testing::FusedDevice;
 
     use super::*;
+    use crate::device_runs::STEPS_AT_ONCE;
     use crate::run_summary::run_summary;
 
     fn case(text: &str) -> Arc<Case> {

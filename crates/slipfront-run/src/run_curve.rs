@@ -35,7 +35,7 @@ impl RunCurve {
 }
 
 /// Notes friction, time and path of every step.
-struct Tracing {
+pub(crate) struct Tracing {
     time_star: Vec<f64>,
     path: Vec<f64>,
     mu_star: Vec<f64>,
@@ -43,7 +43,7 @@ struct Tracing {
 
 impl Tracing {
     /// Room for `steps` steps and the start.
-    fn of_steps(steps: u64) -> Self {
+    pub(crate) fn of_steps(steps: u64) -> Self {
         let room = || Vec::with_capacity(steps as usize + 1);
         Self {
             time_star: room(),
@@ -127,7 +127,8 @@ pub fn unit_force_star(case: &Case) -> Option<f64> {
     FrictionUnit::of(&case.scales, &case.model).force(1.0)
 }
 
-fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {
+/// Converts what was noted of a run.
+pub(crate) fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {
     let scales = &case.scales;
     let times = |mut values: Vec<f64>, unit: f64| {
         values.iter_mut().for_each(|value| *value *= unit);

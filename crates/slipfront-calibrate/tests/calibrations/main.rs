@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::Value;
+use slipfront::device::Device;
+use slipfront::testing::FusedDevice;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationKeys, CalibrationStage};
 use slipfront_case::case::Case;
 use slipfront_design::DesignFile;
@@ -81,11 +83,19 @@ fn open(
 }
 
 fn find(folder: &mut CalibrationFolder, threads: usize) -> Result<String, StudyError> {
+    find_on(folder, None, threads)
+}
+
+fn find_on(
+    folder: &mut CalibrationFolder,
+    device: Option<&dyn Device>,
+    threads: usize,
+) -> Result<String, StudyError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .unwrap();
-    pool.install(|| folder.find(&AtomicBool::new(false), &mut |_| {}))
+    pool.install(|| folder.find(device, &AtomicBool::new(false), &mut |_| {}))
 }
 
 fn numbers(folder: &Path) -> Value {
@@ -330,7 +340,7 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     let stopped_at = |stage: CalibrationStage| {
         let mut stopped = open("stopped", None);
         let stop = AtomicBool::new(false);
-        let ended = stopped.find(&stop, &mut |now| {
+        let ended = stopped.find(None, &stop, &mut |now| {
             stop.store(now.stage == stage, Ordering::Relaxed);
         });
         assert!(matches!(ended, Err(StudyError::Interrupted)));
@@ -363,6 +373,8 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     let known = sharing.n_kept();
     find(&mut sharing, 2).unwrap();
     assert_eq!((known, sharing.n_kept()), (READY, READY));
+    drop(sharing);
+    find_on(&mut open("on_device", None), Some(&FusedDevice), 2).unwrap();
     let mut names: Vec<_> = fs::read_dir(folder.path().join("whole"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name())
@@ -371,10 +383,9 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     assert!(names.len() >= 9, "{names:?}");
     for name in names {
         let read = |out: &str| fs::read(folder.path().join(out).join(&name)).unwrap();
-        assert!(
-            read("whole") == read("stopped") && read("whole") == read("sharing"),
-            "{name:?}"
-        );
+        for out in ["stopped", "sharing", "on_device"] {
+            assert!(read("whole") == read(out), "{name:?} in {out}");
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use clap::Args;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder, SampledRecord};
 use slipfront_study::StudyError;
 
+use crate::device::DeviceChoice;
 use crate::failure::Failure;
 use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
@@ -54,6 +55,15 @@ pub(crate) struct CalibrateCommand {
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    /// Device for the runs; results do not depend on it
+    #[arg(
+        long,
+        value_name = "DEVICE",
+        value_enum,
+        default_value_t,
+        conflicts_with = "dry_run"
+    )]
+    device: DeviceChoice,
     /// Do not print progress and estimates
     #[arg(short, long)]
     quiet: bool,
@@ -72,6 +82,7 @@ impl CalibrateCommand {
         let records = file.read(&self.records).map_err(Failure::input)?;
         // A calibration that is invalid, or has no memory, leaves no folder.
         file.check_memory(&records, threads).map_err(Failure::input)?;
+        let device = self.device.open(None, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         let training = self.training.as_deref();
         let notes: Vec<String> = records.iter().flat_map(SampledRecord::notes).collect();
@@ -84,7 +95,7 @@ impl CalibrateCommand {
             print_notes(folder.notes());
         }
         let mut progress = CalibrateProgress::new(self.quiet);
-        let found = folder.find(&signals.stop, &mut |now| progress.show(now));
+        let found = folder.find(device.as_deref(), &signals.stop, &mut |now| progress.show(now));
         progress.finish();
         let text = found.map_err(|error| match error {
             StudyError::Interrupted => {

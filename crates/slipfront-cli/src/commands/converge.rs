@@ -9,6 +9,7 @@ use slipfront_study::{CostLimits, StudyFolder};
 
 use super::study::{dry_run, run_all};
 use crate::case_args::CaseArgs;
+use crate::device::DeviceChoice;
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::ranks::CommandRanks;
@@ -46,6 +47,15 @@ pub(crate) struct ConvergeCommand {
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    /// Device for the runs; results do not depend on it
+    #[arg(
+        long,
+        value_name = "DEVICE",
+        value_enum,
+        default_value_t,
+        conflicts_with = "dry_run"
+    )]
+    device: DeviceChoice,
     /// Refuse to run if all runs together need more memory, in GB
     #[arg(long, value_name = "GB")]
     max_memory: Option<f64>,
@@ -83,11 +93,12 @@ impl ConvergeCommand {
             time: self.max_time,
         };
         limits.check(&plan, threads).map_err(Failure::input)?;
+        let device = self.device.open(None, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
         let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
-        let results = run_all(&plan, &folder, None, &signals, self.quiet)?;
+        let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;
         let found = write(&plan, &results, &folder, &signals.stop);
         let found = found.map_err(|error| Failure::of_results(&signals, error))?;
         if self.json {

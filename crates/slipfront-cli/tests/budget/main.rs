@@ -510,7 +510,10 @@ fn calibrations(folder: &Path) {
         let (taken, _) = peak(|| {
             let mut opened =
                 CalibrationFolder::open(&out, None, &file, file.read(&records).unwrap(), false).unwrap();
-            on_threads(threads, || opened.find(&AtomicBool::new(false), &mut |_| {})).unwrap()
+            on_threads(threads, || {
+                opened.find(None, &AtomicBool::new(false), &mut |_| {})
+            })
+            .unwrap()
         });
         let said = file.memory(&file.read(&records).unwrap()).unwrap().of(threads);
         assert_honest(

@@ -1,0 +1,167 @@
+//! Runs many cases on a [`Device`], which records the totals of their steps, and replays these steps for the
+//! observers of each run.
+
+use std::sync::Arc;
+
+use slipfront::device::{Device, DeviceError, DeviceLattice, EnergySteps, StepRecord};
+use slipfront::observe::Scheduled;
+use slipfront::parallel::*;
+use slipfront::{RunError, Simulation, Stop, StopReason};
+use slipfront_case::case::Case;
+
+/// Steps that a device records before they are replayed.
+pub(crate) const STEPS_AT_ONCE: u64 = 1024;
+
+/// Memory for the records and numbers of the runs that are computed at once.
+const MEMORY: usize = 1 << 30;
+
+/// Bytes of a block on its way through a device.
+const BYTES_PER_BLOCK: usize = 128;
+
+/// A run whose steps a device computes, with the observers of what is kept of it.
+pub(crate) trait DeviceRun: Send + Sized {
+    /// Numbers that are kept of the run.
+    type Kept: Send;
+
+    /// Case of the run.
+    fn case(&self) -> &Case;
+
+    /// Rule that ends the run.
+    fn stop(&self) -> Stop;
+
+    /// Largest number of steps that the run can take.
+    fn last_step(&self) -> u64;
+
+    /// Steps at which the observers need energies.
+    fn energies(&self) -> EnergySteps;
+
+    /// Observers of every step.
+    fn observers(&mut self) -> Vec<Scheduled<'_>>;
+
+    /// Numbers of the run at its end.
+    fn end(self, simulation: Simulation, reason: StopReason) -> Self::Kept;
+
+    /// Makes the run on the CPU; none if `ends` gave it up.
+    fn on_cpu(self, ends: &dyn Fn() -> bool) -> Option<Result<Self::Kept, RunError>>;
+}
+
+/// Outcome of a run; none if it was given up.
+pub(crate) type Outcome<R> = Option<Result<<R as DeviceRun>::Kept, RunError>>;
+
+/// Reason for which a device does not compute the steps of a case; none if it does.
+pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
+    let (blocks, most) = (case.model.lattice.n_blocks(), device.most_blocks());
+    if blocks > most {
+        return Some(format!(
+            "lattices of more than {most} blocks are computed on the CPU alone"
+        ));
+    }
+    let plain = DeviceLattice::check(&case.model);
+    plain.err().map(|reason| reason.to_string())
+}
+
+/// Makes runs on a device, and returns their outcomes in the order of the runs. A run is given up when `ends`
+/// returns true.
+///
+/// # Errors
+/// When the device fails.
+///
+/// # Panics
+/// If a case is one that a device [refuses](refusal).
+pub(crate) fn make_runs<R: DeviceRun>(
+    runs: Vec<R>,
+    device: &dyn Device,
+    ends: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Outcome<R>>, DeviceError> {
+    let blocks = runs.iter().map(|run| run.case().model.lattice.n_blocks());
+    let bytes =
+        STEPS_AT_ONCE as usize * size_of::<StepRecord>() + blocks.max().unwrap_or(1) * BYTES_PER_BLOCK;
+    let at_once = (MEMORY / bytes).max(1);
+    let mut outcomes = Vec::with_capacity(runs.len());
+    let mut runs = runs.into_iter();
+    while outcomes.len() < outcomes.capacity() {
+        outcomes.extend(make_at_once(runs.by_ref().take(at_once).collect(), device, ends)?);
+    }
+    Ok(outcomes)
+}
+
+/// A run that goes on, or the outcome of one that has ended.
+enum Replayed<R: DeviceRun> {
+    Going(Box<(R, Simulation)>),
+    Ended(Box<Outcome<R>>),
+}
+
+fn make_at_once<R: DeviceRun>(
+    runs: Vec<R>,
+    device: &dyn Device,
+    ends: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Outcome<R>>, DeviceError> {
+    let longest = runs.iter().map(|run| run.last_step() + 1).max().unwrap_or(1);
+    // Parts of equal length, so that little is computed beyond the end.
+    let steps = longest.div_ceil(longest.div_ceil(STEPS_AT_ONCE)) as u32;
+    let begun = runs.into_par_iter().map(|run| {
+        let lattice = lattice_of(&run);
+        (run, lattice)
+    });
+    let (runs, mut lattices): (Vec<R>, Vec<DeviceLattice>) = begun.unzip();
+    device.run(&mut lattices.iter_mut().collect::<Vec<_>>(), steps)?;
+    let begun = runs.into_par_iter().zip(lattices);
+    let mut runs: Vec<Replayed<R>> = begun
+        .map(|(run, lattice)| Replayed::Going(Box::new((run, Simulation::replay(lattice)))))
+        .collect();
+    loop {
+        runs = runs.into_par_iter().map(|run| run.replay(ends)).collect();
+        let mut going: Vec<&mut DeviceLattice> = runs.iter_mut().filter_map(Replayed::lattice).collect();
+        if going.is_empty() {
+            return Ok(runs.into_iter().map(Replayed::outcome).collect());
+        }
+        device.run(&mut going, steps)?;
+    }
+}
+
+/// The lattice of a run at its start.
+fn lattice_of(run: &impl DeviceRun) -> DeviceLattice {
+    let case = run.case();
+    let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
+    let lattice = DeviceLattice::new(model, dt_star, case.state().as_ref(), run.energies());
+    lattice.unwrap_or_else(|reason| panic!("a device was given a case that it refuses: {reason}"))
+}
+
+impl<R: DeviceRun> Replayed<R> {
+    /// Goes through the steps that have been recorded.
+    fn replay(self, ends: &dyn Fn() -> bool) -> Self {
+        let (mut run, mut simulation) = match self {
+            Self::Going(_) if ends() => return Self::Ended(Box::new(None)),
+            Self::Going(going) => *going,
+            ended @ Self::Ended(_) => return ended,
+        };
+        let recorded = simulation
+            .device_lattice()
+            .map_or(0, |lattice| lattice.records.len());
+        let stop = run.stop();
+        let reached = simulation.advance(stop, recorded as u64, &mut run.observers());
+        let outcome = match reached {
+            Ok(None) => return Self::Going(Box::new((run, simulation))),
+            Ok(Some(reason)) => Some(Ok(run.end(simulation, reason))),
+            // The sentence names the block that went farthest at the step at which the run diverged, which
+            // the device has left behind.
+            Err(_) => run.on_cpu(ends),
+        };
+        Self::Ended(Box::new(outcome))
+    }
+
+    /// The lattice of a run that goes on.
+    fn lattice(&mut self) -> Option<&mut DeviceLattice> {
+        match self {
+            Self::Going(going) => going.1.device_lattice(),
+            Self::Ended(_) => None,
+        }
+    }
+
+    fn outcome(self) -> Outcome<R> {
+        match self {
+            Self::Going(_) => None,
+            Self::Ended(outcome) => *outcome,
+        }
+    }
+}
