@@ -146,7 +146,7 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
 /// Metadata of a path, without following a symbolic link; none if nothing is there.
 ///
 /// # Errors
-/// When the system does not report it, which does not mean that nothing is there.
+/// When the system returns an error other than "not found", which does not mean that nothing is there.
 pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
     found(path.symlink_metadata())
 }
@@ -154,7 +154,7 @@ pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
 /// Metadata of the target of a path, through symbolic links; none if nothing is there.
 ///
 /// # Errors
-/// When the system does not report it, which does not mean that nothing is there.
+/// When the system returns an error other than "not found", which does not mean that nothing is there.
 pub fn found_behind(path: &Path) -> std::io::Result<Option<Metadata>> {
     found(path.metadata())
 }
@@ -170,7 +170,7 @@ fn found(looked: std::io::Result<Metadata>) -> std::io::Result<Option<Metadata>>
 /// Whether the path is a folder itself, and not a symbolic link to one.
 ///
 /// # Errors
-/// When the system does not report it, which does not mean that nothing is there.
+/// When the system returns an error other than "not found", which does not mean that nothing is there.
 pub fn is_folder(path: &Path) -> std::io::Result<bool> {
     Ok(found_at(path)?.is_some_and(|found| found.is_dir()))
 }

@@ -9,7 +9,7 @@ const PARTS: usize = 10;
 /// alone is singular.
 const SHRUNK: f64 = 0.2;
 
-/// Largest distance from the mean that counts, in standard deviations.
+/// Largest distance from the mean, in standard deviations; larger ones are clamped.
 const MOST: f64 = 1e3;
 
 /// Ratio of the assumed variance of the parameters to that of the sample: the vector may have parameters at
