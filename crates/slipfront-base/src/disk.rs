@@ -10,13 +10,13 @@ use tempfile::{NamedTempFile, TempPath};
 pub use crate::folders::{folder_name, folder_of, sync_folder};
 use crate::unfinished;
 
-/// Writes a file atomically: as a [hidden file](unfinished) in its folder, which is then renamed, or removed
-/// after an error. A file that is written survives a power failure.
+/// Writes a file atomically: writes a [hidden file](unfinished) in the same folder and renames it, or removes
+/// it after an error. The written file survives a power failure.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_atomic_with(path, |file| file.write_all(bytes))
 }
 
-/// Writes a file atomically whose contents need not be in memory as a whole.
+/// Writes a file atomically with `fill`, so that the whole contents need not be in memory.
 pub fn write_atomic_with(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -25,8 +25,8 @@ pub fn write_atomic_with(
     sync_folder(folder_of(path))
 }
 
-/// Writes a [hidden file](unfinished) in the folder of the file that it is to become, and syncs it. The
-/// hidden file is removed when dropped, unless it is renamed (`persist`).
+/// Writes a [hidden file](unfinished) in the folder of its final path, and syncs it. The hidden file is
+/// removed when dropped, unless it is renamed (`persist`).
 pub fn write_beside(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -66,9 +66,9 @@ pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
     Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
-/// Makes a folder, and the folders above it, where they are missing, such that they survive a power failure.
+/// Creates a folder and its missing parents, so that they survive a power failure.
 pub fn make_folders(path: &Path) -> std::io::Result<()> {
-    // Of a folder that is there, but cannot be looked at, the standard library says that it exists.
+    // If an existing folder cannot be examined, the standard library reports that it exists.
     if found_behind(path)?.is_some_and(|found| found.is_dir()) {
         return Ok(());
     }
@@ -81,7 +81,7 @@ pub fn make_folders(path: &Path) -> std::io::Result<()> {
         .try_for_each(|made| sync_folder(folder_of(made)))
 }
 
-/// Writes a whole file or none, and makes the folders above it where they are missing.
+/// Writes a file atomically, and creates the missing folders above it.
 ///
 /// # Errors
 /// When the system refuses.
@@ -137,16 +137,16 @@ pub const TEXT_MAX_BYTES: u64 = 16 << 20;
 
 /// Pretty JSON with a final newline.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
-    // Our own structs of numbers and strings: serialisation cannot fail.
+    // Serialisation of our own structs of numbers and strings cannot fail.
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
     bytes.push(b'\n');
     bytes
 }
 
-/// Metadata of a path, for a symbolic link of the link itself; none if nothing is there.
+/// Metadata of a path, without following a symbolic link; none if nothing is there.
 ///
 /// # Errors
-/// When the system does not say, which must not be taken for nothing.
+/// When the system returns an error other than "not found", which does not mean that nothing is there.
 pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
     found(path.symlink_metadata())
 }
@@ -154,7 +154,7 @@ pub fn found_at(path: &Path) -> std::io::Result<Option<Metadata>> {
 /// Metadata of the target of a path, through symbolic links; none if nothing is there.
 ///
 /// # Errors
-/// When the system does not say, which must not be taken for nothing.
+/// When the system returns an error other than "not found", which does not mean that nothing is there.
 pub fn found_behind(path: &Path) -> std::io::Result<Option<Metadata>> {
     found(path.metadata())
 }
@@ -170,12 +170,12 @@ fn found(looked: std::io::Result<Metadata>) -> std::io::Result<Option<Metadata>>
 /// Whether the path is a folder itself, and not a symbolic link to one.
 ///
 /// # Errors
-/// When the system does not say, which must not be taken for nothing.
+/// When the system returns an error other than "not found", which does not mean that nothing is there.
 pub fn is_folder(path: &Path) -> std::io::Result<bool> {
     Ok(found_at(path)?.is_some_and(|found| found.is_dir()))
 }
 
-/// Whether two paths lead to the same file or folder, which exists.
+/// Whether two paths lead to the same existing file or folder.
 pub fn is_same(one: &Path, other: &Path) -> bool {
     matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }

@@ -10,7 +10,7 @@ pub fn folder_of(path: &Path) -> &Path {
     parent.unwrap_or(Path::new("."))
 }
 
-/// Name of a folder: of one such as `.` that which the system knows. The root of a file system has none.
+/// Name of a folder. The system resolves a path such as `.`; the root of a file system has no name.
 pub fn folder_name(folder: &Path) -> Option<String> {
     let known = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     Some(known.file_name()?.to_string_lossy().into_owned())
@@ -24,7 +24,7 @@ pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     }
     match File::open(folder) {
         Ok(folder) => folder.sync_all(),
-        // One that may be written to and not read cannot be synced.
+        // A folder that may be written to but not read cannot be synced.
         Err(error) if error.kind() == ErrorKind::PermissionDenied => Ok(()),
         Err(error) => Err(error),
     }

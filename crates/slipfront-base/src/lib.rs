@@ -1,5 +1,5 @@
-//! Everything that crates of slipfront need below a case: files that are whole or not there at all, numbers
-//! and texts for people, and the memory and the disk of the machine.
+//! Everything that the crates of slipfront need below a case: files that are complete or absent, numbers and
+//! texts for people, and the memory and the disk of the machine.
 
 pub mod disk;
 mod folders;

@@ -1,6 +1,6 @@
-//! Numbers as text for people: messages, reports and tables that are read, never read back.
+//! Numbers as text for people: for messages, reports and tables that no program reads back.
 
-/// A number with all its digits, as a power of ten where it is very small or large: 10, 0.9058, 1e-12.
+/// A number with all its digits; very small or large ones with a power of ten: 10, 0.9058, 1e-12.
 pub fn exact(number: f64) -> String {
     let size = number.abs();
     if size != 0.0 && !(1e-4..1e6).contains(&size) {
@@ -33,7 +33,8 @@ pub fn four_places(value: f64) -> String {
     }
 }
 
-/// A value and its uncertainty, both to the second digit of the uncertainty; to four places if there is none.
+/// A value and its uncertainty, both rounded to the second digit of the uncertainty; to four places if there
+/// is no uncertainty.
 pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
     match uncertainty {
         Some(error) if error > 0.0 => {
@@ -45,9 +46,9 @@ pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
     }
 }
 
-/// A value and the half width of its interval, both to the place of the value's third digit, or of the second
-/// digit of the half width where that is coarser; a half width that is smaller than that place to its first
-/// digit. Where the larger of both is very small or large, both stand in a bracket before the power of ten.
+/// A value and the half width of its interval, both rounded to the third digit of the value, or to the second
+/// digit of the half width if that is coarser. A half width below this place is rounded to its own first
+/// digit. If the larger of the two is very small or large, both are in brackets before the power of ten.
 pub fn with_half_width(value: f64, half: Option<f64>) -> String {
     let Some(half) = half else {
         return four_places(value);
@@ -115,7 +116,7 @@ pub fn si_prefix(value: f64) -> (f64, &'static str) {
     (libm::pow(1000.0, step), PREFIXES[(step + 6.0) as usize])
 }
 
-/// A prefix of a unit as pictures print it.
+/// SI prefix as figures print it.
 pub fn in_print(prefix: &'static str) -> &'static str {
     if prefix == "u" { "\u{b5}" } else { prefix }
 }

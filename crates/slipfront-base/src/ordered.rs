@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Makes a map of entries, one after the other, of which the last with a key counts. `collect` would sort
-/// them first, with code of its own for every type of entries: 40 kB and more of the module that the page
+/// Makes a map by inserting entries one by one, so that the last entry with a key counts. `collect` would
+/// sort them first, with separate code for every type of entries: 40 kB and more of the module that the page
 /// without a server loads.
 ///
 /// ```

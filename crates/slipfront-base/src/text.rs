@@ -1,13 +1,13 @@
 //! Text from outside (files, arguments) made fit for a message: short, and without control characters; and
-//! sentences in lines of some width.
+//! sentences wrapped to a line width.
 
 use std::path::Path;
 
 /// The longest part of a text that a message quotes, in characters.
 pub const MAX_EXCERPT: usize = 100;
-/// The columns of a text in a file.
+/// Line width of text in a file, in columns.
 pub const COLUMNS: usize = 80;
-/// The longest sentence, in characters: a text that it quotes may be as long as its file.
+/// Largest length of a sentence, in characters: it may quote a text as long as a whole file.
 const MAX_SENTENCE: usize = 1000;
 
 /// At most 100 characters of a text, on one line.
@@ -31,12 +31,12 @@ pub fn shell_quoted(word: &str) -> String {
     shlex::try_quote(word).unwrap_or_default().into_owned()
 }
 
-/// A path as one argument of a command that a reader can paste. What a terminal does not show as it is, and a
-/// backquote, with which the sentence around the command closes it, are written as in C between `$'` and `'`,
-/// which bash, zsh and ksh read.
+/// A path as one argument of a shell command that a reader can paste. Control characters, bytes that are not
+/// UTF-8, and backquotes, which would end the command in a sentence, are escaped as in C between `$'` and
+/// `'`. Bash, zsh and ksh read this form.
 pub fn shell_path(path: &Path) -> String {
     let path = if path.as_os_str().as_encoded_bytes().starts_with(b"-") {
-        // Else it would be taken for an option.
+        // Without `./` a command would take it for an option.
         &Path::new(".").join(path)
     } else {
         path
@@ -69,8 +69,8 @@ pub fn note(sentence: &str, columns: usize) -> String {
     format!("{}\n", wrapped(&format!("note: {sentence}"), columns))
 }
 
-/// Breaks a line between words into lines of at most `columns` characters, if no word is longer. Lines after
-/// the first are indented. A command in backquotes is one word, so that it can be copied.
+/// Breaks a line between words into lines of at most `columns` characters, unless a word is longer. Lines
+/// after the first are indented. A command in backquotes is one word, so that it can be copied.
 pub fn wrapped(line: &str, columns: usize) -> String {
     const INDENT: &str = "\n      ";
     let (mut text, mut used) = (String::new(), 0);
@@ -123,7 +123,7 @@ mod tests {
         }
     }
 
-    /// The shell gives a command the bytes of the name.
+    /// The shell passes the bytes of the name to a command unchanged.
     #[cfg(unix)]
     #[test]
     fn bash_reads_a_path_as_it_is() {
@@ -134,7 +134,7 @@ mod tests {
         if echo("").is_err() {
             return;
         }
-        // Every byte that a name can have, alone and before a digit.
+        // Every byte that a name can contain, alone and before a digit.
         let all: Vec<u8> = (1..=255).filter(|byte| *byte != b'/').collect();
         let each = all.iter().flat_map(|byte| [vec![*byte], vec![*byte, b'7']]);
         for name in each.chain([all.clone(), "-ü \u{1f642} ' \" \\ \n".into()]) {

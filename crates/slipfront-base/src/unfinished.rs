@@ -1,10 +1,10 @@
-//! Hidden files and folders, which stand as long as a process works on something, and the leftovers of killed
+//! Hidden files and folders, which exist while a process works on something, and the leftovers of killed
 //! processes.
 //!
-//! The names are derived from the target of the work: `.slipfront-`, 16 digits of a hash of it, `-` and 6
-//! random letters or digits. The process that makes one holds its lock. A process that makes the next one for
-//! the same target removes those whose lock is free, because their process has ended. Random letters keep two
-//! living processes, and other users, out of each other's way. Where a file system has no locks nothing is
+//! A name is derived from the target of the work: `.slipfront-`, 16 digits of a hash of the target, `-` and 6
+//! random letters or digits. The process that creates the file or folder holds its lock. The next process
+//! with the same target removes leftovers with a free lock, because their process has ended. The random
+//! letters separate living processes, and users, from each other. On a file system without locks, nothing is
 //! removed.
 
 use std::fs::{DirEntry, File, Metadata, TryLockError};
@@ -23,11 +23,11 @@ const BEGINNING: &str = ".slipfront-";
 const DIGITS: usize = 16;
 /// Random letters or digits.
 const RANDOM: usize = 6;
-/// Largest number of attempts to make a hidden file anew, because another process took it for a leftover
-/// before it was locked.
+/// Largest number of attempts to create a hidden file: another process may take it for a leftover before it
+/// is locked.
 const TRIES: usize = 100;
 
-/// The hidden names of one target but for their random letters.
+/// Beginning of the hidden names of one target, without the random letters.
 fn beginning_for(target: &[u8]) -> String {
     format!("{BEGINNING}{}-", &blake3::hash(target).to_hex()[..DIGITS])
 }
@@ -42,8 +42,7 @@ pub fn is_unfinished(name: &str) -> bool {
     })
 }
 
-/// Makes an empty file, locked, in the folder of the file that it will be renamed to, and removes such files
-/// that killed processes have left.
+/// Creates an empty, locked file in the folder of its final path, and removes such files of killed processes.
 pub(crate) fn file_for(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
     clear(folder, &beginning, is_file);
@@ -51,16 +50,16 @@ pub(crate) fn file_for(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     until_locked(make, |file| hold(Some(file.as_file()), file.path()))
 }
 
-/// Removes the files that killed processes have left in a folder, for any target.
+/// Removes the files of killed processes in a folder, for any target.
 pub fn clear_unfinished(folder: &Path) {
     clear(folder, BEGINNING, is_file);
 }
 
-/// A folder in the one for temporary files (`TMPDIR`), for this user alone. It is removed with all its
-/// contents when it is dropped.
+/// Folder in the system's folder for temporary files (`TMPDIR`), accessible to this user alone. It is removed
+/// with its contents when dropped.
 #[derive(Debug)]
 pub struct TemporaryFolder {
-    // Dropped first: as long as it is removed, it is locked.
+    // Fields are dropped in order: the folder stays locked until it is removed.
     folder: TempDir,
     _lock: Option<File>,
     /// The process that made the folder.
@@ -68,14 +67,14 @@ pub struct TemporaryFolder {
 }
 
 impl TemporaryFolder {
-    /// Makes an empty folder for work on a folder, and removes the folders for such work that killed
-    /// processes have left on this machine.
+    /// Creates an empty folder for work on a folder, and removes such folders of processes that were killed
+    /// on this machine.
     pub fn new(target: &Path) -> Result<Self> {
         let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
         Self::of_target(target.as_os_str().as_encoded_bytes())
     }
 
-    /// The folder for all work of this process that has no target. It exists as long as a part of the program
+    /// The folder for all work of this process that has no target. It exists while any part of the program
     /// holds it.
     pub fn shared() -> Result<Arc<Self>> {
         static SHARED: Mutex<Weak<TemporaryFolder>> = Mutex::new(Weak::new());
@@ -89,7 +88,7 @@ impl TemporaryFolder {
     }
 
     fn of_target(target: &[u8]) -> Result<Self> {
-        // Machines may share the folder, and not know of each other's locks.
+        // Machines may share the folder without seeing each other's locks.
         let host = host_name();
         let beginning = beginning_for(&[host.as_encoded_bytes(), b"\0", target].concat());
         let (folder, lock) = locked_folder(&std::env::temp_dir(), &beginning, 0o700)?;
@@ -105,7 +104,7 @@ impl TemporaryFolder {
         self.folder.path()
     }
 
-    /// Whether this process made the folder, and not the process of which it is a fork, as Python makes them.
+    /// Whether this process made the folder, rather than a parent process that forked it, as Python does.
     fn is_own(&self) -> bool {
         self.process == std::process::id()
     }
@@ -117,17 +116,17 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// A folder under a hidden name beside the place that it will be renamed to. Until then it is removed with
-/// all its contents when it is dropped.
+/// Folder under a hidden name, next to the place that it will be renamed to. Until then, it is removed with
+/// its contents when dropped.
 #[derive(Debug)]
 pub struct UnfinishedFolder {
-    // Dropped first: as long as it is removed, it is locked.
+    // Fields are dropped in order: the folder stays locked until it is removed.
     folder: TempDir,
     _lock: Option<File>,
 }
 
 impl UnfinishedFolder {
-    /// Makes an empty folder, and removes such folders that killed processes have left for the same place.
+    /// Creates an empty folder, and removes such folders of killed processes for the same place.
     pub fn beside(path: &Path) -> Result<Self> {
         let beginning = beginning_for(path.file_name().unwrap_or_default().as_encoded_bytes());
         let (folder, lock) = locked_folder(folder_of(path), &beginning, 0o777)?;
@@ -139,8 +138,8 @@ impl UnfinishedFolder {
         self.folder.path()
     }
 
-    /// Gives the folder its name, in the place of an empty folder if there is one, such that it survives a
-    /// power failure.
+    /// Renames the folder to its final name, in place of an empty folder if there is one, so that it survives
+    /// a power failure.
     pub fn persist(mut self, path: &Path) -> Result<()> {
         sync_folder(self.path())?;
         // Not every system replaces an empty folder.
@@ -151,19 +150,19 @@ impl UnfinishedFolder {
     }
 }
 
-/// Makes an empty folder with this beginning of its name, locked, and removes such folders of this user whose
-/// lock is free.
+/// Creates an empty, locked folder with this beginning of its name, and removes such folders of this user
+/// that have a free lock.
 fn locked_folder(parent: &Path, beginning: &str, mode: u32) -> Result<(TempDir, Option<File>)> {
     let make = || {
         let folder = builder(beginning, mode).tempdir_in(parent)?;
-        // Some systems do not open folders: there it has no lock, and nobody removes it.
+        // Some systems cannot open folders: there the folder has no lock, and no process removes it.
         let lock = File::open(folder.path()).ok();
         Ok((folder, lock))
     };
     let made = until_locked(make, |(folder, lock)| hold(lock.as_ref(), folder.path()))?;
     let (folder, _) = &made;
     if let Ok(own) = folder.path().symlink_metadata() {
-        // Where locks fail, its own one is none that was left.
+        // Where locks fail, the new folder itself must not be taken for a leftover.
         clear(parent, beginning, |entry| {
             let is_alike = |found: Metadata| found.is_dir() && owner(&found) == owner(&own);
             Some(&*entry.file_name()) != folder.path().file_name() && entry.metadata().is_ok_and(is_alike)
@@ -172,11 +171,11 @@ fn locked_folder(parent: &Path, beginning: &str, mode: u32) -> Result<(TempDir, 
     Ok(made)
 }
 
-/// A builder of temporary files and folders whose names have this beginning, with this mode.
+/// Builder of temporary files and folders with this beginning of their names, and this mode.
 pub(crate) fn builder<'a>(beginning: &'a str, mode: u32) -> Builder<'a, 'static> {
     let mut builder = Builder::new();
     builder.prefix(beginning).rand_bytes(RANDOM);
-    // By default files are private, which results are not, and folders are not.
+    // By default, files are private, unlike results, and folders are not.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
     #[cfg(not(unix))]
@@ -195,7 +194,7 @@ fn owner(_: &Metadata) -> u32 {
     0
 }
 
-/// Makes a file or folder again and again until it is locked.
+/// Creates files or folders until one is locked.
 fn until_locked<T>(make: impl Fn() -> Result<T>, is_locked: impl Fn(&T) -> bool) -> Result<T> {
     for _ in 0..TRIES {
         let made = make()?;
@@ -208,15 +207,15 @@ fn until_locked<T>(make: impl Fn() -> Result<T>, is_locked: impl Fn(&T) -> bool)
     ))
 }
 
-/// Locks a new file or folder; false if another process has taken it for a leftover before. Where there are
-/// no locks, no process has.
+/// Locks a new file or folder; returns false if another process has already taken it for a leftover. Where
+/// there are no locks, no process has.
 fn hold(made: Option<&File>, path: &Path) -> bool {
     let is_taken = |made: &File| matches!(made.try_lock(), Err(TryLockError::WouldBlock));
     !made.is_some_and(is_taken) && path.symlink_metadata().is_ok()
 }
 
-/// Removes the hidden entries of a folder that killed processes have left, of the given kind and beginning of
-/// the name. Errors are ignored: a leftover does no harm.
+/// Removes the hidden entries of killed processes from a folder, of the given kind and with the given
+/// beginning of the name. Errors are ignored: a leftover does no harm.
 fn clear(folder: &Path, beginning: &str, is_meant: impl Fn(&DirEntry) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -234,14 +233,14 @@ fn is_file(entry: &DirEntry) -> bool {
 
 /// Removes a file, or a folder with all that it holds, unless a living process holds its lock.
 fn remove_unless_locked(path: &Path) -> Result<()> {
-    // Opened like this, it is a folder. A file is opened for writing, without which some network file systems
-    // lock none.
+    // Only a folder opens with `.`. A file is opened for writing, because some network file systems lock it
+    // only then.
     let folder = File::open(path.join("."));
     let file = match &folder {
         Ok(folder) => folder,
         Err(_) => &File::options().read(true).write(true).open(path)?,
     };
-    // A file whose writer has renamed it meanwhile is no longer under this name, which is not given twice.
+    // If its writer has renamed the file meanwhile, this name no longer exists, and no other file gets it.
     match file.try_lock() {
         Err(_) => Ok(()),
         Ok(()) if folder.is_ok() => std::fs::remove_dir_all(path),
@@ -268,7 +267,7 @@ mod tests {
         names
     }
 
-    /// A hidden name for a target, which nobody has made.
+    /// Path with a hidden name for a target; nothing is created.
     fn hidden(folder: &Path, target: &str) -> PathBuf {
         folder.join(format!("{}AbC123", beginning_for(target.as_bytes())))
     }
@@ -300,14 +299,14 @@ mod tests {
         write_atomic(&path, b"second").unwrap();
         clear_unfinished(folder.path());
         assert_eq!(std::fs::read(&path).unwrap(), b"second");
-        // Whoever is ready last has written the file.
+        // The last writer to finish replaces the file.
         first.persist(&path).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"first");
         assert_eq!(names(folder.path()), ["a.png"]);
     }
 
-    /// Many processes write one file at once: each succeeds, the file is one of theirs, and nothing else is
-    /// left.
+    /// Many processes write one file at once: each succeeds, the file is one of theirs, and nothing else
+    /// remains.
     #[test]
     fn writers_of_one_file_do_not_disturb_each_other() {
         let folder = tempfile::tempdir().unwrap();
@@ -336,7 +335,7 @@ mod tests {
         let make = || File::create(&path);
         let is_locked = |file: &File| {
             tries.set(tries.get() + 1);
-            // Another process is faster, three times: it holds the lock, or has removed the file.
+            // Another process is faster three times: it holds the lock, or has removed the file.
             let other = File::open(&path).unwrap();
             match tries.get() {
                 1 => other.try_lock().unwrap(),
@@ -346,8 +345,8 @@ mod tests {
             hold(Some(file), &path)
         };
         until_locked(make, is_locked).unwrap();
-        // More than four where another test starts a process meanwhile: until that runs its own program, it
-        // has a copy of the other process's file, and thus its lock.
+        // There are more than four tries if another test starts a process meanwhile: until the child runs its
+        // own program, it has a copy of the open file, and thus of the lock.
         assert!(tries.get() >= 4);
         assert!(until_locked(make, |_| false).is_err());
     }
@@ -380,8 +379,8 @@ mod tests {
         assert_eq!(std::fs::read(kept.join("mine")).unwrap(), b"mine");
     }
 
-    /// The hidden name of a file is no longer than the system allows, even if the name of the file is as
-    /// long.
+    /// The hidden name of a file is no longer than the system allows, even if the name of the file has the
+    /// largest length.
     #[test]
     fn a_name_may_be_as_long_as_the_system_allows() {
         let folder = tempfile::tempdir().unwrap();
@@ -412,7 +411,8 @@ mod tests {
         let other = tempfile::tempdir().unwrap();
         drop(TemporaryFolder::new(other.path()).unwrap());
         assert!(left.exists(), "it is for another target");
-        // A child that another test starts at this moment has the lock until it begins with its program.
+        // A child process that another test starts at this moment holds the lock until it runs its own
+        // program.
         let started = std::time::Instant::now();
         while left.exists() && started.elapsed() < std::time::Duration::from_secs(10) {
             drop(TemporaryFolder::new(target.path()).unwrap());
@@ -451,7 +451,7 @@ mod tests {
         assert_eq!(names(folder.path()), ["crate", "plain"]);
     }
 
-    /// In a folder that users share, others can make what looks like a leftover.
+    /// In a shared folder, other users can create entries that look like leftovers.
     #[test]
     fn temporary_folders_of_other_users_and_links_stay() {
         let target = tempfile::tempdir().unwrap();
@@ -467,7 +467,7 @@ mod tests {
         symlink(&mine, &link).unwrap();
         std::fs::write(&file, "mine").unwrap();
         std::fs::create_dir(&foreign).unwrap();
-        // Only root can give something away.
+        // Only root can change the owner of a folder.
         let given_away = chown(&foreign, Some(65534), None).is_ok();
         drop(TemporaryFolder::new(target.path()).unwrap());
         assert!(link.symlink_metadata().is_ok() && mine.exists() && file.exists());

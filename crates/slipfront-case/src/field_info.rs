@@ -9,8 +9,8 @@ pub struct FieldInfo {
     pub field: Field,
     /// Name of the field in `output.fields` of a case file and in `fields.nc`.
     pub name: &'static str,
-    /// Unit of the field's values in `fields.nc` as the CF conventions write it; `1` for a number without
-    /// unit.
+    /// Unit of the field's values in `fields.nc` in the form of the CF conventions; `1` for a number without
+    /// a unit.
     pub unit: &'static str,
     /// A description for the axis of a picture.
     pub long_name: &'static str,
@@ -41,7 +41,7 @@ const fn info(field: Field, name: &'static str, unit: &'static str, long_name: &
 
 /// The names and unit of a field.
 pub fn field_info(field: Field) -> &'static FieldInfo {
-    // The table has the order of the variants, which a test holds.
+    // The table has the order of the variants, which a test checks.
     &FIELDS[field as usize]
 }
 

@@ -1,4 +1,4 @@
-//! Reads the case files of users and makes cases that the physics crate [`slipfront`] can run.
+//! Reads users' case files and makes cases that the physics crate [`slipfront`] can run.
 //!
 //! ```text
 //! text -> CaseFile -> Case (valid by construction)

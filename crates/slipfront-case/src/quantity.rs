@@ -1,9 +1,8 @@
 //! Physical quantities as a user writes them: a number, a unit, a dimension.
 //!
-//! Every accepted unit is a power of ten of its SI unit. Converting therefore means shifting the decimal
-//! exponent of the number's *text* before it is read, so that the SI value is rounded once, by
-//! `f64::from_str`, and is the `f64` nearest to what was written. The case file reads quantities; their SI
-//! values go to the scales of the model next.
+//! Every accepted unit is a power of ten of its SI unit. Conversion therefore shifts the decimal exponent of
+//! the number's *text* before it is parsed: `f64::from_str` rounds the SI value once, to the `f64` nearest to
+//! the written number. The case file reads quantities, and passes their SI values to the scales of the model.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -16,7 +15,7 @@ use thiserror::Error;
 use slipfront_base::number_format::exact;
 use slipfront_base::text::truncated;
 
-/// The longest text that is read as a quantity, in bytes.
+/// Largest length of a text that is read as a quantity, in bytes.
 const MAX_TEXT: usize = 200;
 
 /// Units without prefix: symbol, dimension, power of ten of the SI unit.
@@ -30,7 +29,7 @@ const UNITS: [(&str, Dimension, i32); 7] = [
     ("Hz", Dimension::new(0, 0, -1), 0),
 ];
 
-/// Units that are not read, for messages that convert them: symbol, dimension, size in its SI unit.
+/// Units that are not accepted, for messages that convert them: symbol, dimension, size in the SI unit.
 const FOREIGN_UNITS: [(&str, Dimension, f64); 34] = [
     ("min", Dimension::new(0, 0, 1), 60.0),
     ("h", Dimension::new(0, 0, 1), 3600.0),
@@ -122,7 +121,7 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// Reason for which a text is no quantity of the wanted dimension.
+/// Reason why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -161,21 +160,21 @@ pub enum QuantityError {
     TooLong { bytes: usize, example: &'static str },
 }
 
-/// The kind of a [`Quantity`]: implemented by the markers in [`kind`] only.
+/// The kind of a [`Quantity`], implemented only by the markers in [`kind`].
 pub trait Kind: Clone + fmt::Debug + PartialEq {
     /// The dimension of the quantity.
     const DIMENSION: Dimension;
     /// Name of the quantity with its article, for messages.
     const NAME: &'static str;
-    /// A quantity as it should be written, for messages.
+    /// Example of the quantity, for messages.
     const EXAMPLE: &'static str;
-    /// SI unit of the quantity, as it can be read back.
+    /// SI unit of the quantity, in a form that can be read back.
     const SI_UNIT: &'static str;
 }
 
 macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {
-        /// The markers that tell quantities of different dimension apart.
+        /// Markers that distinguish the kinds of quantity.
         pub mod kind {
             use super::{Dimension, Kind};
             $(
@@ -191,7 +190,7 @@ macro_rules! quantities {
             )*
         }
         $($(#[$doc])* pub type $name = Quantity<kind::$name>;)*
-        /// Dimensions that have a name, for messages.
+        /// Dimensions with a name, for messages.
         const NAMED: &[(Dimension, &str)] = &[
             $(($dimension, $label),)*
         ];
@@ -221,10 +220,10 @@ quantities! {
     Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
 }
 
-/// A quantity, with the text it was written as.
+/// A quantity, with its original text.
 ///
-/// Two quantities are equal when text and value are. Bounds belong to the key of the quantity, and are
-/// checked there.
+/// Two quantities are equal when their texts and values are. Bounds belong to the key of the quantity, and
+/// are checked there.
 ///
 /// ```
 /// use slipfront_case::quantity::{Density, Length};
@@ -246,14 +245,14 @@ impl<K: Kind> Quantity<K> {
     /// The dimension of every quantity of this type.
     pub const DIMENSION: Dimension = K::DIMENSION;
 
-    /// The value in SI units: the `f64` nearest to what was written.
+    /// The value in SI units: the `f64` nearest to the written number.
     pub fn si(&self) -> f64 {
         self.si
     }
 
-    /// The quantity of an SI value, written with the fewest digits that read back to the same `f64`.
+    /// The quantity with an SI value, written with the fewest digits that read back to the same `f64`.
     ///
-    /// A value that is not finite makes a quantity that is refused wherever a case file is checked or read.
+    /// Checking or reading a case file refuses a quantity with a value that is not finite.
     pub fn from_si(si: f64) -> Self {
         Self {
             text: format!("{si:?} {}", K::SI_UNIT),
@@ -270,7 +269,7 @@ impl<K: Kind> Quantity<K> {
     };
 }
 
-/// Constants of a [`Kind`] as values, so that one function reads the texts of all kinds.
+/// Constants of a [`Kind`] as values, so that one function reads all kinds.
 #[derive(Clone, Copy)]
 struct Description {
     dimension: Dimension,
@@ -312,7 +311,7 @@ impl Description {
         }
     }
 
-    /// Reads a text. Gives the value in SI units.
+    /// Reads a text, and returns the value in SI units.
     fn read(self, text: &str) -> Result<f64, QuantityError> {
         if text.len() > MAX_TEXT {
             return Err(QuantityError::TooLong {
@@ -403,8 +402,7 @@ impl Visitor<'_> for QuantityVisitor {
     }
 }
 
-/// A number with its unit as a text has it, of any dimension, for comparing quantities whose kind is not
-/// known.
+/// A number with its unit as written, of any dimension, for comparing quantities of unknown kind.
 ///
 /// ```
 /// use slipfront_case::quantity::WrittenQuantity;
@@ -419,7 +417,7 @@ pub struct WrittenQuantity<'a> {
 }
 
 impl<'a> WrittenQuantity<'a> {
-    /// The quantity in a text; none if it is no number with a known unit.
+    /// The quantity in a text; none if it is not a number with a known unit.
     pub fn read(text: &'a str) -> Option<Self> {
         let number = DecimalText::split(text.trim()).filter(|_| text.len() <= MAX_TEXT)?;
         let unit = number.rest.trim();
@@ -437,7 +435,7 @@ impl<'a> WrittenQuantity<'a> {
         format!("{one}{unit}")
     }
 
-    /// Value in the unit of another quantity, rounded once; none if that has another dimension.
+    /// Value in the unit of another quantity, rounded once; none if the dimensions differ.
     pub fn in_unit_of(&self, other: &Self) -> Option<f64> {
         let is_alike = self.unit.dimension == other.unit.dimension;
         let power = self.unit.power_of_ten - other.unit.power_of_ten;
@@ -445,7 +443,7 @@ impl<'a> WrittenQuantity<'a> {
     }
 }
 
-/// A decimal number cut out of the front of a text, not yet rounded.
+/// A decimal number at the beginning of a text, not yet rounded.
 struct DecimalText<'a> {
     /// Sign, digits and decimal point.
     mantissa: &'a str,
@@ -458,7 +456,7 @@ impl<'a> DecimalText<'a> {
         let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
         let after_digits = unsigned.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
         let mantissa = &text[..text.len() - after_digits.len()];
-        // Digits and at most one point: "1.2.3", "." and "" are none of std's numbers.
+        // Digits and at most one point: the standard library parses none of "1.2.3", "." and "".
         mantissa.parse::<f64>().ok()?;
         let (exponent, rest) = split_exponent(after_digits)?;
         Some(Self {
@@ -477,7 +475,7 @@ impl<'a> DecimalText<'a> {
     }
 }
 
-/// Splits "e-3 mm" into -3 and " mm". An `e` that no digit follows belongs to the unit.
+/// Splits "e-3 mm" into -3 and " mm". An `e` without a digit after it belongs to the unit.
 fn split_exponent(text: &str) -> Option<(i32, &str)> {
     let Some(after_e) = text.strip_prefix(['e', 'E']) else {
         return Some((0, text));
@@ -488,7 +486,7 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
         return Some((0, text));
     }
     let digits = &after_e[..after_e.len() - rest.len()];
-    // Only the digits can be too many: such a number overflows or underflows in any case.
+    // The only possible error is too many digits: such a number overflows or underflows in any case.
     let limit = if digits.starts_with('-') {
         i32::MIN
     } else {
@@ -500,8 +498,7 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
 /// A product of powers of units.
 struct Unit {
     dimension: Dimension,
-    /// Power of ten of the unit's size, which is 10^`power_of_ten` times `factor` SI units; `factor` is 1
-    /// where every unit in it is accepted.
+    /// The unit is 10^`power_of_ten` times `factor` SI units; `factor` is 1 if every unit in it is accepted.
     power_of_ten: i32,
     factor: f64,
     /// The first symbol in the unit that is not accepted.
@@ -577,7 +574,7 @@ fn split_factors<'u>(text: &str, unit_text: &'u str) -> Result<Vec<(&'u str, i32
     Ok(all)
 }
 
-/// Writes the signs that have an ASCII spelling in that spelling: micro, middle dot, superscripts.
+/// Replaces signs with their ASCII spelling: micro, middle dot, superscripts.
 fn with_ascii_signs(text: &str) -> String {
     const SUPERSCRIPTS: [char; 10] = [
         '\u{2070}', '\u{b9}', '\u{b2}', '\u{b3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}', '\u{2078}',
@@ -611,7 +608,7 @@ fn split_power(factor: &str) -> Option<(&str, i32)> {
     Some((symbol, power))
 }
 
-/// The dimension and power of ten of a symbol: a unit as it stands, or else a prefix and a unit.
+/// The dimension and power of ten of a symbol: a bare unit, or otherwise a prefix and a unit.
 fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     let bare = |name: &str| {
         let unit = UNITS.iter().find(|(unit, ..)| *unit == name);
@@ -625,13 +622,13 @@ fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     })
 }
 
-/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit with which the whole has the
-/// `wanted` dimension, or else the known units.
+/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit that gives the product the
+/// `wanted` dimension, or otherwise the known units.
 fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: &str) -> String {
     if symbol.starts_with(',') {
         return "the decimal sign is a point".to_owned();
     }
-    // What the other factors leave to the unknown one; none if there are several unknown ones.
+    // The dimension that remains for the unknown factor; none if several are unknown.
     let is_unknown = |&&(other, _): &&(&str, i32)| find_symbol(other).is_none();
     let unknown: Vec<&(&str, i32)> = factors.iter().filter(is_unknown).collect();
     if let [(_, power)] = unknown.as_slice() {
@@ -659,8 +656,8 @@ fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: 
     )
 }
 
-/// The accepted unit, with its prefix, that is spelt nearly like `symbol`, among those of a dimension that
-/// fits.
+/// The accepted unit, with its prefix, that is spelt most like `symbol`, among those with a suitable
+/// dimension.
 fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String> {
     let units = UNITS.iter().filter(|(_, dimension, _)| fits(*dimension));
     let candidates = units.flat_map(|(unit, ..)| {
@@ -668,7 +665,7 @@ fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String
         prefixes.map(move |prefix| format!("{prefix}{unit}"))
     });
     let distance = |unit: &str| {
-        // "KPA" is nearer to "kPa" than to any unit of other letters.
+        // "KPA" is nearer to "kPa" than to any unit with other letters.
         let folded = strsim::damerau_levenshtein(&unit.to_lowercase(), &symbol.to_lowercase());
         (folded, strsim::damerau_levenshtein(unit, symbol))
     };
@@ -677,7 +674,7 @@ fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String
     (distance == 0 || distance == 1 && symbol.len() > 1).then_some(unit)
 }
 
-/// A number to six digits, as a conversion is written.
+/// A number to six digits, for a conversion.
 fn six_digits(value: f64) -> String {
     exact(format!("{value:.5e}").parse().unwrap_or(value))
 }

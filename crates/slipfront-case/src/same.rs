@@ -1,4 +1,4 @@
-//! Inputs that all ranks must have alike, compared before the ranks need each other.
+//! Comparison of inputs that must be the same on all ranks, before the ranks communicate for other reasons.
 
 use blake3::OUT_LEN;
 use slipfront::Communicator;
@@ -23,11 +23,11 @@ pub struct Difference {
     pub expected: String,
 }
 
-/// Names of inputs that all ranks must have alike, each with its value on this rank.
+/// Names of inputs that must be the same on all ranks, each with its value on this rank.
 pub type NamedInputs = Vec<(String, String)>;
 
 /// Fails on all ranks, with the same words, unless all have been `given` the same inputs. Every rank must
-/// ask.
+/// call this.
 ///
 /// ```
 /// use slipfront::Communicator;
@@ -51,9 +51,9 @@ pub fn expect_same(
     if communicator.size() == 1 {
         return Ok(());
     }
-    // Strings: serialisation cannot fail.
+    // Serialisation of strings cannot fail.
     let own = serde_json::to_string(&given()).unwrap_or_default();
-    // What ranks tell here first has the same length whatever they were given, and must keep it: programs of
+    // This first message of the ranks has the same length for any inputs, and must keep it: programs of
     // different versions begin with it.
     let hash = words_of(&blake3::hash(own.as_bytes()));
     let mut of_first = hash.map(|word| if communicator.rank() == 0 { word } else { 0 });
@@ -78,7 +78,7 @@ pub fn expect_same(
     })
 }
 
-/// Inputs of a rank, from the text of them; the text itself if another version has written it otherwise.
+/// Inputs of a rank, from their text; the text itself if another version has written it in another form.
 fn read_given(text: &str) -> NamedInputs {
     serde_json::from_str(text).unwrap_or_else(|_| vec![("what it was given".to_owned(), text.to_owned())])
 }

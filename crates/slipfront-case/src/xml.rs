@@ -1,17 +1,17 @@
-//! XML of files that may be broken or made to break their reader.
+//! XML from files that may be damaged or malicious.
 
 use roxmltree::{Document, ParsingOptions};
 use slipfront_base::text::single_line;
 
-/// Most namespaces of a document, and most attributes of one of its elements. Height maps and workbooks take
-/// some ten.
+/// Largest number of namespaces of a document, and of attributes of an element. Height maps and workbooks
+/// need about ten.
 const NAMES_MAX: usize = 64;
 
-/// Reads XML of at most `nodes_max` nodes: elements, comments and the texts between them. Its file is called
-/// `name`.
+/// Reads XML with at most `nodes_max` nodes: elements, comments and the texts between them. Errors call the
+/// file `name`.
 ///
 /// # Errors
-/// A sentence on what is no XML, or of which there is too much.
+/// A sentence if the text is not XML, or exceeds a limit.
 pub fn parse<'x>(name: &str, xml: &'x str, nodes_max: u32) -> Result<Document<'x>, String> {
     limit_names(name, xml)?;
     let options = ParsingOptions {
@@ -22,12 +22,12 @@ pub fn parse<'x>(name: &str, xml: &'x str, nodes_max: u32) -> Result<Document<'x
         .map_err(|error| format!("`{name}` is no XML ({})", single_line(&error.to_string())))
 }
 
-/// Refuses XML with many namespaces or attributes: the parser compares each with all others of its element,
-/// and each element with all namespaces around it, so that its time would grow with the cube of the length of
-/// the text.
+/// Refuses XML with many namespaces or attributes. The parser compares each attribute with all others of its
+/// element, and each element with all namespaces around it, so that its time would grow with the cube of the
+/// text length.
 ///
 /// # Errors
-/// What there is too much of, with both numbers.
+/// A sentence with the exceeded limit, and both numbers.
 fn limit_names(name: &str, xml: &str) -> Result<(), String> {
     let namespaces = xml.matches("xmlns").count();
     if namespaces > NAMES_MAX {
@@ -35,8 +35,7 @@ fn limit_names(name: &str, xml: &str) -> Result<(), String> {
             "`{name}` declares {namespaces} namespaces, and at most {NAMES_MAX} are read"
         ));
     }
-    // No value of an attribute contains a `<`, so that all attributes of an element stand before the next
-    // one.
+    // Attribute values contain no `<`, so all attributes of an element come before the next `<`.
     let begins_value = |after: &&str| after.trim_start().starts_with(['"', '\'']);
     let of_element = |piece: &str| piece.split('=').skip(1).filter(begins_value).count();
     let attributes = xml.split('<').map(of_element).max().unwrap_or(0);

@@ -1,14 +1,13 @@
-//! Symmetric systems of some thousand equations: Cholesky's factor, solutions, and the diagonal of the
-//! inverse.
+//! Symmetric systems of some thousand equations: Cholesky factor, solutions, and the diagonal of the inverse.
 //!
-//! Every sum runs in the order of its index, so that results have the same bits for any width of vectors.
+//! Every sum is computed in the order of its index, so that results have the same bits for any vector width.
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
-/// Number of columns that are computed together: two vectors of AVX2, one of AVX-512.
+/// Number of columns that are computed together: two vectors with AVX2, one with AVX-512.
 const PANEL: usize = 8;
 
-// The 32 sums of a tile stay in registers: every number that is loaded serves four or eight of them.
+// The 32 sums of a tile stay in registers: every loaded number is used in four or eight of them.
 /// Number of rows that are computed together.
 const ROWS: usize = 4;
 
@@ -16,12 +15,12 @@ const ROWS: usize = 4;
 #[derive(Clone, Debug)]
 pub(crate) struct Factor {
     n: usize,
-    /// Rows of the factor one after the other; numbers above the diagonal have no meaning.
+    /// Rows of the factor, one after the other; numbers above the diagonal are undefined.
     rows: Vec<f64>,
 }
 
-/// Coefficients of columns whose sum lies closest to `y`, each held back by a share `damping` of the square
-/// of its column; none if a column is zero, or the others make it.
+/// Coefficients of the combination of columns that is closest to `y`, each damped by a share `damping` of the
+/// square of its column; none if a column is zero, or linearly dependent on the others.
 ///
 /// ```text
 /// (A^T A + damping diag(A^T A)) x = A^T y
@@ -38,7 +37,7 @@ pub fn least_squares(columns: &[Vec<f64>], y: &[f64], damping: f64) -> Option<Ve
     Some(x)
 }
 
-/// Sums over k of `a[row][k] b[k][column]` of a tile of the product of two matrices.
+/// Sums over k of `a[row][k] b[k][column]`, for a tile of a matrix product.
 #[inline(always)]
 fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL]; ROWS] {
     let mut sums = [f64x8::splat(simd, 0.0); ROWS];
@@ -53,7 +52,7 @@ fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL
     sums.map(Into::into)
 }
 
-/// Rows of a matrix from `first` on, from column `from` on; behind the last row this row is repeated.
+/// Rows of a matrix starting with row `first` and column `from`. Beyond the last row, this row is repeated.
 #[inline(always)]
 fn rows_from(matrix: &[f64], n: usize, first: usize, from: usize) -> [&[f64]; ROWS] {
     std::array::from_fn(|k| {
@@ -76,8 +75,8 @@ fn inverse_of_triangle(triangle: &[[f64; PANEL]; PANEL], width: usize) -> [[f64;
 }
 
 impl Factor {
-    /// Factorizes a symmetric matrix, of which the lower half is read, with numbers added to its diagonal;
-    /// none if the sum is not positive.
+    /// Factorizes a symmetric matrix, given by its lower half, with numbers added to its diagonal; none if
+    /// the sum is not positive definite.
     ///
     /// ```text
     /// L_ij = (A_ij - sum_k<j L_ik L_jk)/L_jj,   L_jj = sqrt(A_jj + added_j - sum_k<j L_jk^2)
@@ -100,8 +99,8 @@ impl Factor {
     fn factorize<S: Simd>(&mut self, simd: S) -> bool {
         let n = self.n;
         let mut panel = Vec::with_capacity(n);
-        // Panel by panel, each less the product of all columns before it: nearly all of the work is that
-        // product, in `tile`.
+        // Each panel is reduced by the product of all columns before it: this product, in `tile`, takes
+        // nearly all of the time.
         for first in (0..n).step_by(PANEL) {
             let width = PANEL.min(n - first);
             panel.clear();
@@ -114,7 +113,7 @@ impl Factor {
                     }
                 })
             }));
-            // The factor of the panel's own rows, column after column.
+            // The factor of the panel's own rows, column by column.
             let mut own = [[0.0; PANEL]; PANEL];
             let below = first + width;
             for group in (first..below).step_by(ROWS) {
@@ -140,8 +139,8 @@ impl Factor {
                     own[row - first][..values.len()].copy_from_slice(values);
                 }
             }
-            // Rows below are multiplied by the inverse of the panel's triangle: solving for each would divide
-            // number by number.
+            // Rows below are multiplied by the inverse of the panel's triangle. Solving for each row would
+            // need a division per number.
             let inverse = inverse_of_triangle(&own, width).map(|row| f64x8::load_array(simd, row));
             for group in (below..n).step_by(ROWS) {
                 let sums = tile(simd, rows_from(&self.rows, n, group, 0), &panel);
@@ -158,7 +157,7 @@ impl Factor {
         true
     }
 
-    /// Replaces the right side `y` of `A x = y` by the solution `x`.
+    /// Replaces the right-hand side `y` of `A x = y` by the solution `x`.
     pub(crate) fn solve(&self, y: &mut [f64]) {
         let n = self.n;
         for i in 0..n {
@@ -166,7 +165,7 @@ impl Factor {
             let sum: f64 = row.iter().zip(&*y).map(|(l, y)| l * y).sum();
             y[i] = (y[i] - sum) / self.rows[i * n + i];
         }
-        // Of L^T, too, one row of L after the other: its columns would be read across the memory.
+        // L^T is also read by rows of L: reading its columns would access distant memory.
         for i in (0..n).rev() {
             y[i] /= self.rows[i * n + i];
             let (before, value) = (&self.rows[i * n..i * n + i], y[i]);
@@ -220,7 +219,7 @@ impl Factor {
     fn products_of_columns<S: Simd>(&self, simd: S) -> Vec<f64> {
         let n = self.n;
         let mut inverse = vec![0.0; n * n];
-        // The columns of L^-1 so far, each as a row.
+        // The columns of L^-1 computed so far, each stored as a row.
         let mut all = vec![0.0; n * n];
         let mut columns = Vec::with_capacity(n);
         for first in (0..n).step_by(PANEL) {
@@ -247,8 +246,8 @@ impl Factor {
         inverse
     }
 
-    /// Replaces `columns` by the columns of `L^-1` from `first` on, as many as a panel has, from row `first`
-    /// on.
+    /// Replaces `columns` by the columns of `L^-1` from `first` up, as many as a panel has, starting at row
+    /// `first`.
     #[inline(always)]
     fn inverse_columns<S: Simd>(&self, simd: S, first: usize, columns: &mut Vec<[f64; PANEL]>) {
         let n = self.n;
@@ -271,8 +270,8 @@ impl Factor {
     }
 }
 
-/// Sums `sum_j m_ij (x_j - x_i)` over points of `d` numbers each, with a matrix of as many rows and columns
-/// as there are points.
+/// Sums `sum_j m_ij (x_j - x_i)` over points of `d` numbers each, with a square matrix of as many rows as
+/// points.
 pub(crate) fn differences(matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
@@ -283,8 +282,7 @@ pub(crate) fn differences(matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> 
 #[inline(always)]
 fn sums_of_differences<S: Simd>(simd: S, matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
     let n = points.len() / d;
-    // The sum is a product of matrices less the sums of rows times a point, in place of a difference for
-    // every pair.
+    // The sum is a matrix product minus the row sums times a point, which avoids a difference for every pair.
     let rows: Vec<f64> = matrix.chunks_exact(n).map(|row| row.iter().sum()).collect();
     let mut found = vec![0.0; n * d];
     for first in (0..d).step_by(PANEL) {
@@ -305,8 +303,8 @@ fn sums_of_differences<S: Simd>(simd: S, matrix: &[f64], points: &[f64], d: usiz
     found
 }
 
-/// Squared distances between points of `d` numbers each, row after row of `points` and column after column of
-/// `others`.
+/// Squared distances between points of `d` numbers each, with a row per point of `points` and a column per
+/// point of `others`.
 pub fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
@@ -347,8 +345,7 @@ fn distances<S: Simd>(simd: S, points: &[f64], others: &[f64], d: usize) -> Vec<
 mod tests {
     use super::*;
 
-    /// A straight line through 1, 3 and 5 at 0, 1 and 2, and half of its slope where it is held back by as
-    /// much as its square.
+    /// A straight line through 1, 3 and 5 at 0, 1 and 2. Damping by its full square halves its slope.
     #[test]
     fn least_squares_find_a_line() {
         let line = [vec![1.0; 3], vec![0.0, 1.0, 2.0]];
@@ -377,7 +374,7 @@ mod tests {
             let size = n as f64 + 1.0;
             for (i, found) in factor.inverse_diagonal().into_iter().enumerate() {
                 let place = i as f64 + 1.0;
-                // Errors of rounding grow with the condition number, 4 (n + 1)^2/pi^2.
+                // Rounding errors grow with the condition number, 4 (n + 1)^2/pi^2.
                 let bound = 4.0 * size * size * f64::EPSILON;
                 assert!(
                     (found / (place * (size - place) / size) - 1.0).abs() < bound,
@@ -395,7 +392,7 @@ mod tests {
                 );
             }
             assert!((factor.log_determinant() - size.ln()).abs() < 4.0 * size * size * f64::EPSILON);
-            // A x = y for x = i has y = 0 but for the last row.
+            // For x = i, y = A x is 0 except in the last row.
             let mut y = vec![0.0; n];
             y[n - 1] = size;
             factor.solve(&mut y);
@@ -419,7 +416,7 @@ mod tests {
         let points: Vec<f64> = (0..22).map(f64::from).collect();
         let found = squared_distances(&points, &points[..10], 2);
         for (k, distance) in found.into_iter().enumerate() {
-            // Neighbours differ by 2 in both numbers, and all of it are integers.
+            // Neighbours differ by 2 in both numbers, and all values are integers.
             let apart = (k / 5) as f64 - (k % 5) as f64;
             assert_eq!(distance, 8.0 * apart * apart);
         }
@@ -427,14 +424,14 @@ mod tests {
 
     #[test]
     fn differences_of_points_of_a_grid() {
-        // Eleven points i, i^2 and so on; the matrix has the elements i + 2 j.
+        // Eleven points with the components i, i^2 and so on; the matrix has the elements i + 2 j.
         let (n, d) = (11, 9);
         let power = |i: usize, f: usize| (i as f64).powi(f as i32 % 3 + 1);
         let points: Vec<f64> = (0..n).flat_map(|i| (0..d).map(move |f| power(i, f))).collect();
         let matrix: Vec<f64> = (0..n * n).map(|k| (k / n + 2 * (k % n)) as f64).collect();
         for (k, found) in differences(&matrix, &points, d).into_iter().enumerate() {
             let (i, f) = (k / d, k % d);
-            // All of it are integers.
+            // All values are integers.
             let exact: f64 = (0..n)
                 .map(|j| (i + 2 * j) as f64 * (power(j, f) - power(i, f)))
                 .sum();

@@ -1,8 +1,8 @@
-//! Kernel regression with given parameters, and what may be the noise of its values.
+//! Kernel regression with given parameters, and models of the noise of its values.
 
 use crate::dense::{Factor, squared_distances};
 
-/// A regression, and the residuals of every run by the others.
+/// A regression, and the leave-one-out residual of every run.
 pub(crate) struct Fit {
     pub(crate) coefficients: Vec<f64>,
     /// `u_i - f_without_i(x_i) = a_i/[A^-1]_ii`.
@@ -10,8 +10,8 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// The regression `A a = u` of values u, whose mean is 0, `A = K + diag(noise)`; none if A is not
-    /// positive.
+    /// The regression `A a = u` of values u with mean 0, `A = K + diag(noise)`; none if A is not positive
+    /// definite.
     pub(crate) fn of(
         kernel: Vec<f64>,
         values: &[f64],
@@ -20,7 +20,7 @@ impl Fit {
         let factor = Factor::of(kernel, noise)?;
         let mut coefficients = values.to_vec();
         factor.solve(&mut coefficients);
-        // Residuals as if each run were left out, from one factor: `n` regressions would give the same.
+        // Leave-one-out residuals from a single factor: `n` separate regressions would give the same.
         let inverse = factor.inverse_diagonal();
         let residuals = coefficients.iter().zip(inverse).map(|(a, d)| a / d).collect();
         Some(Self {
@@ -35,28 +35,29 @@ impl Fit {
 pub(crate) enum Noise {
     /// All runs have the same noise.
     Normal,
-    /// Some runs are far off, such as those that stick and slip among others that slide: they have more
-    /// noise, so that nothing is learnt to explain them.
+    /// Some runs are outliers, such as those that stick and slip among others that slide. They get more
+    /// noise, so that the regression does not learn to explain them.
     HeavyTailed,
 }
 
 /// Degrees of freedom of the noise with heavy tails.
 const FREEDOM: f64 = 4.0;
 
-/// Median of the size of a standard normal number.
+/// Median of the absolute value of a standard normal number.
 const MEDIAN_SIZE: f64 = 0.6745;
 
 impl Noise {
-    /// Variances of the noise of runs with these residuals, over that of a run whose residual has the
-    /// standard deviation s, s the median size over that of a normal number; none if all are the same.
+    /// Noise variances of runs with these residuals, relative to that of a run with a residual of one
+    /// standard deviation s. Here s is the median absolute residual over that of a standard normal number.
+    /// None if all variances are the same.
     ///
     /// ```text
     /// (nu + e^2/s^2)/(nu + 1)
     /// ```
     ///
-    /// A regression with normal noise of these variances, made anew with the residuals that it leaves,
-    /// becomes the likeliest one with noise of Student's distribution with nu degrees of freedom (Lange et
-    /// al., Journal of the American Statistical Association 84 (1989) 881).
+    /// Repeated regressions with normal noise, with these variances updated from the residuals each time,
+    /// converge to the maximum-likelihood regression with noise of Student's distribution with nu degrees of
+    /// freedom (Lange et al., Journal of the American Statistical Association 84 (1989) 881).
     pub(crate) fn variances(self, residuals: &[f64]) -> Option<Vec<f64>> {
         let sizes: Vec<f64> = residuals.iter().map(|e| e.abs()).collect();
         let deviation = median(&sizes) / MEDIAN_SIZE;
@@ -65,7 +66,7 @@ impl Noise {
     }
 }
 
-/// Rows of summaries, each summary times its multiplier.
+/// Rows of summaries, with each summary multiplied by its multiplier.
 pub(crate) fn multiplied(summaries: &[f64], multipliers: &[f64]) -> Vec<f64> {
     let rows = summaries.chunks_exact(multipliers.len());
     rows.flat_map(|row| row.iter().zip(multipliers).map(|(x, by)| x * by))
@@ -78,8 +79,8 @@ pub(crate) fn kernel_of_all(points: &[f64], d: usize) -> Vec<f64> {
     let mut kernel = squared_distances(points, points, d);
     for i in 0..n {
         kernel[i * n + i] = 1.0;
-        // One half, copied to the other: half the exponentials, and a matrix that is symmetric to the last
-        // bit.
+        // One half is copied to the other: this halves the number of exponentials, and makes the matrix
+        // exactly symmetric.
         for j in 0..i {
             let value = libm::exp(-0.5 * kernel[i * n + j]);
             kernel[i * n + j] = value;
@@ -89,7 +90,7 @@ pub(crate) fn kernel_of_all(points: &[f64], d: usize) -> Vec<f64> {
     kernel
 }
 
-/// The kernel `exp(-|x - x'|^2/2)` between points and others.
+/// The kernel `exp(-|x - x'|^2/2)` between two sets of points.
 pub(crate) fn kernel(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
     let mut kernel = squared_distances(points, others, d);
     for value in &mut kernel {
@@ -110,7 +111,7 @@ mod tests {
     use super::super::for_tests::cube;
     use super::*;
 
-    /// Residuals are those of runs left out, compared with a regression that has not seen them.
+    /// Leave-one-out residuals, compared with a regression without the run.
     #[test]
     fn residuals_are_those_of_runs_left_out() {
         let (n, d) = (12, 2);
@@ -131,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_run_far_off_has_more_noise() {
-        // Sizes of 0.6745 are those of a standard deviation of one.
+        // Absolute residuals of 0.6745 correspond to a standard deviation of one.
         let residuals = [0.6745, -0.6745, 0.6745, -0.6745, 6.745];
         let found = Noise::HeavyTailed.variances(&residuals).unwrap();
         let exact = [(4.0 + 0.6745 * 0.6745) / 5.0, (4.0 + 6.745 * 6.745) / 5.0];

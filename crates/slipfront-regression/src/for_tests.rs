@@ -1,6 +1,6 @@
-//! Points and chance for tests.
+//! Points and pseudorandom numbers for tests.
 
-/// Point `run` of the unit cube, less its mean: multiples of the roots of 2, 3 and 5, which fill it.
+/// Point `run` of the unit cube, minus its mean: multiples of the roots of 2, 3 and 5, which fill the cube.
 pub(crate) fn point(run: usize, d: usize) -> Vec<f64> {
     let roots = [2.0_f64, 3.0, 5.0].into_iter().take(d);
     roots

@@ -1,8 +1,8 @@
-//! Kernel ridge regression of an unknown on many numbers, with the residuals of samples that are left out,
-//! and distances between points.
+//! Kernel ridge regression of an unknown on many numbers, with leave-one-out residuals, and distances between
+//! points.
 //!
-//! It stands apart from the calibrations that use it since it solves systems of thousands of equations: it is
-//! compiled for speed, and they are not.
+//! This crate is separate from the calibrations that use it because it solves systems of thousands of
+//! equations: unlike them, it is compiled for speed.
 
 mod dense;
 mod fit;

@@ -1,9 +1,9 @@
-//! Weights of summaries in the kernel of an unknown, and the ridge, by their likelihood.
+//! Maximum-likelihood weights of the summaries in the kernel of an unknown, and ridge.
 //!
-//! The values `u` at the training runs count as normal numbers with the covariance `c A`, c their likeliest
-//! scale, and the variances v_i of the noise as given. What is least is the negative logarithm of their
-//! likelihood, without constants (Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006,
-//! section 5.4.1):
+//! The values `u` at the training runs are modelled as normal numbers with the covariance `c A`, with c their
+//! maximum-likelihood scale, and given variances v_i of the noise. The parameters minimize the negative
+//! logarithm of the likelihood, without constants (Rasmussen and Williams, Gaussian Processes for Machine
+//! Learning, 2006, section 5.4.1):
 //!
 //! ```text
 //! l = n/2 log(u^T a/n) + 1/2 log det A,   A = K + lambda diag(v),   a = A^-1 u
@@ -11,63 +11,64 @@
 //! dl/dlog w_f = w_f sum_i x_if sum_j g_ij k_ij (x_jf - x_if),   dl/dlog lambda = lambda sum_i v_i g_ii
 //! ```
 //!
-//! First all summaries share one weight, then each gets its own. These start from the mean squared slopes of
-//! the first regression (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal matrix) and are held
-//! near them: a hundred free weights would follow the noise of some hundred runs.
+//! At first all summaries share one weight, then each gets its own. The single weights start from the mean
+//! squared slopes of the first regression (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal
+//! matrix), and a prior keeps them near this start: a hundred free weights would fit the noise of a few
+//! hundred runs.
 
 use crate::dense::{Factor, differences, squared_distances};
 use crate::fit::{Fit, Noise, kernel_of_all, median, multiplied};
 
-/// Largest number of runs from which weights and ridge are found.
+/// Largest number of runs from which weights and ridge are determined.
 pub(crate) const MAX_SEARCHED: usize = 900;
 
-/// Largest number of runs from which the common weight and the first slopes are found.
+/// Largest number of runs from which the common weight and the first slopes are determined.
 const MAX_OF_COMMON_WEIGHT: usize = 450;
 
-/// Number of steps towards the likeliest parameters: later ones change the regression by less than another
+/// Number of optimization steps of the parameters: further steps change the regression by less than another
 /// sample of runs does.
 const STEPS: usize = 10;
 
-/// Standard deviation of the logarithm of a weight around its start, before a run is known.
+/// Prior standard deviation of the logarithm of a weight around its start.
 const PRIOR_DEVIATION: f64 = 1.0;
 
-/// Ridge, and inverse of the common weight over the median of the squared distances, from which the search of
-/// the common weight starts.
+/// Initial ridge, and initial inverse of the common weight over the median squared distance, in the search
+/// for the common weight.
 const COMMON_RIDGE: f64 = 1e-3;
 const COMMON_SPREAD: f64 = 4.0;
 
-/// Ridge, and median of the weighted squared distances, from which the search of the weights of all summaries
-/// starts.
+/// Initial ridge, and initial median of the weighted squared distances, in the search for the weights of all
+/// summaries.
 const RIDGE: f64 = 3e-3;
 const SPREAD: f64 = 0.5;
 
-/// Least weight from which a summary starts, over the largest.
+/// Least initial weight of a summary, relative to the largest.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// Least ridge: with less, rounding is as large as what the kernels of neighbours differ by.
+/// Least ridge: below it, rounding errors are as large as the differences between the kernels of neighbours.
 const LEAST_RIDGE: f64 = 1e-8;
 
-/// Largest residual that counts where the residuals are compared with the values, in standard deviations of
-/// these: few runs far off decide nothing.
+/// Largest residual, in standard deviations of the values, when residuals are compared with values: a few
+/// outliers must not decide.
 const MAX_RESIDUAL: f64 = 3.0;
 
-/// Least share of the variance of an unknown that a regression must explain; otherwise it has learnt nothing.
+/// Least share of the variance of an unknown that a regression must explain; with less it has learnt nothing.
 const LEAST_EXPLAINED: f64 = 0.02;
 
 /// Parameters of the kernel of an unknown.
 pub(crate) struct Parameters {
-    /// Multipliers of the summaries, the roots of their weights.
+    /// Multipliers of the summaries, the square roots of their weights.
     pub(crate) multipliers: Vec<f64>,
-    /// Noise of a run, which is added to the diagonal of the kernel.
+    /// Noise of a run, added to the diagonal of the kernel.
     pub(crate) ridge: f64,
 }
 
 impl Parameters {
-    /// The likeliest parameters for values, whose mean is 0, at rows of summaries; none if no summary depends
+    /// Maximum-likelihood parameters for values with mean 0 at rows of summaries; none if no summary depends
     /// on the unknown.
     pub(crate) fn likeliest(summaries: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
         let (n, d) = (values.len(), summaries.len() / values.len());
-        // The work grows with the cube of the number of runs, and two numbers are found from few.
+        // The work grows with the cube of the number of runs, and a few runs suffice for two numbers.
         let some = n.min(MAX_OF_COMMON_WEIGHT);
         let mut first = Sample::of(&summaries[..some * d], &values[..some]);
         let spread = median(&squared_distances(first.summaries, first.summaries, d));
@@ -99,7 +100,8 @@ struct Sample<'a> {
     variances: Vec<f64>,
 }
 
-/// The negative logarithm of a likelihood, and its slopes along the logarithms of weights and ridge.
+/// Negative logarithm of a likelihood, and its derivatives with respect to the logarithms of weights and
+/// ridge.
 struct Likelihood {
     value: f64,
     of_weights: Vec<f64>,
@@ -115,12 +117,12 @@ impl<'a> Sample<'a> {
         }
     }
 
-    /// Number of the summaries.
+    /// Number of summaries.
     fn d(&self) -> usize {
         self.summaries.len() / self.values.len()
     }
 
-    /// The summaries, each times the root of its weight.
+    /// The summaries, each times the square root of its weight.
     fn points(&self, weights: &[f64]) -> Vec<f64> {
         let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
         multiplied(self.summaries, &roots)
@@ -140,8 +142,8 @@ impl<'a> Sample<'a> {
         Fit::of(self.kernel(weights), self.values, self.noise(ridge))
     }
 
-    /// Variances of the noise that follow from the residuals of a regression; none if all runs have the same
-    /// noise, which takes no regression.
+    /// Noise variances from the residuals of a regression; none if all runs have the same noise, which needs
+    /// no regression.
     fn learnt_variances(&self, noise: Noise, weights: &[f64], ridge: f64) -> Option<Vec<f64>> {
         if noise == Noise::Normal {
             return None;
@@ -149,12 +151,13 @@ impl<'a> Sample<'a> {
         noise.variances(&self.fit(weights, ridge)?.residuals)
     }
 
-    /// One weight for all summaries, from the logarithms of it and of the ridge.
+    /// The same weight for all summaries, from the logarithms of this weight and of the ridge.
     fn equal_weights(&self, common: &[f64]) -> Vec<f64> {
         vec![libm::exp(common[0]); self.d()]
     }
 
-    /// The likeliest logarithms of one weight for all summaries and of the ridge, from `start` on.
+    /// Maximum-likelihood logarithms of the common weight of all summaries and of the ridge, starting from
+    /// `start`.
     fn common_weight(&self, start: Vec<f64>) -> Vec<f64> {
         descend(start, &|logs| {
             let found = self.likelihood(&self.equal_weights(logs), libm::exp(logs[1]))?;
@@ -165,7 +168,7 @@ impl<'a> Sample<'a> {
         })
     }
 
-    /// The likeliest weight of every summary, where weights are log-normal around some before a run is known.
+    /// Most probable weight of every summary, with a log-normal prior around the given weights.
     fn weights_near(&self, weights: &[f64]) -> Parameters {
         let d = weights.len();
         let mut start: Vec<f64> = weights.iter().map(|&weight| libm::log(weight)).collect();
@@ -197,14 +200,15 @@ impl<'a> Sample<'a> {
         let product: f64 = self.values.iter().zip(&coefficients).map(|(u, a)| u * a).sum();
         let scale = product / n as f64;
         let value = 0.5 * n as f64 * libm::log(scale) + 0.5 * factor.log_determinant();
-        // In place of the inverse, element by element: matrices of all pairs of runs are what takes memory.
+        // The elements replace those of the inverse, because matrices of all pairs of runs take most of the
+        // memory.
         let mut g = factor.inverse();
         let mut of_ridge = 0.0;
         for (i, row) in g.chunks_exact_mut(n).enumerate() {
             for ((g, k), a) in row.iter_mut().zip(&kernel[i * n..]).zip(&coefficients) {
                 *g = 0.5 * (*g - coefficients[i] * a / scale) * k;
             }
-            // The kernel of a run and itself is 1.
+            // The kernel of a run with itself is 1.
             of_ridge += ridge * self.variances[i] * row[i];
         }
         let pulls = differences(&g, self.summaries, d);
@@ -224,8 +228,9 @@ impl<'a> Sample<'a> {
         })
     }
 
-    /// Weights like the mean squared slopes of a regression with one weight for all summaries, given by its
-    /// logarithm and that of the ridge; none if it has learnt nothing. A run with more noise counts for less.
+    /// Weights proportional to the mean squared slopes of a regression with the same weight for all
+    /// summaries, given by the logarithms of the weight and of the ridge; none if this regression has learnt
+    /// nothing. A run with more noise counts for less.
     ///
     /// ```text
     /// df/dx_f(x_i) = w sum_j a_j k_ij (x_jf - x_if)
@@ -268,31 +273,31 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// A function and its slopes along its parameters.
+/// A function value and its derivatives with respect to the parameters.
 struct Slope {
     value: f64,
     slopes: Vec<f64>,
 }
 
-/// Multiples of a step along a parameter whose slope keeps its sign, or changes it, the first step, and the
+/// Factors of the step of a parameter if its derivative keeps or changes its sign, the first step, and the
 /// largest.
 const LONGER: f64 = 1.3;
 const SHORTER: f64 = 0.5;
 const FIRST_STEP: f64 = 0.5;
 const LONGEST: f64 = 2.0;
 
-/// The parameters with the least value that [`STEPS`] steps down from `start` find, of which the last is the
-/// logarithm of the ridge. Each parameter has a step of its own, and only the sign of its slope counts
-/// (Riedmiller and Braun, IEEE International Conference on Neural Networks 1993, p. 586): the units of
-/// parameters do not matter, and no value has to be sought along a line.
+/// Parameters with the least value in [`STEPS`] steps of descent from `start`. The last parameter is the
+/// logarithm of the ridge. Each parameter has its own step, and only the sign of its derivative counts
+/// (Rprop; Riedmiller and Braun, IEEE International Conference on Neural Networks 1993, p. 586): the units of
+/// parameters do not matter, and there is no line search.
 fn descend(start: Vec<f64>, f: &dyn Fn(&[f64]) -> Option<Slope>) -> Vec<f64> {
     let mut place = start.clone();
-    // Steps by signs alone may lead upwards, so that the best place is kept and not the last.
+    // Steps by sign alone may increase the value, so the best place is kept, not the last.
     let (mut least, mut best) = (f64::INFINITY, start);
     let mut steps = vec![FIRST_STEP; place.len()];
     let mut before = vec![0.0; place.len()];
     for _ in 0..STEPS {
-        // Where rounding leaves a matrix that is not positive, no step leads further.
+        // If rounding makes the matrix not positive definite, no further step is possible.
         let Some(Slope { value, mut slopes }) = f(&place) else {
             break;
         };
@@ -306,7 +311,7 @@ fn descend(start: Vec<f64>, f: &dyn Fn(&[f64]) -> Option<Slope>) -> Vec<f64> {
                 *step = (LONGER * *step).min(LONGEST);
             } else if signs < 0.0 {
                 *step *= SHORTER;
-                // A step that went too far is not gone back at once.
+                // A step that went too far is not reversed immediately.
                 *slope = 0.0;
             }
             if *slope != 0.0 {
@@ -326,7 +331,7 @@ mod tests {
     use super::super::for_tests::{chance, cube};
     use super::*;
 
-    /// A value of two of three summaries, with noise.
+    /// Values that depend on two of three summaries, with noise.
     fn sample(n: usize) -> (Vec<f64>, Vec<f64>) {
         let summaries = cube(n, 3);
         let rows = summaries.chunks_exact(3).zip(chance(n));
@@ -356,7 +361,7 @@ mod tests {
             };
             let slope = (moved(step) - moved(-step)) / (2.0 * step);
             let known = found.of_weights.get(k).copied().unwrap_or(found.of_ridge);
-            // A central difference is off by a third derivative times step^2/6, and by rounding over the
+            // The error of a central difference is a third derivative times step^2/6, plus rounding over the
             // step.
             assert!((slope - known).abs() < 1e-5, "{k} {slope} {known}");
         }
@@ -367,7 +372,7 @@ mod tests {
         let (summaries, values) = sample(40);
         assert!(Parameters::likeliest(&summaries, &[0.0; 40], Noise::HeavyTailed).is_none());
         assert!(Parameters::likeliest(&[0.7; 120], &values, Noise::Normal).is_none());
-        // Three runs of four have the same summaries.
+        // Three of four runs have the same summaries.
         let some = summaries.chunks_exact(3).enumerate();
         let some: Vec<f64> = some
             .flat_map(|(i, row)| if i % 4 == 0 { row } else { &[0.7; 3] }.to_vec())
@@ -399,7 +404,8 @@ mod tests {
         let [first, second] = found(1.0)[..] else {
             panic!("two parameters")
         };
-        // A step that goes too far is halved: the first step is, the second parameter's are longer by then.
+        // A step that goes too far is halved. This happens to the first step; the second parameter's steps
+        // are longer by then.
         assert!((first - 1.0).abs() < SHORTER * FIRST_STEP, "{first}");
         assert!((second + 2.0).abs() < SHORTER * LONGEST, "{second}");
         assert_eq!(found(1e6), [first, second]);
@@ -414,7 +420,7 @@ mod tests {
             .collect();
         let sample = Sample::of(&summaries, &values);
         let weights = sample.weights_of_slopes(&[0.25, 1e-6].map(libm::log)).unwrap();
-        // As exact as the regression of a line by a Gaussian kernel.
+        // As accurate as the regression of a line by a Gaussian kernel.
         assert!((weights[1] / weights[0] - 0.25).abs() < 0.01, "{weights:?}");
         assert!(weights[2] / weights[0] < 1e-4, "{weights:?}");
     }

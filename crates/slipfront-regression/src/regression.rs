@@ -1,6 +1,6 @@
-//! Regression of one unknown on the summaries of training runs, which finds the summaries that matter.
+//! Regression of one unknown on the summaries of training runs, which determines the relevant summaries.
 //!
-//! Kernel ridge regression with a Gaussian kernel, in which every summary has a weight of its own, found in
+//! Kernel ridge regression with a Gaussian kernel. Every summary has its own weight, determined in
 //! `parameters.rs`:
 //!
 //! ```text
@@ -8,17 +8,17 @@
 //! k(x, x') = exp(-sum_f w_f (x_f - x'_f)^2/2)
 //! ```
 //!
-//! The variances v of the noise are larger for runs that are far off. The logarithm of the size of the
-//! residuals is a function of the summaries too, found likewise.
+//! The noise variances v are larger for outliers. The logarithm of the size of the residuals is another
+//! function of the summaries, with its own regression of this form.
 //!
-//! The prediction of a run by all others, from which intervals are made, needs no regression of its own:
-//! `u_i - f_without_i(x_i) = a_i/[A^-1]_ii`.
+//! Intervals use the leave-one-out prediction of each run, which needs no separate regression: `u_i -
+//! f_without_i(x_i) = a_i/[A^-1]_ii`.
 
 use crate::fit::{Fit, Noise, kernel, kernel_of_all, median, multiplied};
 use crate::parameters::{MAX_SEARCHED, Parameters};
 
-/// Size that is added to residuals before their logarithm is taken, over their median: a residual near 0 is
-/// chance.
+/// Size, relative to the median, that is added to residuals before their logarithm is taken: a residual near
+/// 0 is due to chance.
 const LEAST_SIZE: f64 = 0.1;
 
 /// Regression of an unknown on the summaries of training runs, and of the size of its residuals.
@@ -27,47 +27,47 @@ pub struct Regression {
     value: Function,
     /// Logarithm of the size of the residuals.
     log_scale: Function,
-    /// Predictions of every run by all others.
+    /// Leave-one-out predictions of every run.
     pub predictions: Vec<f64>,
-    /// Size of the residual of every run as all others predict it.
+    /// Leave-one-out predictions of the size of every run's residual.
     scales: Vec<f64>,
 }
 
-/// A function of summaries that was found from values at training runs.
+/// A function of summaries, fitted to values at training runs.
 #[derive(Clone, Debug)]
 struct Function {
     /// Mean of the values.
     mean: f64,
-    /// Multipliers of the summaries, the roots of their weights; empty if the summaries tell nothing.
+    /// Multipliers of the summaries, the square roots of their weights; empty if no summary is relevant.
     multipliers: Vec<f64>,
     /// The summaries of the training runs, times their multipliers.
     points: Vec<f64>,
     coefficients: Vec<f64>,
 }
 
-/// Prediction from a record.
+/// Prediction for a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// The unknown.
     pub value: f64,
-    /// Size of the residuals of runs with such summaries: the exponential of the mean of their logarithms.
+    /// Size of the residuals of runs with similar summaries: the exponential of the mean of their logarithms.
     pub scale: f64,
 }
 
-/// Widths over which training runs count as like a record, in its prediction (of the range) and in the
-/// logarithm of its scale.
+/// Widths within which training runs count as similar to a record: of its prediction (in units of the range),
+/// and of the logarithm of its scale.
 const LIKE_VALUE: f64 = 0.15;
 const LIKE_SCALE: f64 = 0.5;
 
 impl Prediction {
-    /// The value, within the range.
+    /// The value, limited to the range.
     fn bounded(self) -> f64 {
         self.value.clamp(0.0, 1.0)
     }
 }
 
 impl Regression {
-    /// Prediction of a training run by all others.
+    /// Leave-one-out prediction of a training run.
     pub fn left_out(&self, run: usize) -> Prediction {
         Prediction {
             value: self.predictions[run],
@@ -75,7 +75,7 @@ impl Regression {
         }
     }
 
-    /// Squared distance of a training run from a record, `(f - f_i)^2/0.15^2 + log^2(s/s_i)/0.5^2`.
+    /// Squared distance between a training run and a record, `(f - f_i)^2/0.15^2 + log^2(s/s_i)/0.5^2`.
     pub fn distance(&self, run: usize, record: &Prediction) -> f64 {
         let other = self.left_out(run);
         let away = (record.bounded() - other.bounded()) / LIKE_VALUE;
@@ -83,7 +83,7 @@ impl Regression {
         away * away + wider * wider
     }
 
-    /// The residual of a training run with this truth, in units of its scale, around the prediction from a
+    /// The residual of a training run with this truth, in units of its scale, applied to the prediction for a
     /// record: `f + s (u_i - f_i)/s_i`.
     pub fn moved(&self, run: usize, truth: f64, record: &Prediction) -> f64 {
         let other = self.left_out(run);
@@ -100,7 +100,7 @@ impl Regression {
         let least = LEAST_SIZE * median(&sizes);
         let logs: Vec<f64> = sizes
             .iter()
-            // All residuals may be zero, as of an unknown that the summaries tell exactly.
+            // All residuals may be zero, for an unknown that is an exact function of the summaries.
             .map(|size| libm::log(size + least + f64::MIN_POSITIVE))
             .collect();
         let (log_scale, of_logs) = Function::learn(summaries, &logs, Noise::Normal);
@@ -116,7 +116,7 @@ impl Regression {
         }
     }
 
-    /// Likeness of every training run to a record in this regression and in another: the product of their
+    /// Similarity of every training run to a record in this regression and in another: the product of their
     /// kernels.
     pub fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
         let own = |of: &Self| {
@@ -136,8 +136,8 @@ impl Regression {
 }
 
 impl Function {
-    /// Learns a function from its values at `values.len()` rows of summaries; returns it with the residual of
-    /// every run by all others.
+    /// Learns a function from its values at `values.len()` rows of summaries; returns it with the
+    /// leave-one-out residual of every run.
     fn learn(summaries: &[f64], values: &[f64], noise: Noise) -> (Self, Vec<f64>) {
         let (n, d) = (values.len(), summaries.len() / values.len());
         let mean = mean(values);
@@ -148,7 +148,7 @@ impl Function {
             points: Vec::new(),
             coefficients: Vec::new(),
         };
-        // Weights need some hundred runs, coefficients all: only the former take many factors.
+        // A few hundred runs suffice for weights, which need many factorizations; coefficients need all runs.
         let searched = n.min(MAX_SEARCHED);
         let Some(parameters) = Parameters::likeliest(&summaries[..searched * d], &targets[..searched], noise)
         else {
@@ -162,7 +162,7 @@ impl Function {
         let Some(mut found) = fit(vec![1.0; n]) else {
             return (nothing, targets);
         };
-        // A first regression shows which runs are far off; the second learns less from them.
+        // A first regression identifies outliers; the second learns less from them.
         if let Some(better) = noise.variances(&found.residuals).and_then(fit) {
             found = better;
         }
@@ -175,7 +175,7 @@ impl Function {
         (function, found.residuals)
     }
 
-    /// Kernels between summaries and those of the training runs; none if the summaries tell nothing.
+    /// Kernels between summaries and those of the training runs; none if no summary is relevant.
     fn kernel(&self, summaries: &[f64]) -> Option<Vec<f64>> {
         let d = self.multipliers.len();
         (d > 0).then(|| kernel(&multiplied(summaries, &self.multipliers), &self.points, d))
@@ -212,7 +212,7 @@ mod tests {
         for run in n..n + 20 {
             let row = point(run, d);
             let Prediction { value, scale } = found.predict(&row);
-            // A Gaussian kernel of some units of length bends a line by the cube of their ratio.
+            // A Gaussian kernel some units wide bends a line by the cube of the ratio.
             assert!(
                 (value - unknown(&row)).abs() < 1e-3 && scale < 1e-3,
                 "{value} {scale}"
@@ -237,8 +237,8 @@ mod tests {
             let row = point(run, d);
             found.predict(&row).value - unknown(&row)
         });
-        // One run of fifteen is off by 0.5: with equal noise they would raise all predictions by their mean,
-        // 0.033.
+        // One run in fifteen is off by 0.5: with equal noise, these runs would raise all predictions by their
+        // mean, 0.033.
         let mean = errors.sum::<f64>() / 100.0;
         assert!(mean.abs() < 0.01, "{mean}");
     }

@@ -1,27 +1,28 @@
-//! How far a vector lies from a sample of vectors that depend on parameters.
+//! Distance of a vector from a sample of vectors that depend on parameters.
 
 use crate::dense::Factor;
 
-/// Number of parts of the sample, of which each is judged by the others.
+/// Number of parts of the sample; each part is compared with the others.
 const PARTS: usize = 10;
 
-/// Share of the identity in the correlation of residuals: fewer samples than numbers leave it singular.
+/// Share of the diagonal in the covariance of residuals: with fewer samples than numbers, the covariance
+/// alone is singular.
 const SHRUNK: f64 = 0.2;
 
-/// Largest distance from the mean that counts, in standard deviations.
+/// Largest distance from the mean, in standard deviations; larger ones are clamped.
 const MOST: f64 = 1e3;
 
-/// Variance of the parameters over that of the sample: the vector may belong to parameters at the edge of the
-/// sample.
+/// Ratio of the assumed variance of the parameters to that of the sample: the vector may have parameters at
+/// the edge of the sample.
 const WIDENED: f64 = 4.0;
 
-/// How far a vector lies from a sample.
+/// Distance of a vector from a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distance {
-    /// Share of the vectors of the sample that lie at least as far from the others, with the vector itself as
-    /// one of them.
+    /// Share of vectors that lie at least as far from the others, with the vector itself as one of the
+    /// sample.
     pub rank: f64,
-    /// Mahalanobis distance of the vector, over the one that half of the sample exceeds.
+    /// Mahalanobis distance of the vector, divided by the median of the sample.
     pub ratio: f64,
     /// Distance of every number of the vector from the mean, in standard deviations of the sample.
     pub deviations: Vec<f64>,
@@ -38,7 +39,7 @@ impl Scale {
         let mean = means(sample);
         let deviation = |k: usize| {
             let squares: f64 = sample.iter().map(|row| (row[k] - mean[k]).powi(2)).sum();
-            // Numbers that are the same in all vectors but for rounding have no deviation of their own.
+            // Numbers that are equal in all vectors up to rounding have no standard deviation of their own.
             let rounding = 1e-9 * mean[k].abs() + 1e-100;
             (squares / sample.len() as f64).sqrt().max(rounding)
         };
@@ -76,7 +77,7 @@ impl Fit {
         let less_mean = |row: &Vec<f64>| row.iter().zip(&centre).map(|(q, centre)| q - centre).collect();
         let q: Vec<Vec<f64>> = parameters.iter().map(|row| less_mean(row)).collect();
         let spread: Vec<f64> = (0..p * p).map(|at| product(&q, at / p, &q, at % p)).collect();
-        // Parameters that never differ would be singular.
+        // Constant parameters would make the matrix singular.
         let largest = (0..p).map(|j| spread[j * p + j]).fold(1e-100, f64::max);
         let of_spread = factor(spread.clone(), 1e-9 * largest);
         let slope = |k: usize| {
@@ -96,7 +97,7 @@ impl Fit {
         };
         let entry = |at: usize| {
             let (a, b) = (at / d, at % d);
-            // The lower half is all that its factor reads.
+            // The factorization reads only the lower half.
             if a < b {
                 return 0.0;
             }
@@ -128,7 +129,7 @@ fn means(rows: &[&Vec<f64>]) -> Vec<f64> {
     (0..rows[0].len()).map(mean).collect()
 }
 
-/// Factor of a covariance, whose diagonal gets more than rounding can take from it.
+/// Factor of a covariance, with an addition to its diagonal that exceeds rounding errors.
 fn factor(covariance: Vec<f64>, added: f64) -> Factor {
     let n = covariance.len().isqrt();
     let factor = Factor::of(covariance, std::iter::repeat_n(added, n));
@@ -139,10 +140,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Distance of a vector from a sample, of which every vector has parameters.
+/// Distance of a vector from a sample of vectors with known parameters.
 ///
-/// The sample is divided into ten parts. The vectors of a part are held against the others, and so is the
-/// vector that is judged, of which the median counts.
+/// The sample is divided into ten parts. The vectors of each part are compared with the other parts, and so
+/// is the tested vector; the median of its ten distances counts.
 ///
 /// # Panics
 /// If the sample has fewer than twenty vectors, or a number is not finite.
@@ -174,8 +175,8 @@ mod tests {
     use super::*;
     use crate::for_tests::chance;
 
-    /// Vectors of five numbers: twice the parameter and minus the parameter with noise, noise alone, and one
-    /// that never differs. The noise is four numbers between 0 and 1.
+    /// Vectors of five numbers: twice the parameter and minus the parameter, both with noise, noise alone,
+    /// and a constant. The noise is four numbers between 0 and 1.
     fn vector(parameter: f64, noise: &[f64]) -> Vec<f64> {
         let noise = |j: usize| 0.2 * (noise[j] - 0.5);
         vec![
@@ -187,7 +188,7 @@ mod tests {
         ]
     }
 
-    /// A hundred vectors of parameters between -1 and 1, and one more of the parameter 0.8, whose noise is
+    /// A hundred vectors with parameters between -1 and 1, and one more with the parameter 0.8 and noise
     /// within a standard deviation.
     fn sample() -> (Vec<Vec<f64>>, Vec<Vec<f64>>, Vec<f64>) {
         let numbers = chance(500);
@@ -204,13 +205,13 @@ mod tests {
         let distance = |vector: &[f64]| distance_from(&sample, &parameters, vector);
         let own = distance(&good);
         assert!(own.rank > 0.05 && own.ratio < 2.0, "{own:?}");
-        // Each number alone lies within the sample, both together are those of no parameter.
+        // Each number alone lies within the sample, but both together fit no parameter.
         let foreign = distance(&[1.0, 0.5, 0.0, 0.0, 3.0]);
         assert!(foreign.rank == 1.0 / 101.0 && foreign.ratio > 3.0, "{foreign:?}");
         assert!(foreign.deviations.iter().all(|z| z.abs() < 2.0), "{foreign:?}");
     }
 
-    /// A number that is the same in all vectors tells of one in which it is not.
+    /// A number that is constant in the sample reveals a vector with another value.
     #[test]
     fn what_never_differs_counts_where_it_does() {
         let (sample, parameters, mut other) = sample();

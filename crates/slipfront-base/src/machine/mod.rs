@@ -12,15 +12,15 @@ pub use self::of_system::{free_disk, host_name};
 #[cfg(not(feature = "disk"))]
 pub use self::without_disk::{free_disk, host_name};
 
-/// A number that stands for the name of this machine.
+/// Hash of the name of this machine, as a number.
 pub fn machine_number() -> i64 {
-    // Machines without a name are taken for one: what is found on them is compared otherwise.
+    // Machines without a name count as one machine: callers also compare what they find on each machine.
     let name = sysinfo::System::host_name().unwrap_or_default();
     let hash = blake3::hash(name.as_bytes());
     i64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
 }
 
-/// Time that a processor has spent on this thread, so that other work on the machine does not count.
+/// Processor time of this thread, which excludes other work on the machine.
 #[cfg(all(unix, feature = "disk"))]
 pub fn thread_time() -> Duration {
     use rustix::time::{ClockId, clock_gettime};
@@ -28,7 +28,7 @@ pub fn thread_time() -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
 }
 
-/// Time since the first call, where the system gives none of a thread: other work on the machine counts.
+/// Time since the first call, for systems without a clock per thread: other work on the machine counts.
 #[cfg(not(all(unix, feature = "disk")))]
 pub fn thread_time() -> Duration {
     use std::sync::LazyLock;
@@ -38,8 +38,8 @@ pub fn thread_time() -> Duration {
 }
 
 /// Memory that this process may still take, in bytes: the memory that the machine can give without swapping,
-/// or the rest of its control group or of its limit of addresses (`ulimit -v`) if that is less. `None` if the
-/// system does not say.
+/// or the rest of its control group or of its address-space limit (`ulimit -v`) if that is less. `None` if
+/// the system does not report it.
 pub fn available_memory() -> Option<f64> {
     use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
     let mut system = System::new().ok()?;
@@ -53,8 +53,7 @@ pub fn available_memory() -> Option<f64> {
         );
         system.process(own)?.cgroup_limits()
     });
-    // What files of the group lie in memory for reading, such as those just written, is given back when asked
-    // for.
+    // The system gives back the page cache of the group, such as files just written, on demand.
     let of_group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
     let least = of_machine
         .into_iter()
@@ -64,15 +63,16 @@ pub fn available_memory() -> Option<f64> {
     least.map(|bytes| bytes as f64)
 }
 
-/// Bytes of addresses that a thread may take beside the memory that is asked for: its stack, and an arena,
-/// for which the allocator of glibc wants twice as much for a moment. A thread that gets no arena takes a
-/// page for every small piece.
+/// Address space in bytes that a thread may take in addition to the memory that it requests: its stack, and
+/// an arena, for which the allocator of glibc briefly reserves twice the size. A thread that gets no arena
+/// takes a page for every small allocation.
 const THREAD_ADDRESSES: u64 = (2 + 128) << 20;
 
-/// Least number of bytes of addresses that are left to the work of the threads.
+/// Least address space in bytes that is left for the work of the threads.
 const ADDRESSES_TO_WORK: u64 = 64 << 20;
 
-/// Bytes of addresses that this process may still take; none without a limit, or if the system does not say.
+/// Address space in bytes that this process may still take; none without a limit, or if the system does not
+/// report it.
 fn addresses_left() -> Option<u64> {
     let read = |name, key: &str| {
         let text = std::fs::read_to_string(name).ok()?;
@@ -84,8 +84,8 @@ fn addresses_left() -> Option<u64> {
     Some(limit.saturating_sub(taken))
 }
 
-/// Number of the `wanted` threads that have room within the limit of addresses of this process (`ulimit -v`),
-/// each with `others` that it needs.
+/// Number of the `wanted` threads that fit within the address-space limit of this process (`ulimit -v`), each
+/// with the `others` that it needs.
 pub fn threads_that_fit(wanted: usize, others: usize) -> usize {
     let Some(left) = addresses_left() else {
         return wanted;
@@ -94,12 +94,12 @@ pub fn threads_that_fit(wanted: usize, others: usize) -> usize {
     wanted.min((left.saturating_sub(ADDRESSES_TO_WORK) / each) as usize)
 }
 
-/// Memory out of `bytes` that this process can get, in bytes: the whole, or the rest.
+/// Part of `bytes` that this process can allocate, in bytes.
 pub fn available_of(bytes: f64) -> f64 {
     most_at_once(bytes.min(available_memory().unwrap_or(f64::INFINITY)))
 }
 
-/// The largest part of `bytes` that the system allocates at once, to one part in ten thousand.
+/// Largest part of `bytes` that the system allocates in one piece, to one part in ten thousand.
 fn most_at_once(bytes: f64) -> f64 {
     if can_be_had(bytes) {
         return bytes;
@@ -116,11 +116,11 @@ fn most_at_once(bytes: f64) -> f64 {
     given
 }
 
-/// Whether the system allocates `bytes` at once; they are freed again without being used.
+/// Whether the system allocates `bytes` in one piece; they are freed again without being used.
 pub fn can_be_had(bytes: f64) -> bool {
     let mut all = Vec::<u8>::new();
     let reserved = all.try_reserve_exact(bytes as usize);
-    // Memory that nobody looks at need not be asked for, as far as the compiler is concerned.
+    // Otherwise the compiler may remove the allocation, because nothing uses the memory.
     std::hint::black_box(&mut all);
     reserved.is_ok()
 }

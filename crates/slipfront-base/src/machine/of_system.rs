@@ -1,4 +1,4 @@
-//! Name of the machine and free bytes on its disks, as the operating system gives them.
+//! Name of the machine and free bytes on its disks, from the operating system.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -8,7 +8,8 @@ pub fn host_name() -> OsString {
     gethostname::gethostname()
 }
 
-/// Bytes that are free on the disk of a folder, which need not exist yet. `None` if the system does not say.
+/// Bytes that are free on the disk of a folder, which need not exist yet. `None` if the system does not
+/// report it.
 pub fn free_disk(folder: &Path) -> Option<f64> {
     let whole = std::path::absolute(folder).ok()?;
     let there = whole.ancestors().find(|path| path.is_dir())?;

@@ -1,9 +1,9 @@
-//! Name and free disk of a machine that has neither, such as a page of a browser.
+//! Name and free disk space of a machine that has neither, such as a page in a browser.
 
 use std::ffi::OsString;
 use std::path::Path;
 
-/// The name of this machine: empty, since a page of a browser has none.
+/// The name of this machine: empty, since a page in a browser has none.
 pub fn host_name() -> OsString {
     OsString::new()
 }

@@ -44,7 +44,7 @@ pub enum ArrayError {
 }
 
 impl ArrayError {
-    /// An error of the system about a file that is read.
+    /// A system error about a file that is read.
     pub(super) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
         move |source| Self::Read {
             path: path.to_owned(),
@@ -53,13 +53,13 @@ impl ArrayError {
     }
 }
 
-/// An error about the contents of a file; the sentence goes on after its name.
+/// An error about the contents of a file; `problem` continues the sentence after the name of the file.
 pub(super) fn contents_error(path: &Path, problem: String) -> ArrayError {
     let path = path.to_owned();
     ArrayError::Contents { path, problem }
 }
 
-/// An error about a file that cannot be read in the format of its name.
+/// An error about a file that does not have the format of its extension.
 pub(super) fn broken(path: &Path, format: &str, detail: &str) -> ArrayError {
     let detail = single_line(detail);
     let problem = format!("is not a readable {format} file: {detail}; write the file again");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::error::ArrayError;
 
-/// The length of a source and its first bytes, at most `most`; afterwards it stands at its beginning again.
+/// Length of a source and its first bytes, at most `most`. The source is rewound afterwards.
 pub(super) fn length_and_head(
     path: &Path,
     source: &mut (impl BufRead + Seek),

@@ -9,15 +9,15 @@ use super::error::{ArrayError, broken};
 use super::pixels::limit_pixels;
 use super::slab::Slab;
 
-/// Largest ratio of compression: deflate cannot pack more than about 1030 bytes into one.
+/// Largest compression ratio: deflate packs at most about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
 /// Reads a mask for some rows of a lattice of `nx` x `ny` blocks from a PNG image called `path`, of any
 /// colour type and depth.
 ///
 /// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark.
-/// Returns the values in row-major order, the smallest y (the bottom of the image) first: no other pixel is
-/// kept, though all are read.
+/// Returns the values in row-major order, the smallest y (the bottom of the image) first. All pixels are
+/// read, but only those at the centres are kept.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -41,7 +41,7 @@ pub fn mask_png(
     read_rows(path, reader, threshold, slab)
 }
 
-/// Opens a PNG image of any colour type and depth, as far as its header is true.
+/// Opens a PNG image of any colour type and depth, and checks its size and palette.
 pub(super) fn png_reader<'a, S: BufRead + Seek>(
     path: &Path,
     source: &'a mut S,
@@ -73,8 +73,8 @@ pub(super) fn png_reader<'a, S: BufRead + Seek>(
     Ok(reader)
 }
 
-/// Refuses a palette that is not made of 1 to 256 whole colours: the decoder takes any length and panics on
-/// such a one.
+/// Refuses a palette that is not made of 1 to 256 whole colours: the decoder accepts any length, and panics
+/// on a wrong one.
 fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> {
     let bytes = palette.map_or(0, <[u8]>::len);
     if bytes.is_multiple_of(3) && (3..=768).contains(&bytes) {
@@ -84,7 +84,7 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
     Err(broken(path, ".png", &detail))
 }
 
-/// Decodes row by row, and keeps the pixels at the centres of the blocks.
+/// Decodes row by row, and keeps only the pixels at the centres of the blocks.
 fn read_rows(
     path: &Path,
     mut reader: Reader<impl BufRead + Seek>,
@@ -99,7 +99,7 @@ fn read_rows(
     let pixel = |block: usize, blocks: usize, pixels: usize| (2 * block + 1) * pixels / (2 * blocks);
     let Slab { nx, ny, ref rows } = *slab;
     let columns: Vec<usize> = (0..nx).map(|i| pixel(i, nx, width)).collect();
-    // The rows of blocks from the top, as those of the image are stored.
+    // The rows of blocks from the top, in the order of the image.
     let from_top: Vec<usize> = rows
         .clone()
         .rev()
@@ -122,7 +122,7 @@ fn read_rows(
     Ok(dark)
 }
 
-/// Pixels of a row of the image that are stored one after the other.
+/// Pixels of a row of the image that are stored consecutively.
 struct PixelLine {
     row: usize,
     first: usize,
@@ -130,7 +130,7 @@ struct PixelLine {
 }
 
 impl PixelLine {
-    /// The position of the pixel of this column, if the line has it.
+    /// Position of the pixel of this column, if the line contains it.
     fn position(&self, column: usize) -> Option<usize> {
         let behind = column.checked_sub(self.first)?;
         behind.is_multiple_of(self.step).then_some(behind / self.step)
@@ -189,10 +189,10 @@ pub(super) fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 /// The bytes of a black and white PNG image of a texture: one pixel per block, textured = black.
 ///
 /// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the
-/// image is the largest y. For this lattice [`mask_png`] gives the mask back.
+/// image is the largest y. [`mask_png`] with this lattice reads the mask back.
 ///
 /// # Errors
-/// When there is no block, or more along a side than an image can have, or `textured` has another length.
+/// When there is no block, more blocks along a side than an image can have, or another number of values.
 pub fn png_of_mask(nx: usize, ny: usize, textured: &[bool]) -> io::Result<Vec<u8>> {
     if textured.len() != nx * ny || textured.is_empty() {
         let sentence = format!("{} blocks are no image of {nx} x {ny} pixels", textured.len());
@@ -201,7 +201,7 @@ pub fn png_of_mask(nx: usize, ny: usize, textured: &[bool]) -> io::Result<Vec<u8
     encode(nx, ny, textured).map_err(io::Error::other)
 }
 
-/// The image in memory: one bit per pixel, 1 = white.
+/// PNG image in memory: one bit per pixel, 1 = white.
 fn encode(nx: usize, ny: usize, textured: &[bool]) -> Result<Vec<u8>, EncodingError> {
     let mut rows = Vec::with_capacity(nx.div_ceil(8) * ny);
     for row in textured.chunks(nx).rev() {

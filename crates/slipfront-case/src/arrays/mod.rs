@@ -1,11 +1,11 @@
 //! Arrays and images that a case reads: friction coefficients block by block, texture masks, and height maps.
 //!
-//! The files may hold anything, so every parser compares the sizes in a header with the length of the file
-//! before it allocates memory, files longer than their lattice can need are refused, and any invalid contents
-//! give an [`ArrayError`]. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
+//! The files may hold anything. Every parser therefore compares the sizes in a header with the length of the
+//! file before it allocates memory, refuses files longer than their lattice can need, and returns an
+//! [`ArrayError`] for invalid contents. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
 //!
-//! A file is never in memory as a whole: only the values of the rows that are asked for are kept. Where
-//! several ranks read their rows of one file, the error of the lowest rank is the error of reading all rows.
+//! A file is never in memory as a whole: only the requested rows are kept. Where several ranks read their
+//! rows of one file, the error of the lowest rank is the error of reading all rows.
 
 mod error;
 mod head;

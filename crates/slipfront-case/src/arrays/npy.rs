@@ -20,8 +20,8 @@ pub(super) const HEADER_MAX_BYTES: u64 = 10_000;
 /// row-major order, the smallest y first.
 ///
 /// # Errors
-/// [`ArrayError`] if the file is not a `.npy` file, of another shape, or has another value:
-/// a picture or a height map says nothing unambiguous about what is textured.
+/// [`ArrayError`] if the file is not a `.npy` file, has another shape, or has another value: a picture or a
+/// height map does not define unambiguously what is textured.
 pub fn mask_npy(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -63,7 +63,7 @@ pub fn state_npy(
     for (layer, values) in found.iter_mut().enumerate() {
         array.read((layer * ny + rows.start) * nx, values)?;
     }
-    // Block by block, and not layer by layer: of all ranks the lowest has the first.
+    // Searches by block, not by layer, so that the lowest rank with an error has the first one.
     let wrong = |b: usize| {
         found
             .iter()
@@ -111,15 +111,15 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` is given
-/// numbers of a row one after the other, with their row, counted along the first axis, and the column of the
-/// first number.
+/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` gets
+/// consecutive numbers of a row, with their row, counted along the first axis, and the column of the first
+/// number.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    /// Number of values that are in memory at once: at least as many as a side may have.
+    /// Number of values in memory at once: at least the largest number along a side.
     const BAND: usize = SIDE_MAX as usize;
     let mut array = NpyArray::open(path, source, |shape| {
         let &[height, width] = shape else {
@@ -133,7 +133,7 @@ pub(super) fn rows(
         Ok([height as usize, width as usize])
     })?;
     let [ny, nx] = array.shape;
-    // Rows, or columns of an array that has them one after the other.
+    // Rows, or columns if the array is in Fortran order.
     let (count, length) = if array.fortran_order { (nx, ny) } else { (ny, nx) };
     let at_once = BAND / length.max(1);
     let mut numbers = Vec::new();
@@ -156,16 +156,16 @@ pub(super) fn rows(
     Ok([nx as u64, ny as u64])
 }
 
-/// An array whose numbers can be read.
+/// An open array file.
 struct NpyArray<'a, S> {
     path: &'a Path,
     source: &'a mut S,
     number: NumberType,
-    /// Whether the numbers of a column stand one after the other, rather than those of a row.
+    /// Whether columns are contiguous, rather than rows.
     fortran_order: bool,
     /// Rows and columns.
     shape: [usize; 2],
-    /// Index of the number at which the source stands.
+    /// Index of the next number in the source.
     at: usize,
 }
 
@@ -204,11 +204,11 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
         })
     }
 
-    /// Reads numbers that stand one after the other; `start` others stand before the first.
+    /// Reads consecutive numbers, beginning with the number of index `start`.
     fn read(&mut self, start: usize, numbers: &mut [f64]) -> Result<(), ArrayError> {
         let read_error = ArrayError::read(self.path);
         let size = self.number.size;
-        // Without a seek where they follow, so that what was read ahead is not read again.
+        // No seek if the numbers follow directly, so that buffered bytes are not read again.
         if start != self.at {
             let ahead = (start as i64 - self.at as i64) * size as i64;
             self.source.seek_relative(ahead).map_err(&read_error)?;
@@ -230,7 +230,7 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
 }
 
 /// The bytes of a `.npy` file of the shape (ny, nx) that holds a mask of rows of `nx` blocks, the smallest y
-/// first. [`mask_npy`] gives it back.
+/// first. [`mask_npy`] reads it back.
 pub fn npy_of_mask(nx: usize, textured: &[bool]) -> Vec<u8> {
     let ny = textured.len() / nx.max(1);
     let data = textured.iter().map(|&is_textured| u8::from(is_textured));
@@ -238,7 +238,7 @@ pub fn npy_of_mask(nx: usize, textured: &[bool]) -> Vec<u8> {
 }
 
 /// The bytes before the numbers in a `.npy` file that holds the last state of `nx` x `ny` blocks: four layers
-/// of 64-bit numbers, which [`state_npy`] gives back.
+/// of 64-bit numbers, which [`state_npy`] reads back.
 pub fn head_of_state(nx: usize, ny: usize) -> Vec<u8> {
     head("<f8", &[4, ny, nx])
 }
@@ -317,8 +317,8 @@ enum Kind {
 }
 
 impl NumberType {
-    /// The type of this name, such as `<f8`; `None` for anything but booleans, integers and real numbers of
-    /// at most 64 bits.
+    /// The type of this name, such as `<f8`; `None` unless it is a boolean, integer or real type of at most
+    /// 64 bits.
     fn of(name: &str) -> Option<NumberType> {
         let mut letters = name.chars();
         let big_endian = match letters.next()? {

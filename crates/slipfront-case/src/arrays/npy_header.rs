@@ -3,7 +3,7 @@
 /// The header of a `.npy` file.
 #[derive(Debug, PartialEq)]
 pub(super) struct NpyHeader<'a> {
-    /// The type of the numbers as the header states it: `'<f8'`, or a list where a number has parts.
+    /// The type of the numbers as the header states it: `'<f8'`, or a list for a structured type.
     pub(super) descr: &'a str,
     /// Whether the first axis runs fastest.
     pub(super) fortran_order: bool,
@@ -12,8 +12,8 @@ pub(super) struct NpyHeader<'a> {
 }
 
 impl<'a> NpyHeader<'a> {
-    /// Reads the text of a header; none if it does not describe an array of numbers whose count fits into 64
-    /// bits.
+    /// Reads the text of a header; none if it does not describe an array of numbers, or if their count
+    /// exceeds 64 bits.
     pub(super) fn parse(text: &'a [u8]) -> Option<Self> {
         let text = std::str::from_utf8(text).ok()?.trim();
         let entries = text.strip_prefix('{')?.strip_suffix('}')?;
@@ -44,8 +44,8 @@ impl<'a> NpyHeader<'a> {
     }
 }
 
-/// The parts of a text between separators that stand in no quotes and brackets, without blanks around them. A
-/// last part may be empty, and is left out. None if quotes or brackets do not close.
+/// The parts of a text between separators outside quotes and brackets, without blanks around them. An empty
+/// last part is left out. None if quotes or brackets do not close.
 fn split(text: &str, separator: char) -> Option<Vec<&str>> {
     let (mut parts, mut start) = (Vec::new(), 0);
     let (mut depth, mut quote) = (0_usize, None);

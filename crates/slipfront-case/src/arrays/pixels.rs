@@ -6,8 +6,8 @@ use super::error::ArrayError;
 
 /// Largest number of pixels, more than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
-/// Largest number of pixels along a side, more than any lattice has blocks. A row, of which a decoder holds
-/// some, takes eight bytes for each.
+/// Largest number of pixels along a side, more than any lattice has blocks. Decoders hold some rows in
+/// memory, with eight bytes per pixel.
 pub(super) const SIDE_MAX: u64 = 1 << 20;
 /// Largest length of a file in bytes.
 pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;

@@ -19,7 +19,7 @@ impl Slab {
         Self { nx, ny, rows: 0..ny }
     }
 
-    /// Number of blocks of the rows.
+    /// Number of blocks in the rows.
     pub fn n_blocks(&self) -> usize {
         self.nx * self.rows.len()
     }

@@ -9,17 +9,16 @@ use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 use crate::table::{HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, number};
 
-/// Total length of comment lines among which the separator is searched.
+/// Total length of the comment lines in which the separator is searched.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
-/// Largest length of a number with its separator and blanks, and its share of comments: numpy's longest
-/// number takes 25.
+/// Largest length of a number with its separator, blanks and share of the comments: numpy's longest number
+/// takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
-/// Largest length of a line of a table of any size. The line is in memory as a whole, with the place of each
-/// of its fields: eight bytes for each of the fields that are read.
+/// Largest length of a line of a table of any size. The whole line is in memory, with the position of each of
+/// the fields that are read, eight bytes each.
 const LINE_MAX_BYTES: u64 = 8 * SIDE_MAX;
 
-/// The rows of a slab of `ny` lines of `nx` numbers. Lines before these rows are counted, lines behind are
-/// not read.
+/// The rows of a slab of `ny` lines of `nx` numbers. Earlier lines are only counted; later ones are not read.
 pub(super) fn values(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -31,10 +30,10 @@ pub(super) fn values(
     let line_max = PREAMBLE_MAX_BYTES.saturating_add((nx as u64).saturating_mul(NUMBER_MAX_BYTES));
     let (length, layout) = layout_of(path, source)?;
     let mut lines = TableRows::new(source, &layout, line_max);
-    // A number and what separates it from the next take two bytes at the least.
+    // A number and its separator take at least two bytes.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
     let mut row = 0;
-    // Whoever reads the last row sees that there is no other.
+    // The rank that reads the last row also checks that no further row follows.
     while row < rows.end || rows.end == ny {
         let Some((line, fields)) = lines.next_row().map_err(table_error(path))? else {
             break;
@@ -66,8 +65,8 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads a table of any size row after row, below what an instrument wrote above its numbers, and returns its
-/// columns and rows. `take` gets each row, with its number and the column 0.
+/// Reads a table of any size row by row, below the header of an instrument, and returns its numbers of
+/// columns and rows. `take` gets each row, with its index and the column 0.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -98,15 +97,15 @@ pub(super) fn rows(
     Ok([columns.unwrap_or(0) as u64, row as u64])
 }
 
-/// The length of a table in bytes, and how it is written. Every line has numbers: one with names is a row
-/// that is refused.
+/// The length of a table in bytes, and its layout. Every line must have numbers: a line of column names is
+/// refused as a row.
 fn layout_of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<(u64, TableLayout), ArrayError> {
     let (length, head) = length_and_head(path, source, HEAD_BYTES)?;
     let layout = TableLayout::find(&head, TableOptions::default()).map_err(table_error(path))?;
     Ok((length, layout.of_numbers_alone()))
 }
 
-/// How a table is written that begins with `head`, and may have lines above its numbers.
+/// Layout of a table that begins with `head`, and may have lines above its numbers.
 pub(super) fn layout_of_map(
     path: &Path,
     head: &[u8],
@@ -116,7 +115,7 @@ pub(super) fn layout_of_map(
     Ok(layout.without_names())
 }
 
-/// An error of a table about the file of this path.
+/// Converts an error of a table into an error about the file with this path.
 fn table_error(path: &Path) -> impl Fn(TableError) -> ArrayError {
     move |error| match error {
         TableError::Read(source) => ArrayError::read(path)(source),
@@ -124,7 +123,7 @@ fn table_error(path: &Path) -> impl Fn(TableError) -> ArrayError {
     }
 }
 
-/// The number of a field in the row and column `at`, which stand in this line of the file.
+/// The number of a field in the row and column `at`, in line `line` of the file.
 fn number_at(path: &Path, field: &str, decimal: char, at: [usize; 2], line: u64) -> Result<f64, ArrayError> {
     number(field, decimal).ok_or_else(|| {
         let field = format!("`{}` in line {line},", excerpt(field));

@@ -48,8 +48,8 @@ fn open(path: &Path, nx: usize, ny: usize) -> Result<BufReader<File>, ArrayError
     Ok(BufReader::new(file))
 }
 
-/// Reads all rows at once. Every division of the rows among several ranks gives the same result, or the error
-/// of the lowest rank.
+/// Reads all rows at once. Dividing the rows among several ranks must give the same result, or the error of
+/// the lowest rank.
 fn read<T: PartialEq + Debug>(
     nx: usize,
     ny: usize,
@@ -83,7 +83,7 @@ fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, ArrayEr
     read(nx, ny, |slab| mask_npy(path, &mut open(path, nx, ny)?, slab))
 }
 
-/// The mask for a lattice of as many blocks, its top row first.
+/// The mask for a lattice of `nx` x `ny` blocks, the top row first.
 fn read_mask_png(path: &Path, threshold: f64, [nx, ny]: [usize; 2]) -> Result<Vec<bool>, ArrayError> {
     let mask = read(nx, ny, |slab| {
         mask_png(path, &mut open(path, 25, 25)?, threshold, slab)
@@ -117,7 +117,7 @@ fn npy_of_any_type(descr: &str, store: fn(f64) -> Vec<u8>) {
         FIELD
     };
     assert_eq!(read_field(&path, 3, 2).unwrap(), wanted);
-    // No one reading makes a mask of a field.
+    // A file is a mask only if all its values are 0 or 1.
     let mask = read_mask_npy(&path, 3, 2);
     assert_eq!(mask.is_ok(), descr == "'|b1'");
     let ones: Vec<u8> = [0.0, 1.0, 1.0, 0.0, 1.0, 0.0]
@@ -325,7 +325,7 @@ fn tables_that_are_not_text() {
     assert!(message(read_field(&path, 3, 2)).len() < 300);
 }
 
-/// A line is in memory as a whole, and the place of each of its fields.
+/// The whole line is in memory, with the position of each of its fields.
 #[test]
 fn lines_longer_than_their_numbers_are_refused() {
     let (_folder, path) = file("mu.csv", format!("0,1,2\n{}\n", "3,".repeat(1 << 20)).as_bytes());
@@ -381,7 +381,7 @@ fn paths_that_are_no_files() {
     assert!(text.contains("a name without extension"), "{text}");
 }
 
-/// A PNG image of two rows of two pixels from raw rows, with a palette if the colour type asks for one.
+/// A PNG image of two rows of two pixels from raw rows, with a palette if the colour type requires one.
 fn png_bytes(color: ColorType, depth: BitDepth, rows: &[u8], transparency: Option<&[u8]>) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, 2, 2);
@@ -399,7 +399,7 @@ fn png_bytes(color: ColorType, depth: BitDepth, rows: &[u8], transparency: Optio
     bytes
 }
 
-/// Each image is white, dark / dark, white in its own way.
+/// Each image is white, dark / dark, white, in a different encoding.
 #[test_case(ColorType::Grayscale, BitDepth::One, &[0b1000_0000, 0b0100_0000], None)]
 #[test_case(ColorType::Grayscale, BitDepth::Two, &[0b1101_0000, 0b0111_0000], None)]
 #[test_case(ColorType::Grayscale, BitDepth::Eight, &[255, 127, 0, 128], None)]
@@ -441,7 +441,7 @@ const INTERLACED: [u8; 85] = [
 fn png_interlaced() {
     let (_folder, path) = file("mask.png", &INTERLACED);
     let is_dark = |row: usize, column: usize| (3 * row + 2 * column + row * column) % 5 < 2;
-    // More blocks than pixels, as many, and fewer: each has the pixel at its centre.
+    // More blocks than pixels, as many, and fewer: each block takes the pixel at its centre.
     for [nx, ny] in [[5, 7], [12, 30], [3, 2], [1, 1]] {
         let mask = read_mask_png(&path, 0.5, [nx, ny]).unwrap();
         for (row, column) in (0..ny).flat_map(|row| (0..nx).map(move |column| (row, column))) {
@@ -458,7 +458,7 @@ fn png_interlaced() {
     }
 }
 
-/// A PNG image that claims another size than it has.
+/// A PNG image with a wrong size in its header.
 fn png_claiming(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = png_bytes(ColorType::Rgba, BitDepth::Sixteen, &[0; 32], None);
     bytes[16..20].copy_from_slice(&width.to_be_bytes());
@@ -467,7 +467,7 @@ fn png_claiming(width: u32, height: u32) -> Vec<u8> {
     bytes
 }
 
-/// Makes the checksum of every chunk good, so that the decoder reads damaged chunks too.
+/// Corrects the checksum of every chunk, so that the decoder reads damaged chunks too.
 fn repair_checksums(png: &mut [u8]) {
     let mut start = 8;
     while let Some(length) = png.get(start..start + 4) {
@@ -535,7 +535,7 @@ fn png_that_is_cut_short_or_something_else() {
     }
 }
 
-/// A file with a hole at its end, which takes no space on the disk.
+/// A file with a hole at its end, which takes no disk space.
 fn stretched(name: &str, bytes: &[u8], length: u64) -> (TempDir, PathBuf) {
     let (folder, path) = file(name, bytes);
     let stretched = fs::OpenOptions::new().write(true).open(&path).unwrap();
@@ -565,7 +565,7 @@ fn files_longer_than_can_be_meant_are_not_read() {
         text.contains("where 2 rows of 3 numbers take at most 10048;"),
         "{text}"
     );
-    // What follows an array is part of none.
+    // Bytes after an array do not belong to it.
     let (_folder, path) = stretched("mu.npy", &field_npy(), 5000);
     let text = message(read_field(&path, 3, 2));
     let wanted = format!("it has 5000 bytes, but its header requires {}", field_npy().len());
@@ -593,13 +593,13 @@ fn masks_that_cannot_be_written() {
     }
 }
 
-/// Replaces an old file by a new one: some file systems wait for the disk when a file is emptied first.
+/// Replaces an old file with a new one: some file systems wait for the disk when a file is truncated.
 fn replace(path: &Path, bytes: &[u8]) {
     let _ = fs::remove_file(path);
     fs::write(path, bytes).unwrap();
 }
 
-/// Readers answer without a panic for any damage to the bytes of a file.
+/// Readers return without a panic for any damage to the bytes of a file.
 #[test]
 fn damaged_files_are_refused_or_read() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
-//! Memory and disk space of a run, estimated from the blocks, snapshots and rows that it keeps and compared
-//! with the machine before any of it is taken.
+//! Memory and disk space of a run, estimated from its blocks, snapshots and rows, and compared with the
+//! machine before any of it is allocated.
 //!
-//! The estimate is an upper bound with one margin: every figure of this file is the most that was measured
-//! over all options, rounded up. `tests/budget` of slipfront-cli holds it against the memory that runs take.
+//! The estimate is an upper bound with one margin: every figure in this file is the largest that was measured
+//! over all options, rounded up. `tests/budget` of slipfront-cli compares it with the memory that runs take.
 
 use std::ops::Range;
 use std::path::Path;
@@ -25,40 +25,40 @@ const MIB: f64 = 1024.0 * 1024.0;
 /// Memory of the program itself.
 pub const PROGRAM: f64 = 12.0 * MIB;
 
-/// Memory while pictures of the usual size are drawn, two at once, whatever they show.
+/// Memory for drawing pictures of the usual size, two at once, whatever they show.
 pub const PICTURES: f64 = 28.0 * MIB;
 
-/// Memory while pictures of a movie are drawn, some at once.
+/// Memory for drawing the pictures of a movie, several at once.
 const MOVIE: f64 = 48.0 * MIB;
 
-/// Bytes of the file of a movie for each of its pictures.
+/// Bytes of a movie file per picture.
 const MOVIE_FILE: f64 = 3e4;
 
 /// Bytes of the files of a run that do not grow with it: pictures, summary and manifest.
 const FILES: f64 = 2e6;
 
-/// Most blocks of a map that is drawn: larger lattices are averaged.
+/// Largest number of blocks in a drawn map: larger lattices are averaged.
 const MAP_BLOCKS: f64 = 65_536.0;
 
 /// Bytes of a run in memory and in a checkpoint that do not grow with it.
 const RESULTS: f64 = 1.5 * MIB;
 
-/// Numbers of blocks that the first of several ranks takes to find the slip front, and the most blocks of
-/// which it does.
+/// Numbers per block that the first of several ranks needs to find the slip front, and the largest number of
+/// blocks for which it does so.
 const GATHERED: [f64; 2] = [5.0, (1 << 22) as f64];
 
-/// Steps from one slip event of a slider that is driven at an edge to the next, at the least. Measured were
-/// 175 and more.
+/// Least number of steps from one slip event to the next, for a slider that is driven at an edge. The least
+/// measured number is 175.
 const STEPS_OF_EVENT: u64 = 50;
 
-/// The numbers of blocks, snapshots, rows and the like on which memory and disk space of a run depend.
+/// Numbers of blocks, snapshots, rows etc. that determine the memory and disk space of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
     /// Blocks of the rows that this process holds.
     blocks: f64,
-    /// Numbers of such a block in the model, and with the kernel that steps it on one thread.
+    /// Numbers per block in the model, and with the kernel that steps it on one thread.
     numbers: [f64; 2],
-    /// Ratio of the memory of the kernel to that on one thread.
+    /// Ratio of the memory of the kernel to its memory on one thread.
     bands: f64,
     /// Bytes of masks and heights while they are laid over the lattice.
     laid: f64,
@@ -66,23 +66,23 @@ pub struct Budget {
     is_shared: bool,
     /// Ranks on this machine.
     ranks_on_node: f64,
-    /// Blocks of the whole lattice, and numbers of such a block in a checkpoint.
+    /// Blocks of the whole lattice, and numbers per block in a checkpoint.
     all_blocks: f64,
     columns: f64,
-    /// Blocks whose fields are kept: of this process, and of the whole lattice.
+    /// Number of blocks with recorded fields: of this process, and of the whole lattice.
     cells: [f64; 2],
     frames: f64,
     fields: f64,
     rows: f64,
-    /// Events of slip of a slider that is driven at an edge.
+    /// Slip events of a slider that is driven at an edge.
     events_at_edge: f64,
-    /// Events of slip in the catalogue.
+    /// Slip events in the catalogue.
     events: f64,
     /// Places times instants of the kymograph.
     kymograph: f64,
     /// Pictures of the movie.
     movie: f64,
-    /// Bytes of each block in the file of the last state.
+    /// Bytes per block in the file of the last state.
     state: f64,
     /// Bytes of the files that the case reads.
     inputs: f64,
@@ -90,18 +90,18 @@ pub struct Budget {
 
 /// A cause of memory or disk use.
 struct Cause {
-    /// The key of the case to which the use is due.
+    /// The key of the case that causes the use.
     key: &'static str,
-    /// Number and kind of the things that take the memory.
+    /// Number and kind of the items that take the memory.
     what: String,
-    /// Remedy by which less is taken.
+    /// Change by which the run takes less.
     remedy: &'static str,
 }
 
 /// A part of the memory and disk space of a run.
 struct Part {
-    /// Function that makes the words of the cause, called for a refusal alone because many small cases are
-    /// judged.
+    /// Function that builds the text of the cause. It is called only for a refusal, because many small cases
+    /// are checked.
     cause: fn(&Budget) -> Cause,
     /// Bytes in memory, in files, and in a checkpoint.
     bytes: [f64; 3],
@@ -116,8 +116,9 @@ enum Place {
 }
 
 impl Budget {
-    /// Memory of cases that are too small to be compared with the machine, nor in Python their runs: asking
-    /// for its free memory takes longer than making a small case. Commands compare the whole memory of a run.
+    /// Memory of a small case, below which neither making the case nor running it from Python is compared
+    /// with the machine: querying the free memory takes longer than making a small case. Commands compare the
+    /// whole memory of a run.
     pub const SMALL: f64 = 64.0 * MIB;
 
     /// The budget of a model, without results, for a process that holds these rows.
@@ -132,7 +133,7 @@ impl Budget {
         let shapes = || file.texture.iter().map(|texture| &texture.shape);
         let masks = shapes().filter(|shape| !shape.has_outline()).count();
         let has_heights = shapes().any(|shape| matches!(shape, Shape::HeightMap(_)));
-        // Means of heights are found over the whole lattice.
+        // The mean heights are computed over the whole lattice.
         let heights = if has_heights { 3.0 * NUMBER } else { 0.0 };
         let shares = if file.shares_load_nearby() {
             SHARED * NUMBER
@@ -163,7 +164,7 @@ impl Budget {
         inputs: &[Input],
     ) -> Self {
         let lattice = &model.lattice;
-        // How often a held drive stands is not known before.
+        // The number of steps in which a held drive stops is not known in advance.
         let most_steps = if model.drive.is_held() {
             u64::MAX
         } else {
@@ -184,7 +185,7 @@ impl Budget {
                 None => 0.0,
             },
             events: if file.output.events {
-                // Between two events there is a step without slip, in which the drive moves.
+                // Two events are separated by a step without slip, in which the drive moves.
                 let most = if model.drive.is_held() {
                     last_step
                 } else {
@@ -214,7 +215,8 @@ impl Budget {
                     remedy: "lower `slider.blocks`",
                 },
                 bytes: [
-                    // With the displacements of the driven ends, from which the last ones count.
+                    // Includes the displacements of the driven ends, which the last displacements are
+                    // relative to.
                     self.blocks * (NUMBER * self.numbers[1] * self.bands + 1.5 * self.state),
                     26.0 * all_cells + self.state * self.all_blocks,
                     self.all_blocks * NUMBER * self.columns,
@@ -271,11 +273,11 @@ impl Budget {
         ]
     }
 
-    /// Bytes in a place, including those that no key of a case changes.
+    /// Bytes in a place, including those that do not depend on any key of the case.
     fn total(&self, place: Place) -> f64 {
         let beside = match place {
             Place::Memory => RESULTS + 24.0 * self.kymograph + self.gathered(),
-            // Six maps, of six bytes for a block.
+            // Six maps, with six bytes per block.
             Place::Files => {
                 let maps = 36.0 * self.cells[1].min(MAP_BLOCKS);
                 FILES + maps + 4.0 * self.kymograph + MOVIE_FILE * self.movie
@@ -289,7 +291,7 @@ impl Budget {
             + beside
     }
 
-    /// Bytes of the paths from which the slip of blocks counts, in a run with a catalogue of events.
+    /// Bytes of the path from which the slip of each block is counted, in a run with a catalogue of events.
     fn paths_before(&self) -> f64 {
         if self.events > 0.0 {
             NUMBER * self.blocks
@@ -298,7 +300,7 @@ impl Budget {
         }
     }
 
-    /// Bytes of the numbers of other ranks' blocks.
+    /// Bytes for the blocks of other ranks that the first rank gathers.
     fn gathered(&self) -> f64 {
         let [numbers, most] = GATHERED;
         if self.is_shared {
@@ -308,8 +310,8 @@ impl Budget {
         }
     }
 
-    /// Bytes while pictures and movie are drawn, beside those of the run; its snapshots are in memory no
-    /// more.
+    /// Bytes for drawing pictures and movie, in addition to those of the run, which has released its
+    /// snapshots.
     fn drawing(&self) -> f64 {
         if self.movie == 0.0 {
             return PICTURES;
@@ -319,34 +321,34 @@ impl Budget {
         PICTURES + more.max(0.0)
     }
 
-    /// Memory in which the case is made, in bytes.
+    /// Memory for making the case, in bytes.
     pub fn making(&self) -> f64 {
         self.blocks * NUMBER * self.numbers[0] + self.laid
     }
 
-    /// Memory in which the model is stepped on one thread, without results, in bytes.
+    /// Memory for stepping the model on one thread, without results, in bytes.
     pub fn stepping(&self) -> f64 {
         self.blocks * NUMBER * self.numbers[1] + self.laid
     }
 
-    /// Memory of one of several runs at once beside the program, each on one thread, in bytes; `writes` tells
-    /// whether it writes files and draws pictures.
+    /// Memory of one of several simultaneous runs without that of the program, each on one thread, in bytes.
+    /// `writes` is whether it writes files and draws pictures.
     pub fn beside_others(&self, writes: bool) -> f64 {
         let on_one_thread = Self { bands: 1.0, ..*self };
         on_one_thread.of_run(writes)
     }
 
-    /// Memory of a run beside the program, in bytes.
+    /// Memory of a run without that of the program, in bytes.
     fn of_run(&self, writes: bool) -> f64 {
         self.total(Place::Memory) + if writes { self.drawing() } else { 0.0 }
     }
 
-    /// Memory of a run with its files and pictures, in bytes; memory of each rank if there are several.
+    /// Memory of a run with its files and pictures, in bytes; per rank if there are several.
     pub fn memory(&self) -> f64 {
         PROGRAM + self.of_run(true)
     }
 
-    /// Bytes of all ranks of this machine, of which the first draws.
+    /// Bytes of all ranks on this machine. The first one draws.
     fn on_node(&self) -> f64 {
         self.memory() + (self.ranks_on_node - 1.0) * (PROGRAM + self.of_run(false))
     }
@@ -362,14 +364,14 @@ impl Budget {
         snapshots.bytes[Place::Files as usize]
     }
 
-    /// Disk space for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one
-    /// that is being written.
+    /// Disk space for checkpoints during the run, in bytes: the latest, the one before it, and the one that
+    /// is being written.
     pub fn disk_of_checkpoints(&self) -> f64 {
         3.0 * self.total(Place::Checkpoint)
     }
 
-    /// Refuses a case that has no memory to be made, or to be run if it is made for that. No array is there
-    /// yet.
+    /// Refuses a case if there is too little memory to make it, or to run it if it is made for a run. No
+    /// array has been allocated yet.
     pub(super) fn check_case(&self, file: &CaseFile, to_run: bool) -> Result<(), CaseError> {
         let (whose, budget) = if to_run {
             ("a run of this case", *self)
@@ -392,8 +394,8 @@ impl Budget {
         budget.compare(file, whose, None, 0.0, available_memory())
     }
 
-    /// Refuses a run, or one that goes on from a checkpoint if it `is_resumed`, that needs more memory than
-    /// there is; the models of all ranks are in memory already.
+    /// Refuses a run, or the resumption of one if `is_resumed`, that needs more memory than there is. The
+    /// models of all ranks are already in memory.
     ///
     /// # Errors
     /// A sentence with both figures, the cause of the largest part, and the key to change.
@@ -410,7 +412,7 @@ impl Budget {
         available: Option<f64>,
     ) -> Result<(), CaseError> {
         let (whose, remedy) = if is_resumed {
-            // The case of a run that resumes can be changed no more.
+            // The case of a resumed run can no longer be changed.
             let remedy = "give it more, in a queue for example with `--mem`";
             ("resuming this run", Some(remedy))
         } else {
@@ -419,9 +421,9 @@ impl Budget {
         self.compare(file, whose, remedy, had, available)
     }
 
-    /// Refuses a demand for more memory than there is: `had` bytes were taken by each rank already,
-    /// `available` bytes are free beside them. `whose` memory it is and the `remedy`, if not that of its
-    /// largest part, are words of the refusal.
+    /// Refuses a demand for more memory than there is: each rank has already taken `had` bytes, and another
+    /// `available` bytes are free. The message names `whose` memory it is, and the `remedy`, by default that
+    /// of the largest part.
     fn compare(
         &self,
         file: &CaseFile,
@@ -457,11 +459,11 @@ impl Budget {
         Err(file.source.error(cause.key, sentence))
     }
 
-    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not
-    /// exist yet. `replaced` is what goes from there before.
+    /// Refuses a run if its files, and its checkpoints if it saves any, do not fit into `folder`, which need
+    /// not exist yet. `replaced` bytes in this folder will be freed first.
     ///
     /// # Errors
-    /// A sentence with both figures, what most of it is for, and the key to change.
+    /// A sentence with both figures, the largest cause, and the key to change.
     pub fn check_disk(
         &self,
         file: &CaseFile,
@@ -501,7 +503,7 @@ impl Budget {
         Err(file.source.error(cause.key, sentence))
     }
 
-    /// Cause of the largest part of the bytes in a place, and its bytes.
+    /// Cause of the largest part of the bytes in a place, and the bytes of this part.
     fn most(&self, place: Place) -> (Cause, f64) {
         let bytes_of = |part: &Part| part.bytes[place as usize];
         let [mut most, others @ ..] = self.parts();
@@ -515,8 +517,8 @@ impl Budget {
     }
 }
 
-/// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes: maps of larger
-/// lattices are averaged.
+/// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes. Larger lattices are
+/// averaged to maps.
 pub fn memory_of_movie(pictures: f64, cells: f64) -> f64 {
     MOVIE + pictures * (1e5 + 4.0 * cells.min(MAP_BLOCKS))
 }
@@ -528,7 +530,7 @@ impl Cause {
     }
 }
 
-/// Numbers of a block in the model of a case file, and with the kernel that steps it on one thread.
+/// Numbers per block in the model of a case file, and with the kernel that steps it on one thread.
 fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     let (slider, load, needs) = (&file.slider, &file.load, friction.needs());
     let has_outline = slider.outline != Outline::Rectangle;
@@ -554,7 +556,7 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
         }
     };
     let of_sheets = of_sheet * file.slider.n_sheets_above() as f64;
-    // Beside the state of the case stands a copy of it while a kernel is made.
+    // While a kernel is made, the state of the case exists twice.
     let [state, begun] = if file.initial.is_at_rest() {
         [0.0; 2]
     } else {
@@ -566,20 +568,20 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     ]
 }
 
-/// Numbers of each block of the whole lattice while the load of textured blocks is shared among those near
-/// them: two marks, pressures as numbers and as bits, and sums of counts and of shares.
+/// Numbers per block of the whole lattice while the load of textured blocks is shared among nearby blocks:
+/// two marks, pressures as numbers and as bits, and sums of counts and of shares.
 const SHARED: f64 = 6.0;
 
-/// Numbers of a block in a sheet above the lowest under the fused kernel: displacement and velocity, and room
+/// Numbers per block of a sheet above the lowest under the fused kernel: displacement and velocity, and space
 /// for a column of a checkpoint.
 const FUSED_NUMBERS_OF_SHEET: f64 = 5.0;
 
-/// Numbers of a block in a sheet above the lowest under the general kernel: displacement, velocities before
-/// and after, force of the springs in the sheet, along each bond, and from above.
+/// Numbers per block of a sheet above the lowest under the general kernel: displacement, velocities before
+/// and after the step, forces of the springs in the sheet, along each bond, and from the sheet above.
 const NUMBERS_OF_SHEET: f64 = 18.0;
 
-/// Ratio of the memory of the general kernel on several threads, each of which has the rows beside its own,
-/// to that on one.
+/// Ratio of the memory of the general kernel on several threads to that on one: each thread also has the rows
+/// next to its own.
 const BANDS: f64 = 1.3;
 
 fn is_viscous(file: &CaseFile) -> bool {
@@ -603,7 +605,7 @@ mod tests {
         Case::parse("", "case", "", &overrides).unwrap()
     }
 
-    /// Reason for which a new run with this budget is refused, if it is.
+    /// Message with which a new run with this budget is refused, if it is refused.
     fn refusal(case: &Case, budget: &Budget, had: f64, available: Option<f64>) -> Option<String> {
         let compared = budget.compare_run(&case.file, false, had, available);
         compared.err().map(|error| error.to_string())
@@ -630,7 +632,7 @@ mod tests {
         ] {
             let case = case(&sets);
             let refused = refusal(&case, &case.budget, 0.0, Some(2e8)).unwrap();
-            // The place is the override of the key.
+            // The place of the error is the override of the key.
             assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
             for word in ["but 190.7 MiB are available"].iter().chain(&words) {
                 assert!(refused.contains(word), "{word}: {refused}");
@@ -653,7 +655,7 @@ mod tests {
         };
         let alone = case(&["slider.blocks=[2000,2000]", "output.snapshots={every=20}"]).budget;
         let cases = Threads::run(4, |communicator| made(communicator, 2));
-        // What is there once for every process: the numbers that do not belong to blocks.
+        // Memory per process that does not depend on the number of blocks.
         let mut none = alone;
         (none.blocks, none.cells) = (0.0, [0.0; 2]);
         let beside = none.of_run(false);
@@ -665,7 +667,7 @@ mod tests {
             assert_eq!(case.budget.disk(), alone.disk());
             assert_eq!(case.budget.disk_of_checkpoints(), alone.disk_of_checkpoints());
         }
-        // While one draws, the other one has what it ran with.
+        // While one rank draws, the other still has the memory of its run.
         let budget = cases[0].budget;
         let needed = budget.on_node();
         assert_eq!(needed, 2.0 * budget.memory() - budget.drawing());
@@ -687,8 +689,8 @@ mod tests {
         );
     }
 
-    /// Memory that has been taken already counts as available: the case itself is in memory when its run is
-    /// judged.
+    /// Memory that this process has already taken counts as available: the case itself is in memory when its
+    /// run is checked.
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
         let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
@@ -697,13 +699,13 @@ mod tests {
         let enough = budget.memory() - made;
         assert_eq!(refusal(&case, &budget, made, Some(enough)), None);
         assert!(refusal(&case, &budget, made, Some(0.99 * enough)).is_some());
-        // A system that does not say what it has is asked for all of it.
+        // If the system does not report its free memory, the whole amount is allocated as a test.
         assert_eq!(refusal(&case, &budget, made, None), None);
         let mut huge = budget;
         huge.blocks = 1e16;
         let refused = refusal(&case, &huge, 0.0, None).unwrap();
         assert!(refused.contains("ulimit -v"), "{refused}");
-        // Of a run that has begun no key can be changed.
+        // No key of a run that has begun can be changed.
         let refused = budget.compare_run(&case.file, true, made, Some(0.0));
         let refused = refused.unwrap_err().to_string();
         assert!(
@@ -712,7 +714,7 @@ mod tests {
         );
     }
 
-    /// The kernel for which memory is counted before there is a model is the one that computes it.
+    /// The kernel that the budget assumes before there is a model is the one that computes the model.
     #[test]
     fn the_kernel_is_that_of_the_model() {
         for set in [
@@ -744,9 +746,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let there = free_disk(folder.path()).unwrap();
         assert!(there > 0.0);
-        // Where a folder will be made counts the nearest that is there.
+        // For a folder that does not exist yet, the nearest existing parent counts.
         assert!(free_disk(&folder.path().join("not/yet/there")).is_some());
-        // This test runs in some memory.
+        // This test itself needs some memory.
         assert!(available_memory().is_none_or(|bytes| bytes > PROGRAM));
     }
 }

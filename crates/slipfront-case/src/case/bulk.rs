@@ -1,9 +1,9 @@
-//! Where the slider is so thick that it is a bulk body under its texture, and no sheet.
+//! Sliders that are so thick under their texture that they are a bulk body, not a sheet.
 //!
-//! A sheet of thickness h on a mount K answers a traction of wave number q with `K + 9/8 E h q^2` along it
-//! and `K + 3/8 E h q^2` across, a deep body with `G q/(1 - nu)` and `G q`: stress beside a texture of pitch
-//! p reaches about p deep in it, and much farther along in a thick sheet. `docs/model.md`, "Thickness and
-//! mount", has both.
+//! The response of a sheet of thickness h on a mount K to a traction of wave number q is `K + 9/8 E h q^2`
+//! along the wave and `K + 3/8 E h q^2` across it; that of a deep body is `G q/(1 - nu)` and `G q`. Around a
+//! texture of pitch p, stress reaches about p deep in the body, and much farther along in a thick sheet. See
+//! `docs/model.md`, "Thickness and mount".
 
 use std::f64::consts::{PI, TAU};
 
@@ -17,19 +17,19 @@ use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
 const THICK: f64 = 1.0 / 3.0;
-/// Share by which a thickness may be too large: rounding of lengths, and of a thickness to four digits.
+/// Share by which a thickness may exceed the bound: rounding of lengths, and of a thickness to four digits.
 const ROUNDING: f64 = 1e-3;
 /// Critical size of a long strip on a rigid base in units of `G/((1 - nu) w)`: an eigenvalue, which is 2.313
 /// to 2.319 on 400 cells.
 const STRIP: f64 = 2.316;
-/// Thickness over pitch, and the range of what a texture changes about static friction in a bulk body over
-/// what it changes in the sheet, for a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a
-/// height of five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/validation/bulk.md`).
+/// Thickness over pitch, and the range of the ratio of two changes of static friction by a texture: in a bulk
+/// body over in the sheet. For a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a height of
+/// five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/validation/bulk.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
 /// Excess of the stiffness of the stack over that of the body above which there is a note.
 const LARGE_EXCESS: f64 = 0.1;
 
-/// Lengths of the textures of a case that tell whether it is a sheet, m.
+/// Lengths of the textures of a case, m, by which it counts as a sheet or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TextureLengths {
     /// Smallest feature, where one is known.
@@ -41,33 +41,33 @@ struct TextureLengths {
 }
 
 impl Case {
-    /// The bulk body that the slider is; none of a sheet, or where `slider.sheets` gives the stack.
+    /// The bulk body of the case; none for a sheet, or where `slider.sheets` gives the stack.
     pub fn bulk_body(&self) -> Option<BulkBody> {
         BulkBody::of(&self.file, &self.scales)
     }
 
-    /// The stack of sheets that the slider is; none of one sheet.
+    /// The stack of sheets of the case; none for one sheet.
     fn stack(&self) -> Option<Stack> {
         Stack::of(&self.file, &self.scales)
     }
 
-    /// Fall of strength per slip of blocks in contact, `w = (mu_s - mu_k) P/D_c`, Pa/m; none under laws whose
-    /// strength does not fall with slip.
+    /// Decrease of strength per slip of blocks in contact, `w = (mu_s - mu_k) P/D_c`, Pa/m; none under laws
+    /// without a strength that decreases with slip.
     fn weakening_of_area(&self) -> Option<f64> {
         Some(self.model.weakening()? / self.scales.stiffness_of_area(1.0))
     }
 
-    /// The critical size of slip in a bulk body on a rigid base in blocks, for a long strip across the drive,
-    /// where strength falls with slip; none for a chain. It is infinite where all blocks together are held
-    /// more stiffly than strength falls.
+    /// Critical size of slip in a bulk body on a rigid base in blocks, for a long strip across the drive,
+    /// where strength decreases with slip; none for a chain. It is infinite where the stiffness that holds
+    /// all blocks together is larger than the decrease of strength with slip.
     ///
     /// ```text
     /// L_c = 2.316/q,   Z(q) = w = (mu_s - mu_k) P/D_c,   P on blocks in contact
     /// ```
     ///
-    /// with the stiffness Z along a wave, `G q/(1 - nu)` of a deep body, for which 2.316 is exact; a strip on
-    /// a thin layer or on a stack that is given has up to pi in its place. A sheet has the size in a deep
-    /// body of its material.
+    /// Z is the stiffness along a wave. For a deep body it is `G q/(1 - nu)`, and 2.316 is exact; for a strip
+    /// on a thin layer or on a given stack, the factor may be up to pi instead. A sheet has the critical size
+    /// of a deep body of its material.
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
         let weakening = self.weakening_of_area().filter(|weakening| *weakening > 0.0)?;
@@ -83,17 +83,17 @@ impl Case {
     }
 
     /// Distance in m within which blocks in contact carry the load of a textured one; none where all of them
-    /// carry it in equal parts, or none does.
+    /// share it equally, or where none carries it.
     pub fn load_distance(&self) -> Option<f64> {
         let blocks = sharing_distance(&self.file, &self.scales, &self.model.lattice).ok()?;
         blocks.map(|blocks| blocks * self.scales.block_size)
     }
 
-    /// Largest strain of the slider by a wave of traction as strong as its friction: of a sheet `P mu_s l/(E
-    /// h)` on a block, of a stack `P mu_s q/Z` with the stiffness Z along a wave that is at least two blocks
-    /// long.
+    /// Largest strain of the slider under a wave of traction as large as its friction. For a sheet this is `P
+    /// mu_s l/(E h)` on one block, for a stack `P mu_s q/Z` with the stiffness Z along a wave at least two
+    /// blocks long.
     pub fn strain_of_load(&self) -> f64 {
-        /// Waves at equal ratios, of which the longest has a thousand blocks.
+        /// Number of wavelengths, in geometric progression; the longest is a thousand blocks.
         const WAVES: i32 = 40;
         let scales = &self.scales;
         let Some(stack) = self.stack() else {
@@ -106,15 +106,14 @@ impl Case {
         (0..=WAVES).map(strain).fold(0.0, f64::max)
     }
 
-    /// A sentence on a slider whose thickness is given and that is no sheet under its texture: by how much
-    /// about its answer is wrong, and what to write instead. There is none where neither a pitch nor a
-    /// feature is known.
+    /// A sentence on a slider with a given thickness that is not a sheet under its texture: the approximate
+    /// error of its answer, and what to write instead. None where neither a pitch nor a feature is known.
     pub fn thick_for_texture(&self) -> Option<String> {
         self.note_on_thickness(self.texture_lengths())
     }
 
-    /// A sentence as [`thick_for_texture`](Self::thick_for_texture) for textures that are not drawn yet, with
-    /// a smallest feature in m.
+    /// Like [`thick_for_texture`](Self::thick_for_texture), for textures that are not drawn yet, with a
+    /// smallest feature in m.
     pub fn thick_for_feature(&self, feature: f64) -> Option<String> {
         self.note_on_thickness(TextureLengths {
             feature: Some(feature),
@@ -126,7 +125,7 @@ impl Case {
     fn note_on_thickness(&self, lengths: TextureLengths) -> Option<String> {
         let thickness = self.file.slider.thickness.as_ref()?.si();
         let (name, smallest) = lengths.smallest()?;
-        // The sheet that fits is one of any features.
+        // The sheet that fits is known only for a regular array.
         let fits = if lengths.is_regular {
             fitting_thickness(lengths.reach())
         } else {
@@ -147,8 +146,8 @@ impl Case {
         ))
     }
 
-    /// Sentences on what the stack leaves out of a bulk body: waves that are shorter or longer than those of
-    /// the fit, and what all blocks do together.
+    /// Sentences on the limits of the stack as a model of the bulk body: waves shorter or longer than those
+    /// of the fit, and uniform slip of all blocks.
     pub(super) fn bulk_notes(&self) -> Vec<String> {
         let Some(body) = self.bulk_body() else {
             return Vec::new();
@@ -220,8 +219,8 @@ impl TextureLengths {
             .min_by(|(_, one), (_, other)| one.total_cmp(other))
     }
 
-    /// How far stress reaches beside the texture: a pitch; without one twice the width of a feature, which is
-    /// the pitch of the array whose answers are known.
+    /// Depth to which stress reaches around the texture: a pitch. Without a pitch, twice the width of a
+    /// feature, which is the pitch of the measured array.
     fn reach(&self) -> f64 {
         self.pitch
             .or(self.feature.map(|feature| 2.0 * feature))
@@ -229,10 +228,10 @@ impl TextureLengths {
     }
 }
 
-/// The critical size in m for this fall of strength per slip in Pa/m, where the stiffness along a wave grows
-/// with its wave number.
+/// Critical size in m for this decrease of strength per slip in Pa/m, where the stiffness along a wave
+/// increases with its wave number.
 fn size_at(weakening: f64, along: &dyn Fn(f64) -> f64) -> f64 {
-    /// Halvings after which the ends are neighbouring numbers.
+    /// Halvings after which the ends are adjacent floating-point numbers.
     const HALVINGS: usize = 60;
     if along(0.0) >= weakening {
         return f64::INFINITY;
@@ -253,8 +252,8 @@ fn size_at(weakening: f64, along: &dyn Fn(f64) -> f64) -> f64 {
     STRIP / high
 }
 
-/// Thickness of the sheet that answers tractions of wave number `q = 2 pi/pitch` along and across as a bulk
-/// body does, on the mount that belongs to it:
+/// Thickness of the sheet that, on its matching mount, responds to tractions of wave number `q = 2 pi/pitch`
+/// along and across like a bulk body:
 ///
 /// ```text
 /// h = (2/3) nu/((1 - nu^2) q)
@@ -264,8 +263,8 @@ fn fitting_thickness(pitch: f64) -> f64 {
     2.0 / 3.0 * nu / (1.0 - nu * nu) * (pitch / TAU)
 }
 
-/// Range of what a texture changes in a bulk body over what it changes in a sheet of this thickness over the
-/// pitch, in words; a straight line on logarithmic scales between thicknesses for which it is known.
+/// Range of the change by a texture in a bulk body over its change in a sheet with this ratio of thickness to
+/// pitch, in words. Between known ratios, interpolates linearly on logarithmic scales.
 fn times_as_much(thickness_over_pitch: f64) -> String {
     let known = BULK_OVER_SHEET;
     let ((thinnest, [_, most]), (thickest, [least, _])) = (known[0], known[known.len() - 1]);

@@ -1,17 +1,17 @@
-//! Whether blocks are fine enough for the outline of a texture.
+//! Check that blocks are fine enough for the outline of a texture.
 
 use super::runnable::Case;
 use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline};
 use slipfront_base::number_format::{exact, four_digits, si_prefix, with_si_prefix};
 
-/// Share by which a length may be too small: rounding of lengths and of the block size.
+/// Share by which a length may fall below the bound: rounding of lengths and of the block size.
 const ROUNDING: f64 = 1e-6;
 /// Smallest edge of a block, m.
 const LEAST_BLOCK: f64 = 1e-12;
 
 impl Case {
     /// A sentence on blocks that are too coarse for the outlines of the textures, with the number of blocks
-    /// that is enough; none for masks and height maps, whose outlines are not known.
+    /// that is enough; none for masks and height maps, because their outlines are not known.
     pub fn too_coarse(&self) -> Option<String> {
         let lengths = self.smallest_lengths();
         let too_small = lengths.iter().filter_map(|length| {
@@ -41,8 +41,8 @@ impl Case {
         ))
     }
 
-    /// Settings for blocks that are `finer` times finer, on a slider of this size; the ratio of its sides
-    /// stays.
+    /// Settings for blocks that are finer by the factor `finer`, on a slider of the same size and aspect
+    /// ratio.
     fn blocks_for(&self, finer: f64) -> String {
         let (lattice, block_size) = (&self.model.lattice, self.scales.block_size);
         let sides = [lattice.nx, lattice.ny].map(|blocks| blocks as u64);
@@ -56,7 +56,7 @@ impl Case {
                 with_si_prefix(block_size / finer, "m")
             );
         }
-        // Of other outlines a coverage is that of the blocks which exist: how many these are depends a little
+        // For other outlines, a coverage refers to the blocks that exist, and their number depends slightly
         // on their size.
         let least = match self.file.slider.outline {
             Outline::Rectangle => "at least",
@@ -76,7 +76,8 @@ fn greatest_common_divisor([one, other]: [u64; 2]) -> u64 {
     }
 }
 
-/// A length with ten digits, so that as many copies have room in a pitch as before, which 1e-9 may decide.
+/// A length with ten digits, so that the same number of copies fits into the slider: 1e-9 of a pitch may
+/// decide this.
 pub(super) fn ten_digits(length: f64) -> String {
     let (factor, prefix) = si_prefix(length);
     let rounded = format!("{:.9e}", length / factor);

@@ -1,5 +1,5 @@
-//! Friction coefficients of a case, drawn or read from the files that it names, and the contact that turns
-//! them into thresholds.
+//! Friction coefficients of a case, drawn or read from its files, and the contact that turns them into
+//! thresholds.
 
 use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, deviation_along, pressure_along,
@@ -13,7 +13,7 @@ use super::textures::pitch;
 use crate::case_file::{Body, CaseError, CaseFile, FrictionAlong, Near, Redistribute};
 use slipfront_base::number_format::four_digits;
 
-/// Refuses a correlation length with which coefficients could not be drawn, before any file is read.
+/// Refuses a correlation length for which coefficients could not be drawn, before any file is read.
 pub(super) fn check_correlation(file: &CaseFile) -> Result<(), CaseError> {
     let (least, most) = CorrelatedField::LENGTHS.into_inner();
     let Some(blocks) = correlation_length(file) else {
@@ -45,7 +45,7 @@ fn correlation_length(file: &CaseFile) -> Option<f64> {
     Some(length.si() / file.slider.block_size.si())
 }
 
-/// The field whose means over blocks are the random coefficients, if they are not drawn block by block.
+/// The field that gives the random coefficients as means over blocks, unless they are drawn block by block.
 pub(super) fn correlated_field(file: &CaseFile, lattice: &Lattice) -> Option<CorrelatedField> {
     correlation_length(file).map(|length| CorrelatedField::new(lattice, length))
 }
@@ -62,7 +62,7 @@ pub(super) fn coefficients(
     let mut read = |key: &str, name| inputs.read_field(file, key, name, watch);
     let mu_static = read("friction.mu_static_field", &friction.mu_static_field)?;
     let mu_kinetic = read("friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
-    // A given field takes the place of its draws; the other stream is not shifted by it.
+    // A given field replaces the draws of its own stream; the other stream does not shift.
     let spread = |mean: f64, sigma_star: f64, given: bool| Distribution {
         mean,
         deviation: if given { 0.0 } else { sigma_star * mean },
@@ -84,7 +84,7 @@ pub(super) fn coefficients(
 }
 
 impl CaseFile {
-    /// Whether blocks in contact near a textured one carry its load, and not all of them.
+    /// Whether only nearby blocks in contact carry the load of a textured block, rather than all of them.
     pub(super) fn shares_load_nearby(&self) -> bool {
         match self.load.redistribute {
             Redistribute::Near(_) => true,
@@ -94,7 +94,7 @@ impl CaseFile {
 }
 
 /// Distance in blocks within which blocks in contact carry the load of a textured one; none where all of them
-/// carry it in equal parts, or none does.
+/// share it equally, or where none carries it.
 pub(super) fn sharing_distance(
     file: &CaseFile,
     scales: &Scales,
@@ -133,7 +133,7 @@ pub(super) fn contact(
         Redistribute::All(false) => Load::Kept,
         Redistribute::All(true) | Redistribute::Near(_) => Load::Redistributed,
     };
-    // An upright sheet stands on its lowest row.
+    // An upright sheet touches its substrate with its lowest row.
     let is_upright = file.friction.along == FrictionAlong::X;
     let blocks = lattice.blocks_of(&inputs.slab.rows);
     let faces = is_upright.then(|| blocks.map(|b| b < lattice.nx).collect());

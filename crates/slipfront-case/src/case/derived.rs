@@ -1,4 +1,4 @@
-//! Quantities that follow from a case file without the files that it names.
+//! Quantities that follow from a case file without reading its input files.
 
 use std::ops::Range;
 
@@ -13,10 +13,10 @@ use super::stack::{Stack, longest_wave};
 use crate::case_file::{CaseError, CaseFile, DriveStiffness, FrictionAlong};
 use crate::quantity::Length;
 
-/// Quantities that follow from a case file without the files that it names.
+/// Quantities that follow from a case file without reading its input files.
 pub(super) struct Derived {
     pub(super) scales: Scales,
-    /// The stack that the slider is, if it is not one sheet.
+    /// The stack of sheets; none if the slider is one sheet.
     pub(super) stack: Option<Stack>,
     pub(super) groups: Groups,
     pub(super) budget: Budget,
@@ -24,7 +24,7 @@ pub(super) struct Derived {
 }
 
 impl Derived {
-    /// Derives the quantities; refuses numbers out of the range of the model, and cases for which there is no
+    /// Derives the quantities. Refuses numbers outside the range of the model, and cases that do not fit into
     /// memory.
     pub(super) fn of(
         file: &CaseFile,
@@ -68,9 +68,9 @@ pub fn scales(file: &CaseFile) -> Scales {
     scales_and_stack(file).0
 }
 
-/// A key and its value that make a slider without texture the bulk body of this case: both are then fitted
-/// for the same wave lengths, and differ in the texture alone. There is none of a sheet, or where the case
-/// says it itself.
+/// A key and its value that make a slider without texture the same bulk body as this case: both are then
+/// fitted for the same wavelengths, and differ only in the texture. None for a sheet, or where the case gives
+/// the key itself.
 pub fn key_of_body(file: &CaseFile) -> Option<(&'static str, String)> {
     if file.slider.longest_wave.is_some() {
         return None;
@@ -79,7 +79,7 @@ pub fn key_of_body(file: &CaseFile) -> Option<(&'static str, String)> {
     Some(("slider.longest_wave", format!("{longest:e} m")))
 }
 
-/// Units of a case file whose slider is one sheet.
+/// Units of a case file for a slider of one sheet.
 fn scales_of_sheet(file: &CaseFile) -> Scales {
     let block_size = file.slider.block_size.si();
     let thickness = file.slider.thickness.as_ref().map_or(block_size, Length::si);
@@ -102,7 +102,7 @@ fn scales_of_sheet(file: &CaseFile) -> Scales {
     }
 }
 
-/// Units of a case file, and the stack from which the thickness in them is.
+/// Units of a case file, and the stack that gives their thickness.
 fn scales_and_stack(file: &CaseFile) -> (Scales, Option<Stack>) {
     let of_sheet = scales_of_sheet(file);
     let stack = Stack::of(file, &of_sheet);

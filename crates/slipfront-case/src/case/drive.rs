@@ -17,7 +17,7 @@ use crate::case_file::{
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
 const MAX_ANGLE: f64 = 1e-3;
 
-/// The blocks of these rows that have a drive spring, if a file names them.
+/// The blocks of these rows that have a drive spring, if a file gives them.
 pub(super) fn attached(
     file: &CaseFile,
     inputs: &Inputs,
@@ -31,8 +31,8 @@ pub(super) fn attached(
     attached.map(Some)
 }
 
-/// Removes the drive springs of all blocks of these rows but those that the case attaches. All ranks call
-/// this at once.
+/// Removes the drive springs of all blocks of these rows that the case does not attach. All ranks call this
+/// at once.
 pub(super) fn attach(
     slider: &mut Slider,
     file: &CaseFile,
@@ -110,7 +110,7 @@ fn each(file: &CaseFile, scales: &Scales) -> f64 {
     }
 }
 
-/// The program of the case, if it has one, with speeds that change where steps begin.
+/// The program of the case, if it has one, with changes of speed rounded to steps.
 pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Program>>, CaseError> {
     let DriveSpeed::Program(segments) = &file.drive.speed else {
         return Ok(None);
@@ -133,7 +133,7 @@ pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Progra
     Ok(Some(Arc::new(Program::new(parts))))
 }
 
-/// Refuses a drive that is held over blocks which nothing stops. All ranks call this at once.
+/// Refuses a held drive if nothing stops the blocks. All ranks call this at once.
 pub(super) fn refuse_endless_slip(
     file: &CaseFile,
     model: &Model,

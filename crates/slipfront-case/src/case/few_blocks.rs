@@ -1,22 +1,23 @@
-//! Few blocks whose coefficients are random though no key asks for it: a slider of one block has another
-//! coefficient than the mean that its file gives.
+//! Note on few blocks with random coefficients that no key asks for: the coefficient of a slider of one block
+//! then differs from the mean that its file gives.
 
 use super::runnable::Case;
 use slipfront_base::number_format::{count, four_digits};
 
-/// Fewest blocks in contact that draw their coefficients without a note: the mean of 25 draws of the default
-/// spread of 5 % scatters by 1 %.
+/// Least number of blocks in contact that draw their coefficients without a note: the mean of 25 draws with
+/// the default spread of 5 % scatters by 1 %.
 const FEW_IN_CONTACT: usize = 25;
 
 impl Case {
-    /// A sentence on few blocks in contact whose coefficients are drawn with the default spread: by how much
-    /// the mean of the slider scatters from seed to seed, a standard deviation of
+    /// A sentence on few blocks in contact that draw their coefficients with the default spread. It gives the
+    /// scatter of the slider's mean from seed to seed, a standard deviation of
     ///
     /// ```text
     /// sigma*/sqrt(n)
     /// ```
     ///
-    /// and the keys that make blocks equal. Another spread, or a correlation length, is one that was meant.
+    /// and the keys that make the blocks equal. There is no note for another spread or a correlation length,
+    /// because these are deliberate.
     pub fn few_random_blocks(&self) -> Option<String> {
         let n = self.model.surface.n_contact();
         let spreads = self.file.friction.default_spreads();

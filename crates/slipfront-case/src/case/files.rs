@@ -1,4 +1,4 @@
-//! The places of the files that a case names: a folder, or memory.
+//! Locations of the files that a case names: a folder, or memory.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -6,19 +6,19 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Function that gets the share that is done of a part of making a case: of a file that is read, or of laying
-/// the texture over the blocks; `false` ends the work.
+/// Callback for the progress of making a case: it gets the share of a file that has been read, or of the
+/// texture that has been laid over the blocks. The result `false` ends the work.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// Contents of files by the names that a case gives them.
 pub type FilesInMemory = HashMap<String, Arc<[u8]>>;
 
-/// The places of the files that a case names.
+/// Locations of the files that a case names.
 #[derive(Clone, Copy)]
 pub struct Files<'a> {
     /// The folder to which names of files are relative.
     pub folder: &'a Path,
-    /// Files in memory, which are not looked for in the folder.
+    /// Files in memory, which take precedence over the folder.
     pub in_memory: Option<&'a FilesInMemory>,
 }
 
@@ -31,7 +31,7 @@ impl<'a> From<&'a Path> for Files<'a> {
     }
 }
 
-/// A file that was opened.
+/// An open file.
 #[derive(Debug)]
 pub enum OpenFile {
     /// A file on the disk.
@@ -65,15 +65,15 @@ impl Seek for OpenFile {
     }
 }
 
-/// A file that is read until somebody ends it: every read first asks whether to go on, whatever the format of
-/// the file. It ends where it did when it was opened, since one that grows meanwhile may have no end.
+/// A file with reads that can be stopped: each read first calls `watch`, for every file format. The file ends
+/// at its length when it was opened, because a growing file may have no end.
 pub(super) struct Watched<'a, 'w> {
     file: OpenFile,
     /// Length of the file, and the place of the next read.
     length: u64,
     place: u64,
     watch: &'a mut Watch<'w>,
-    /// Whether a read was refused, since the work is to end.
+    /// Whether a read was refused to stop the work.
     pub(super) is_stopped: bool,
 }
 

@@ -24,7 +24,7 @@ pub struct Groups {
     pub epsilon: f64,
 }
 
-/// Largest strain of the load; the model assumes small deformations.
+/// Largest strain of the load, because the model assumes small deformations.
 const MAX_EPSILON: f64 = 0.5;
 const MIN_V_STAR: f64 = 1e-9;
 const MAX_V_STAR: f64 = 10.0;
@@ -34,7 +34,7 @@ const MAX_OMEGA_STAR: f64 = 1000.0;
 const MIN_UNIT: f64 = 1e-30;
 
 impl Groups {
-    /// The groups of a case file, refused when one is out of the range in which the model is valid.
+    /// The groups of a case file; an error when one is outside the range in which the model is valid.
     pub(super) fn of(file: &CaseFile, scales: &Scales) -> Result<Self, CaseError> {
         let epsilon = scales.epsilon();
         if epsilon > MAX_EPSILON && !file.slider.rigid {
@@ -79,7 +79,7 @@ impl Groups {
     }
 }
 
-/// Refuses units of results below the smallest numbers that results can hold.
+/// Refuses units of results that are too small for the precision of the files.
 fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError> {
     let units = [
         ("displacement, P mu_s l^2/(E h),", scales.displacement(), "m"),

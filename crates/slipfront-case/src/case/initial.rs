@@ -38,8 +38,8 @@ pub(super) fn state(
     Ok(Some(state))
 }
 
-/// Displacements along x and y and velocities along both as the files have them, each with its key; without
-/// numbers where all are 0.
+/// Displacements along x and y, and velocities along both, in the units of the files, each with its key;
+/// without numbers where all are 0.
 fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String, Vec<f64>); 4], CaseError> {
     if let Some(name) = &file.initial.state_file {
         let key = "initial.state_file";
@@ -55,7 +55,7 @@ fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String
     Ok([read(ux)?, read(uy)?, read(vx)?, read(vy)?])
 }
 
-/// Displacement and velocity of 1 in the files, in units of the model: the last state of a run is
+/// The values 1 of displacement and velocity in the files, in units of the model: the last state of a run is
 /// in metres and metres per second.
 fn over_units_of_model(file: &CaseFile, scales: &Scales) -> [f64; 2] {
     let (initial, units) = (&file.initial, [scales.displacement(), scales.speed()]);
@@ -70,7 +70,7 @@ fn over_units_of_model(file: &CaseFile, scales: &Scales) -> [f64; 2] {
     [displacement, velocity].map(|factor| factor.unwrap_or(1.0))
 }
 
-/// Refuses numbers with which no block can begin.
+/// Refuses initial values that no block can have.
 fn check(
     file: &CaseFile,
     (key, values): (&str, &[f64]),

@@ -17,7 +17,7 @@ use slipfront_base::disk::open_regular;
 use slipfront_base::machine::machine_number;
 use slipfront_base::text::{display_path, single_line};
 
-/// A file that a case reads. The run folder holds a copy of it.
+/// A file that a case reads. The run folder contains a copy of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Path of the copy in the run folder.
@@ -28,13 +28,13 @@ pub struct Input {
     pub contents: Option<Arc<[u8]>>,
     /// Length of the file in bytes.
     pub length: u64,
-    /// Hash of the file's contents, taken before the case was made from them. A copy that is made afterwards
-    /// and has this hash holds the contents that the case was made from.
+    /// Hash of the file's contents, taken before the case was made from them. A later copy with this hash has
+    /// the contents that the case was made from.
     pub hash: blake3::Hash,
 }
 
 impl Input {
-    /// Contents of the file, read once more unless they are in memory.
+    /// Contents of the file, read again unless they are in memory.
     ///
     /// # Errors
     /// When the file cannot be read, or has changed since the case was made from it.
@@ -56,10 +56,10 @@ impl Input {
         Ok(contents.into())
     }
 
-    /// Opens the file to be copied.
+    /// Opens the file for copying.
     ///
     /// # Errors
-    /// When the file is on the disk and is no regular file that can be read.
+    /// When the file is on the disk and is not a readable regular file.
     pub fn open(&self) -> io::Result<OpenFile> {
         match &self.contents {
             Some(contents) => Ok(OpenFile::in_memory(contents)),
@@ -68,10 +68,11 @@ impl Input {
     }
 }
 
-/// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different
-/// contents are numbered. Returns the name, and whether there is such a copy already.
+/// Chooses the name of a file's copy in the folder `inputs/`, after its plain name; files with the same name
+/// and different contents are numbered. Returns the name, and whether this copy already exists.
 ///
-/// `is_same` tells for a name whether the copy with it, if there is one, has the contents of the file.
+/// `is_same` returns, for a name, whether the existing copy has the contents of the file; none if there is no
+/// copy.
 pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (String, bool) {
     let mut name = format!("inputs/{plain}");
     let mut number = 1;
@@ -95,11 +96,11 @@ struct FoundFile {
     original: PathBuf,
     /// Contents of the file and their hash, if they are in memory.
     contents: Option<(Arc<[u8]>, blake3::Hash)>,
-    /// Stamp that changes when the file does, or is another file.
+    /// Stamp that changes when the file changes or is replaced.
     stamp: String,
 }
 
-/// Files that a case names, as they are before any of them is read.
+/// Files that a case names, before any of them is read.
 pub(super) struct NamedFiles(Vec<FoundFile>);
 
 impl NamedFiles {
@@ -128,13 +129,13 @@ impl NamedFiles {
         found.collect::<Result<_, _>>().map(Self)
     }
 
-    /// Hashes the files, and replaces their names in the case by those of copies. Files of equal contents and
-    /// names are one.
+    /// Hashes the files, and replaces their names in the case by the names of copies. Files with the same
+    /// name and contents share one copy.
     ///
-    /// One of the ranks that find the same files, such as those of one machine, hashes them.
+    /// Among ranks that find the same files, such as those of one machine, only one hashes them.
     ///
     /// # Errors
-    /// When a file is not the same for all ranks, or cannot be read, or `watch` ends the work.
+    /// When ranks find different files, when a file cannot be read, or when `watch` ends the work.
     pub(super) fn read(
         &self,
         file: &mut CaseFile,
@@ -157,7 +158,7 @@ impl NamedFiles {
         };
         let own = ranks.agree(own)?;
         let digests = self.of_first(own.as_deref(), communicator);
-        // The others have another rank speak for them, which sees the same files.
+        // Ranks that have not hashed the files rely on another rank that finds the same files.
         let given = own.as_ref().unwrap_or(&digests);
         expect_same(communicator, || self.given(given))?;
         Ok(self.name_copies(file, &digests))
@@ -189,7 +190,7 @@ impl NamedFiles {
         digests.collect()
     }
 
-    /// Digests that rank 0 has found for each file.
+    /// Digests of each file that rank 0 has found.
     fn of_first(&self, own: Option<&[Digest]>, communicator: &dyn Communicator) -> Vec<Digest> {
         let mut words = vec![[0; 5]; self.0.len()];
         if communicator.rank() == 0 {
@@ -203,7 +204,7 @@ impl NamedFiles {
         words.into_iter().map(digest).collect()
     }
 
-    /// Names of the files and their contents, for the comparison of ranks.
+    /// Names and contents of the files, for the comparison between ranks.
     fn given(&self, digests: &[Digest]) -> NamedInputs {
         let named = self.0.iter().zip(digests).map(|(found, (length, hash))| {
             let name = format!("{} (`{}`)", single_line(&found.plain_name()), found.key);
@@ -233,8 +234,8 @@ impl NamedFiles {
         inputs
     }
 
-    /// Refuses a file that has changed since it was found, because its contents as read may differ from the
-    /// hashed ones.
+    /// Refuses a file that has changed since it was found: its contents as read may differ from the hashed
+    /// ones.
     pub(super) fn expect_unchanged(&self, file: &CaseFile) -> Result<(), CaseError> {
         for found in self.0.iter().filter(|found| found.contents.is_none()) {
             let now = stamp(&found.original).map_err(|error| placed(file, &found.key, error))?;
@@ -257,7 +258,7 @@ impl FoundFile {
     }
 }
 
-/// Stamp of a file: its identity on its machine, and the time of its last change.
+/// Stamp of a file: its identity on this machine, and the time of its last change.
 fn stamp(path: &Path) -> Result<String, ArrayError> {
     let metadata = path.metadata().map_err(|source| ArrayError::Read {
         path: path.to_owned(),
@@ -290,8 +291,8 @@ fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
     blake3::Hash::from_bytes(bytes)
 }
 
-/// Opens a file that is in memory or on the disk, and limits its length to that of its use for a lattice of
-/// `nx` x `ny` blocks. Returns the file and its length.
+/// Opens a file in memory or on the disk, and limits its length to what its use on a lattice of `nx` x `ny`
+/// blocks requires. Returns the file and its length.
 fn open(
     original: &Path,
     contents: Option<&Arc<[u8]>>,
@@ -313,7 +314,7 @@ fn open(
     Ok((opened, length))
 }
 
-/// Reads a file of this length with `read`, as long as `watch` lets it.
+/// Reads a file of this length with `read`, until `watch` stops it.
 fn read_watched<T>(
     (file, length): (OpenFile, u64),
     watch: &mut Watch,
@@ -321,7 +322,7 @@ fn read_watched<T>(
 ) -> Result<T, ArrayError> {
     let mut source = BufReader::new(Watched::new(file, length, watch));
     let read = read(&mut source);
-    // Formats make different errors of a read that was refused.
+    // Each format reports a refused read as a different error.
     if source.get_ref().is_stopped {
         return Err(ArrayError::Stopped);
     }
@@ -344,7 +345,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Reads the file that has this name in the case, given by `key`, as the kind that `holds` names.
+    /// Reads the input file with this name in the case, given by `key`, for the use `holds`.
     fn read<T>(
         &self,
         file: &CaseFile,
@@ -362,8 +363,8 @@ impl Inputs {
         read.map_err(|error| placed(file, key, error))
     }
 
-    /// Reads the image or array that has this name in the case, given by `key`: whether each block of the
-    /// slab is dark, or 1.
+    /// Reads the image or array with this name in the case, given by `key`: whether each block of the slab is
+    /// dark, or 1.
     pub(super) fn read_mask(
         &self,
         file: &CaseFile,
@@ -382,7 +383,7 @@ impl Inputs {
         })
     }
 
-    /// Reads the height map that has this name in the case, given by `key`.
+    /// Reads the height map with this name in the case, given by `key`.
     pub(super) fn read_height_map<T>(
         &self,
         file: &CaseFile,
@@ -394,7 +395,7 @@ impl Inputs {
         self.read(file, (key, name), FileUse::HeightMap, watch, read)
     }
 
-    /// Reads a number of every block from the file of this name, if the case names one.
+    /// Reads one number per block from the file with this name, if the case names one.
     pub(super) fn read_field(
         &self,
         file: &CaseFile,
@@ -407,7 +408,7 @@ impl Inputs {
         })
     }
 
-    /// Reads the last state of a run from the file of this name, given by `key`.
+    /// Reads the last state of a run from the file with this name, given by `key`.
     pub(super) fn read_state(
         &self,
         file: &CaseFile,
@@ -419,7 +420,7 @@ impl Inputs {
         })
     }
 
-    /// Reads a number of any sign of every block from the file of this name, if the case names one.
+    /// Reads one number per block, of any sign, from the file with this name, if the case names one.
     pub(super) fn read_signed_field(
         &self,
         file: &CaseFile,
@@ -444,7 +445,7 @@ impl Inputs {
     }
 }
 
-/// Whether the file of a mask is an array, rather than an image.
+/// Whether the file of a mask is an array, not an image.
 pub(super) fn is_array(path: &Path) -> bool {
     arrays::extension(path) == "npy"
 }

@@ -1,9 +1,9 @@
-//! The lengths of a case in blocks, and the one that decides the mesh error of an answer.
+//! Lengths of a case in blocks, and the one that determines the mesh error of an answer.
 //!
-//! The number of blocks that is enough for each was measured on a sheet of 1 mm with square and round
-//! cavities of 50 to 400 um, on 20 to 320 blocks along a side with everything else held in metres, seconds
-//! and pascals: from this number of blocks on the reduction of static friction by the cavity is within 2 % of
-//! that on the finest mesh (`docs/validation/measures.md`, "Blocks that a length needs").
+//! The sufficient number of blocks for each length was measured on a sheet of 1 mm with square and round
+//! cavities of 50 to 400 um, on 20 to 320 blocks along a side, with everything else constant in metres,
+//! seconds and pascals. With at least this number, the reduction of static friction by the cavity is within 2
+//! % of that on the finest mesh (`docs/validation/measures.md`, "Blocks that a length needs").
 
 use slipfront::surface::{Clearance, clearance};
 
@@ -14,25 +14,26 @@ use crate::case_file::{
 };
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
-/// Number of blocks in the critical size of slip that is enough.
+/// Sufficient number of blocks in the critical size of slip.
 const OF_CRITICAL_SIZE: f64 = 5.0;
-/// Number of blocks in the critical size of a bulk body that is enough: of dimples four times as wide, the
-/// reduction on 1.9 blocks is 6 % off from the one on 5.6, on 2.8 blocks 1.5 %.
+/// Sufficient number of blocks in the critical size of a bulk body. For dimples four times as wide as this
+/// size, the reduction on 1.9 blocks differs by 6 % from that on 5.6, and on 2.8 blocks by 1.5 %.
 const OF_CRITICAL_SIZE_OF_BULK: f64 = 3.0;
-/// Number of blocks in the screening length along the drive that is enough, where it is the shorter one.
+/// Sufficient number of blocks in the screening length along the drive, where it is the shorter length.
 const OF_SCREENING: f64 = 3.0;
 /// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the
 /// screening length counts.
 const NEARLY_STABLE: f64 = 4.0;
-/// Relative difference of the bounds of the critical size below which one of them is said: where nearly all
-/// blocks touch, both are within the error of the formula.
+/// Relative difference of the two bounds of the critical size below which only one is reported: where nearly
+/// all blocks touch, both are within the error of the formula.
 const NEARLY_ALL_TOUCH: f64 = 0.1;
-/// Number of blocks in the correlation length that is enough: coefficients are exact means over blocks.
+/// Sufficient number of blocks in the correlation length: coefficients are exact means over blocks.
 const OF_CORRELATION: f64 = 0.5;
-/// Number of blocks across the smallest feature that is enough: its area is then meshed within 2 % in root
-/// mean square over its place on the mesh.
+/// Sufficient number of blocks across the smallest feature: the meshed area is then accurate to 2 % in root
+/// mean square over positions on the mesh.
 const ACROSS_A_FEATURE: f64 = 5.0;
-/// Number of blocks across the smallest gap that is enough: one of them is in contact wherever the mesh lies.
+/// Sufficient number of blocks across the smallest gap: one of them is then in contact for any position on
+/// the mesh.
 const ACROSS_A_GAP: f64 = 2.0;
 
 /// A length of a case, and the number of blocks that an answer needs in it.
@@ -44,14 +45,14 @@ pub struct CaseLength {
     pub blocks: f64,
     /// The length in m.
     pub metres: f64,
-    /// Number of blocks from which on a reduction of static friction is within 2 % of its limit; none where
+    /// Least number of blocks for which a reduction of static friction is within 2 % of its limit; none where
     /// the length sets no bound.
     pub enough: Option<f64>,
 }
 
 impl CaseFile {
-    /// Lengths of the material that equal the length of a block because no key gives them; they change with
-    /// the blocks.
+    /// Lengths of the material that equal the block length because no key gives them. They change with the
+    /// blocks.
     pub fn lengths_of_a_block(&self) -> Vec<LengthOfABlock> {
         if self.slider.body == Body::Bulk {
             return self.friction.lengths_of_a_block().collect();
@@ -80,7 +81,7 @@ impl Case {
         lengths
     }
 
-    /// All lengths but those of the texture.
+    /// All lengths except those of the texture.
     fn material_lengths(&self) -> Vec<CaseLength> {
         let model = &self.model;
         let critical_size = self.expected.critical_size;
@@ -109,8 +110,8 @@ impl Case {
         lengths
     }
 
-    /// The smallest feature and gap of the textures; none for masks and height maps, whose outlines are not
-    /// known.
+    /// The smallest feature and gap of the textures; none for masks and height maps, because their outlines
+    /// are not known.
     pub(super) fn smallest_lengths(&self) -> Vec<CaseLength> {
         let Clearance { feature, gap } = self.clearance();
         let [feature_name, gap_name] = names(&self.file.texture);
@@ -126,15 +127,15 @@ impl Case {
             .collect()
     }
 
-    /// The smallest feature and gap of the textures in blocks; none for masks and height maps, whose outlines
-    /// are not known.
+    /// The smallest feature and gap of the textures in blocks; none for masks and height maps, because their
+    /// outlines are not known.
     pub(super) fn clearance(&self) -> Clearance {
         let lattice = &self.model.lattice;
         let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
         clearance(lattice, &outlines)
     }
 
-    /// The length that decides the mesh error of an answer, in a sentence without a full stop.
+    /// The length that determines the mesh error of an answer, in a sentence without a full stop.
     pub fn deciding_length(&self) -> String {
         if self.model.n_blocks() == 1 {
             return "a single block has no mesh error".to_owned();
@@ -163,7 +164,7 @@ impl Case {
         })
     }
 
-    /// Lengths of friction and mount for which these blocks are too large.
+    /// Lengths of friction and mount that these blocks are too large to resolve.
     pub(super) fn unresolved_lengths(&self) -> Vec<String> {
         let lengths = self.material_lengths().into_iter();
         lengths
@@ -181,8 +182,8 @@ impl Case {
             .collect()
     }
 
-    /// Whether every one of several blocks of a single sheet hangs on the drive by a spring of its own, in
-    /// translation.
+    /// Whether the slider is a single sheet of several blocks in translation, with a drive spring on each of
+    /// them.
     fn has_spring_on_every_block(&self) -> bool {
         let drive = &self.file.drive;
         let is_on_all = matches!(drive.attached, Attached::At(AttachedEdge::All));

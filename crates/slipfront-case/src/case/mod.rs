@@ -1,4 +1,4 @@
-//! `CaseFile` -> [`Case`]: a case that can be run, with every length counted in blocks and every file read.
+//! `CaseFile` -> [`Case`]: a case that is ready to run, with all lengths in blocks and all files read.
 
 mod budget;
 mod bulk;

@@ -1,4 +1,4 @@
-//! The model of a case: its blocks, surface, slider and drive, in the order in which they need each other.
+//! The model of a case: its blocks, surface, slider and drive, made in the order of their dependencies.
 
 use std::ops::Range;
 
@@ -19,11 +19,11 @@ use super::textures;
 use super::topography::Topography;
 use crate::case_file::{CaseError, CaseFile};
 
-/// The texture as asked and as meshed.
+/// The texture as requested and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
-    /// A* as asked for, %; none if there is a mask, a polygon or the depth of a height map, whose area is
-    /// known only after meshing.
+    /// Requested A*, %; none if there is a mask, a polygon or the depth of a height map: their area is known
+    /// only after meshing.
     pub asked_percent: Option<f64>,
     /// A* as meshed, % (Eq. 15).
     pub meshed_percent: f64,
@@ -35,9 +35,9 @@ pub struct TextureReport {
     pub empty: Vec<usize>,
 }
 
-/// The model of some rows of the lattice, without the program of its drive, whose speeds change where steps
-/// begin, and the state in which a run begins, unless it is at rest. Files that have changed while they were
-/// read are refused.
+/// Makes the model of some rows of the lattice, without the program of its drive, which needs the time step,
+/// and the state in which a run begins, unless it begins at rest. Refuses files that changed while they were
+/// read.
 pub(super) fn make(
     file: &CaseFile,
     derived: &Derived,
@@ -105,7 +105,8 @@ pub(super) fn make(
     Ok((model, texture, state))
 }
 
-/// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.
+/// The textures, out of `n_textures`, that cover no block of any rank; `empty` lists those that cover none of
+/// this rank.
 fn empty_on_all(empty: &[usize], n_textures: usize, communicator: &dyn Communicator) -> Vec<usize> {
     let mut covers = vec![1.0; n_textures];
     for &texture in empty {

@@ -1,8 +1,8 @@
-//! One slider on other blocks: the keys of a case with finer or coarser blocks whose slider, load, mount,
-//! friction and time stay.
+//! The same slider on other blocks: the keys of a case with finer or coarser blocks and unchanged slider,
+//! load, mount, friction and time.
 //!
-//! A key with a star counts in units that depend on the edge `l` of a block and on the thickness `h` of the
-//! sheet. It is converted by the ratio of the two units, so that metres, seconds and pascals are held:
+//! A key with a star is in units that depend on the block edge `l` and the thickness `h` of the sheet. It is
+//! converted by the ratio of the two units, so that values in metres, seconds and pascals stay constant:
 //!
 //! ```text
 //! speed P mu_s l/(h sqrt(E rho)),  time l sqrt(rho/E),  displacement P mu_s l^2/(E h),  spring on each block
@@ -35,13 +35,13 @@ fn size(unit: StarUnit, scales: &Scales) -> f64 {
 }
 
 impl Case {
-    /// The keys that put this slider on blocks that are `finer` times as fine, a power of two, and keep in
-    /// metres, seconds and pascals: dimensions, textures, load, mount, damping, lengths of friction, speed
-    /// and duration. The step keeps its share of the time that sound takes across a block. Spreads of
-    /// coefficients stay; they are spreads over blocks, whatever the size of these.
+    /// The keys that put this slider on blocks finer by the factor `finer`, a power of two. Dimensions,
+    /// textures, load, mount, damping, lengths of friction, speed and duration stay constant in metres,
+    /// seconds and pascals. The time step stays a constant share of the travel time of sound across a block.
+    /// Spreads of coefficients do not change: they are spreads over blocks of any size.
     ///
     /// # Errors
-    /// When the blocks cannot be divided so, or when the case has values that belong to its blocks.
+    /// When the blocks cannot be divided in this way, or when the case has values for its individual blocks.
     pub fn on_other_blocks(&self, finer: f64) -> Result<Vec<Override>, CaseError> {
         self.refuse_values_of_blocks()?;
         let blocks = self.other_blocks(finer)?;
@@ -71,7 +71,7 @@ impl Case {
             ),
             ("time.step".to_owned(), Value::from(self.time_plan.dt_star)),
         ];
-        // Every key of the case with its default filled in.
+        // Every key of the case, with defaults filled in.
         let mut file = Value::try_from(self.explicit_times()).map_err(CaseError::from)?;
         if let Value::Table(file) = &mut file {
             for (name, table) in file.iter_mut() {
@@ -88,7 +88,7 @@ impl Case {
         Ok(set.iter().map(|(key, value)| Override::new(key, value)).collect())
     }
 
-    /// The case file with the times that are "auto" written out, since they count in blocks.
+    /// The case file with explicit numbers for the "auto" times, which depend on the blocks.
     fn explicit_times(&self) -> CaseFile {
         let mut file = self.file.clone();
         let plan = &self.time_plan;
@@ -103,7 +103,7 @@ impl Case {
         file
     }
 
-    /// Blocks along each axis; an axis of one block keeps it.
+    /// Blocks along each axis; an axis of one block stays unchanged.
     fn other_blocks(&self, finer: f64) -> Result<[u32; 2], CaseError> {
         let [nx, ny] = self.file.slider.blocks;
         let refuse = |sentence: String| self.file.source.error("slider.blocks", sentence);
@@ -132,7 +132,7 @@ impl Case {
         Ok(other)
     }
 
-    /// Refuses values that belong to the blocks of the case, and have no meaning on others.
+    /// Refuses values that belong to the blocks of the case and have no meaning on others.
     fn refuse_values_of_blocks(&self) -> Result<(), CaseError> {
         let file = &self.file;
         if file.friction.along != FrictionAlong::Plane {
@@ -183,7 +183,7 @@ impl Case {
     }
 }
 
-/// A length as people write it, if its ten digits are the length to the last bit.
+/// A length with an SI prefix, if its ten digits reproduce the length to the last bit.
 fn length_text(metres: f64) -> String {
     let text = ten_digits(metres);
     let read = text.parse::<Length>();
@@ -201,14 +201,14 @@ struct Conversion<'a> {
 }
 
 impl Conversion<'_> {
-    /// Adds the keys at and below `path` that have units, with their numbers in the other ones.
+    /// Adds the keys at and below `path` that have units, with their numbers in the new units.
     fn convert(&self, path: &str, value: &mut Value, set: &mut Vec<(String, Value)>) {
         let Value::Table(table) = value else { return };
         for (name, value) in table {
             let path = format!("{path}.{name}");
             match value {
                 Value::Table(_) => self.convert(&path, value, set),
-                // Segments of a program stand in one list.
+                // The segments of a program are one list.
                 Value::Array(segments) if segments.iter().any(Value::is_table) => {
                     let tables = segments.iter_mut().filter_map(Value::as_table_mut);
                     if tables.map(|table| self.convert_table(table)).sum::<usize>() > 0 {
@@ -236,7 +236,7 @@ impl Conversion<'_> {
         count
     }
 
-    /// The number in the other units, if its key has units.
+    /// The number in the new units, if its key has units.
     fn converted(&self, name: &str, value: &Value) -> Option<Value> {
         let unit = star_unit(name)?;
         let number = value
@@ -256,7 +256,7 @@ mod tests {
     use super::*;
     use crate::case_file::{KeyKind, SECTIONS};
 
-    /// Every key with a star has a unit: one without would keep its number and change its meaning.
+    /// Every key with a star has a unit: a key without one would keep its number and change its meaning.
     #[test]
     fn every_key_with_a_star_has_a_unit() {
         let keys = SECTIONS.iter().flat_map(|section| section.keys);
@@ -288,8 +288,8 @@ mod tests {
         ]
     }
 
-    /// Half and twice as many blocks along a side are one slider: every number is converted by powers of two
-    /// alone, and rounds once.
+    /// Half and twice as many blocks along a side give the same slider: every number is converted by powers
+    /// of two alone, and rounded once.
     #[test]
     fn other_blocks_are_the_same_slider() {
         let text = "[slider]\nblocks = [20, 40]\nblock_size = '20 um'\nthickness = '20 um'\nviscosity_time_star = 0.2\n\
@@ -308,7 +308,7 @@ mod tests {
                 assert!((one - other).abs() <= 1e-12 * one.abs(), "{finer}: {one} {other}");
             }
             assert_eq!(other.time_plan.dt_star, own.time_plan.dt_star);
-            // Of the units of displacement: over a fixed thickness, l^2.
+            // Length unit in terms of displacement: over a fixed thickness, l^2.
             let length = |case: &Case| {
                 let values = case.file.values();
                 let found = values.iter().find(|(key, _)| key.ends_with(".length_star`"));
@@ -318,7 +318,7 @@ mod tests {
         }
     }
 
-    /// A study sets the same keys on all meshes, that of the case included.
+    /// A study sets the same keys on all meshes, including that of the case.
     #[test]
     fn every_mesh_sets_the_same_keys() {
         let case = case(

@@ -14,7 +14,7 @@ pub struct Output {
     pub snapshots: Snapshots,
     /// The fields that are recorded.
     pub fields: Vec<Field>,
-    /// Stride n: the fields file has every n-th block of each axis.
+    /// Stride n: the file of fields has every n-th block of each axis.
     pub stride: usize,
     /// Steps between rows of the series.
     pub series_stride: u64,
@@ -31,18 +31,18 @@ pub enum Snapshots {
     Instants,
     /// The given steps.
     At(Vec<u64>),
-    /// Multiples of a number of steps from 0, and the instants A-F.
+    /// Multiples of this number of steps, from 0, and the instants A-F.
     Every(u64),
 }
 
 /// Largest number of maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
 
-/// Largest number of pictures of a movie, which take a minute and more.
+/// Largest number of pictures of a movie: drawing them takes a minute and more.
 pub const MAX_PICTURES: usize = 1000;
 
-/// The field whose maps are drawn: the contact stress, or the traction if only some blocks have a drive
-/// spring, because the contact stress of a stuck block is the pull of its own drive spring.
+/// The field in the drawn maps: the contact stress, or the traction if only some blocks have a drive spring,
+/// because the contact stress of a stuck block is the pull of its own drive spring.
 pub fn mapped_field(file: &CaseFile) -> Field {
     match file.drive.attached {
         Attached::At(AttachedEdge::All) => Field::ContactStress,
@@ -53,11 +53,11 @@ pub fn mapped_field(file: &CaseFile) -> Field {
 /// Number of the instants A-F.
 const INSTANTS: u64 = 6;
 
-/// Largest number of rows of the series unless the case sets a spacing.
+/// Largest number of rows of the series, unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
 
 impl Output {
-    /// The output that a case file asks for, refused when a spacing is shorter than a step.
+    /// The output that a case file requests; an error when a spacing is shorter than a step.
     pub(super) fn of(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
         let dt_star = time_plan.dt_star;
         let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {

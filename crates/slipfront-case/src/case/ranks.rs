@@ -5,10 +5,10 @@ use slipfront::communicator::{Alone, lowest_rank, text_of};
 
 use crate::case_file::CaseError;
 
-/// The ranks that make a case together, each its own rows.
+/// The ranks that make a case together, each for its own rows.
 #[derive(Clone, Copy)]
 pub struct Ranks<'a> {
-    /// Connection by which the ranks talk.
+    /// Connection between the ranks.
     pub communicator: &'a dyn Communicator,
     /// Number of ranks that run on this machine and share its memory.
     pub on_node: usize,
@@ -23,8 +23,8 @@ impl Ranks<'static> {
 }
 
 impl Ranks<'_> {
-    /// Returns `found` of this rank if no rank has failed; else an error on all ranks: the error of the
-    /// lowest rank that has one, which it names unless it is rank 0, or that they were stopped.
+    /// Returns `found` of this rank if no rank has failed. Otherwise all ranks return an error: that of the
+    /// lowest rank with an error, which the message names unless it is rank 0, or that they were stopped.
     pub fn agree<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
         self.agree_in_words(found, |rank, text| match rank {
             0 => text,
@@ -32,8 +32,8 @@ impl Ranks<'_> {
         })
     }
 
-    /// [Agrees](Self::agree) on the results of each rank for the rows that it holds: the error is that of
-    /// reading all rows.
+    /// [Agrees](Self::agree) on the results of each rank for its rows: the error is the one of reading all
+    /// rows.
     pub(super) fn agree_on_rows<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
         self.agree_in_words(found, |_, text| text)
     }

@@ -23,13 +23,12 @@ use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 use crate::same::expect_same;
 
-/// A case that can be run, which is valid by construction.
+/// A case that is ready to run, and valid by construction.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Name of the case and of its results.
     pub name: String,
-    /// The case file with every default filled in and its input files in `inputs/`, as the run folder holds
-    /// it.
+    /// The case file with all defaults filled in and its input files in `inputs/`, as in the run folder.
     pub file: CaseFile,
     /// Files that the case reads.
     pub inputs: Vec<Input>,
@@ -37,8 +36,7 @@ pub struct Case {
     pub scales: Scales,
     /// Dimensionless groups.
     pub groups: Groups,
-    /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of
-    /// several.
+    /// The slider, and the surface of the rows of this process: all rows, unless it is one of several ranks.
     pub model: Arc<Model>,
     /// State of these rows in which a run begins; none if it begins at rest.
     pub initial: Option<Arc<State>>,
@@ -54,7 +52,7 @@ pub struct Case {
     pub budget: Budget,
 }
 
-/// Estimates of the model about a run before it begins, for the whole lattice.
+/// Estimates of the model for a run, made before it begins, for the whole lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// Level of steady sliding, see [`Model::steady_level`].
@@ -65,7 +63,7 @@ pub struct Expected {
     pub first_slip_star: Option<f64>,
     /// Earliest and latest t* of the onset, see [`Model::onset_estimate`].
     pub onset_star: [f64; 2],
-    /// Least and most of the critical size of slip in blocks, see [`Model::critical_size`].
+    /// Lower and upper bound of the critical size of slip in blocks, see [`Model::critical_size`].
     pub critical_size: Option<[f64; 2]>,
     /// t* up to which the largest mu* is static friction: twice the t* of the onset, and more where only some
     /// blocks touch or adhesion delays it.
@@ -89,10 +87,10 @@ impl Expected {
 }
 
 impl Case {
-    /// Loads a case file and the files it names, which stand relative to it. A case whose model needs more
-    /// memory to be stepped than there is, is refused before any array is allocated. `watch` gets the
-    /// progress of reading files and of laying the texture over the blocks, and can end both. All `ranks`
-    /// make the case at once, as [`to_run`](Self::to_run) does.
+    /// Loads a case file and its input files, with names relative to the case file. If there is too little
+    /// memory to step the model, the case is refused before any array is allocated. `watch` gets the progress
+    /// of reading files and of laying the texture over the blocks, and can stop both. All `ranks` make the
+    /// case at once, as in [`to_run`](Self::to_run).
     pub fn load(
         path: &Path,
         overrides: &[String],
@@ -102,8 +100,8 @@ impl Case {
         Self::load_with(path, overrides, None, watch, ranks)
     }
 
-    /// Loads a case file as [`load`](Self::load) does; some of the files that it or an override names may be
-    /// in memory.
+    /// Loads a case file as [`load`](Self::load) does. Files that the case or an override names may be in
+    /// memory.
     pub fn load_with(
         path: &Path,
         overrides: &[String],
@@ -120,8 +118,7 @@ impl Case {
         Self::to_run_with(file, &name, files, watch, ranks)
     }
 
-    /// Makes a case of text alone, as [`load`](Self::load) does; the files it names are relative to
-    /// `folder`.
+    /// Makes a case from text, as [`load`](Self::load) does, with names of files relative to `folder`.
     pub fn parse(
         text: &str,
         name: &str,
@@ -132,9 +129,9 @@ impl Case {
         Self::to_run(file, name, folder.as_ref(), &mut |_| true, Ranks::ALONE)
     }
 
-    /// Makes a case of a case file that was read already, to be run; the files it names are relative to
-    /// `folder`. All `ranks` make the case at once: each makes the surface of its own rows, and knows the
-    /// rest of the case. If one fails, or was given another case or other files, all return the same error.
+    /// Makes a case for a run from a parsed case file, with names of files relative to `folder`. All `ranks`
+    /// make the case at once: each makes the surface of its own rows, and knows the rest of the case. If one
+    /// of them fails, or has a different case or different files, all return the same error.
     pub fn to_run(
         file: CaseFile,
         name: &str,
@@ -171,8 +168,8 @@ impl Case {
         Self::make(file, name, files, true, watch, ranks)
     }
 
-    /// Makes a case of a case file on all `ranks` at once; `files` is the folder of those that it names, or
-    /// has them in memory. The memory for stepping its model is not checked.
+    /// Makes a case from a case file on all `ranks` at once; `files` is the folder of its input files, or
+    /// holds them in memory. The memory for stepping the model is not checked.
     pub fn new<'f>(
         file: CaseFile,
         name: &str,
@@ -183,7 +180,8 @@ impl Case {
         Self::make(file, name, files.into(), false, watch, ranks)
     }
 
-    /// Makes a case: the file, the quantities that follow from it alone, its inputs, the model, the steps.
+    /// Makes a case: the file, the quantities derived from it alone, its inputs, the model, and the time
+    /// plan.
     fn make(
         mut file: CaseFile,
         name: &str,
@@ -196,7 +194,7 @@ impl Case {
         let [nx, ny] = file.slider.blocks.map(|count| count as usize);
         let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
         let rows = lattice.rows_of(ranks.communicator);
-        // Nothing is allocated before all ranks have looked at the memory that they share.
+        // All ranks check the memory that they share before anything is allocated.
         let derived = Derived::of(&file, &lattice, &rows, &ranks, to_run)
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, files)?)));
         let (derived, named) = ranks.agree(derived)?;
@@ -241,18 +239,18 @@ impl Case {
         })
     }
 
-    /// Share of the static friction of the blocks that the dead load along the drive takes; none without a
-    /// load, or under a law without static friction.
+    /// Ratio of the dead load along the drive to the static friction of the blocks; none without a load, or
+    /// under a law without static friction.
     pub fn share_of_shear(&self) -> Option<f64> {
         let model = &self.model;
         let has_share = model.dead_load().acts() && model.friction.has_thresholds();
         has_share.then(|| model.mean_dead_load()[0] / model.surface.mean_static_force())
     }
 
-    /// The textures of the file in blocks, in their order, with their masks read again.
+    /// The textures of the file in blocks, in their order; reads their masks again.
     ///
     /// # Errors
-    /// When a mask cannot be read any more.
+    /// When a mask can no longer be read.
     pub fn textures_in_blocks(&self) -> Result<Vec<Texture>, CaseError> {
         let lattice = &self.model.lattice;
         let inputs = Inputs {
@@ -267,7 +265,7 @@ impl Case {
         made.map(|in_blocks| in_blocks.textures)
     }
 
-    /// The field whose means over blocks are the random coefficients; none if every block draws its own.
+    /// The field that gives the random coefficients as means over blocks; none if every block draws its own.
     pub fn correlated_field(&self) -> Option<CorrelatedField> {
         correlated_field(&self.file, &self.model.lattice)
     }
@@ -277,12 +275,12 @@ impl Case {
         self.initial.as_deref().cloned()
     }
 
-    /// Largest number of steps times blocks, without the steps in which a held drive stands.
+    /// Largest number of steps times blocks, without the steps in which a held drive stops.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }
 
-    /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.
+    /// Steps between two checks of the progress and of reasons to stop: some milliseconds of a run.
     pub fn steps_per_poll(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)

@@ -1,4 +1,4 @@
-//! The dead shear load of a case, and what it leaves to the drive.
+//! Dead shear load of a case, and the part of friction that it leaves to the drive.
 
 use slipfront::communicator::lowest_rank;
 use slipfront::{Communicator, DeadLoad, Model, Scales};
@@ -8,7 +8,7 @@ use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile, FrictionAlong};
 use slipfront_base::number_format::{count, four_digits};
 
-/// The local shear load over that of the case, of the blocks of these rows, if a file gives it.
+/// The local shear load relative to that of the case, for the blocks of these rows, if a file gives it.
 pub(super) fn field(
     file: &CaseFile,
     inputs: &Inputs,
@@ -17,8 +17,8 @@ pub(super) fn field(
     inputs.read_signed_field(file, "load.shear_field", &file.load.shear_field, watch)
 }
 
-/// The dead load of a case on the blocks of a model, along its drive, of an upright sheet on its lowest row.
-/// All ranks call this at once.
+/// The dead load of a case on the blocks of a model, along its drive. For an upright sheet, it acts on the
+/// lowest row. All ranks call this at once.
 pub(super) fn dead_load(
     file: &CaseFile,
     scales: &Scales,
@@ -32,7 +32,7 @@ pub(super) fn dead_load(
     let is_upright = file.friction.along == FrictionAlong::X && shear != 0.0;
     let field = if is_upright {
         let blocks = model.lattice.blocks_of(&model.rows);
-        // Along the interface, which is the lowest row.
+        // Only on the interface, which is the lowest row.
         let relative = |(k, b): (usize, usize)| match &field {
             _ if b >= model.lattice.nx => 0.0,
             Some(field) => field[k],
@@ -48,7 +48,8 @@ pub(super) fn dead_load(
     }
 }
 
-/// Refuses a dead load that the slider as a whole cannot bear: nothing would be left for the drive.
+/// Refuses a dead load that is larger than the friction of the whole slider: nothing would be left for the
+/// drive.
 pub(super) fn refuse_runaway(file: &CaseFile, model: &Model) -> Result<(), CaseError> {
     let ([borne, _], held) = (model.mean_dead_load(), model.surface.mean_static_force());
     if !model.friction.has_thresholds() || borne.abs() <= held {
@@ -74,7 +75,7 @@ pub struct AtOnce {
 }
 
 impl AtOnce {
-    /// The blocks of all ranks, which call this at once.
+    /// Counts the blocks of all ranks, which call this at once.
     pub(super) fn of(model: &Model, ranks: &dyn Communicator) -> Self {
         let is_pulled = model.dead_load().acts() && model.friction.has_thresholds();
         let slips = |b: &usize| !model.surface.textured[*b] && model.slips_at_once(*b);
@@ -96,7 +97,7 @@ impl AtOnce {
         }
     }
 
-    /// A warning where blocks slip at t = 0 already.
+    /// A warning if blocks already slip at t = 0.
     pub(super) fn warning(self) -> Option<String> {
         let Self {
             count: n,

@@ -1,4 +1,4 @@
-//! Stiffness, density and outline of the slider, from its file or from the files that it names.
+//! Stiffness, density and outline of the slider, from the case file or its input files.
 
 use slipfront::{Communicator, Lattice, Outline, Slider};
 
@@ -8,7 +8,7 @@ use crate::arrays::Slab;
 use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, EdgeSprings, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
 
-/// Marks the blocks of some rows that exist, if the slider does not fill its lattice.
+/// Marks the blocks of some rows that exist; none if the slider fills its lattice.
 pub(super) fn outline(
     file: &CaseFile,
     lattice: &Lattice,
@@ -27,7 +27,7 @@ pub(super) fn outline(
     Ok(Some(exists))
 }
 
-/// Properties of the blocks that this rank holds, as the case gives them.
+/// Given properties of the blocks of this rank.
 pub(super) struct GivenBlocks {
     stiffness: Option<Vec<f64>>,
     density: Option<Vec<f64>>,
@@ -35,7 +35,7 @@ pub(super) struct GivenBlocks {
 }
 
 impl GivenBlocks {
-    /// Reads the files, and refuses a property out of its bounds.
+    /// Reads the files, and refuses properties outside their bounds.
     pub(super) fn read(
         file: &CaseFile,
         lattice: &Lattice,
@@ -78,7 +78,7 @@ impl GivenBlocks {
         })
     }
 
-    /// The slider of these blocks. All ranks make it at once; it is refused if no rank has a block.
+    /// The slider of these blocks. All ranks make it at once. It is refused if no rank has a block.
     pub(super) fn slider(self, file: &CaseFile, ranks: &dyn Communicator) -> Result<Slider, CaseError> {
         let outline = self.exists.map(|exists| Outline::new(exists, ranks));
         if outline.as_ref().is_some_and(|outline| outline.n_blocks == 0) {

@@ -1,4 +1,4 @@
-//! Speeds at which a drive can load a slider: the run that each takes, and what it adds to friction.
+//! Loading speeds of a slider: the run that each one takes, and its contribution to friction.
 
 use slipfront::StopReason;
 use slipfront::lattice::K_DRIVE;
@@ -6,24 +6,25 @@ use slipfront::lattice::K_DRIVE;
 use super::runnable::Case;
 use crate::case_file::{DriveSpeed, TimeStep};
 
-/// Difference of mu_s* from one slow speed to another, in the mean of surfaces, beside what the drive adds:
-/// the swing of blocks after each slip decides where the next one begins. As much is allowed to what the
-/// drive adds to mu_s* at a speed that is slow enough, and as a share of drag in kinetic friction.
+/// Difference of mu_s* between slow speeds, averaged over surfaces, in addition to the contribution of the
+/// drive: the oscillation of blocks after each slip determines where the next slip begins. The drive may add
+/// the same amount to mu_s* at a speed that counts as slow, and drag may add the same share to kinetic
+/// friction.
 const HALF_A_POINT: f64 = 0.005;
 
-/// Steps that a run is expected to take.
+/// Expected number of steps of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExpectedSteps {
     /// Fewest and most steps.
     pub steps: [f64; 2],
-    /// V* N, the time in which a slip front crosses the slider over that of loading.
+    /// V* N, the ratio of the time in which a slip front crosses the slider to the time of loading.
     pub front_ratio: f64,
-    /// Whether a held drive stands for more steps, whose number is not known before.
+    /// Whether a held drive stops for further steps. Their number is not known in advance.
     pub stands: bool,
 }
 
 impl ExpectedSteps {
-    /// Steps for an equal path at the speed times a factor.
+    /// Steps for the same path at this multiple of the speed.
     fn at_speed(self, factor: f64) -> Self {
         Self {
             steps: self.steps.map(|steps| (steps / factor).ceil()),
@@ -33,23 +34,23 @@ impl ExpectedSteps {
     }
 }
 
-/// A speed of the drive, with the run of equal path that it takes.
+/// A speed of the drive, with its run over the same path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadingSpeed {
-    /// Speed over that of the case.
+    /// Speed relative to that of the case.
     pub over_given: f64,
-    /// Steps that are expected, see [`Case::expected_steps`].
+    /// Expected steps, see [`Case::expected_steps`].
     pub steps: ExpectedSteps,
-    /// Drag of the damping over kinetic friction without it, or over a tenth of static friction where that is
-    /// more.
+    /// Drag of the damping relative to kinetic friction without it, or to a tenth of static friction where
+    /// that is larger.
     pub drag_share: f64,
     /// Whether drag is compared with a tenth of static friction.
     pub is_share_of_static: bool,
 }
 
 impl Case {
-    /// The blocks of the slider along the drive, or along its longer side under torsion, and the symbol of
-    /// their number.
+    /// Number of blocks of the slider along the drive, or along its longer side under torsion, after the
+    /// symbol of this number.
     pub fn blocks_along_drive(&self) -> (&'static str, f64) {
         let (lattice, drive) = (&self.model.lattice, &self.model.drive);
         let [nx, ny] = [lattice.nx, lattice.ny].map(|blocks| blocks as f64);
@@ -61,19 +62,19 @@ impl Case {
         }
     }
 
-    /// V* N, the time in which a slip front crosses the slider over that of loading.
+    /// V* N, the ratio of the time in which a slip front crosses the slider to the time of loading.
     pub fn front_ratio(&self) -> f64 {
         self.model.speed_against_front() * self.blocks_along_drive().1
     }
 
-    /// Rise of mu* in a step in which a drive moves and nothing slides, k_s V* dt* for a spring of stiffness
-    /// k_s on each block.
+    /// Rise of mu* in a step in which the drive moves and nothing slides: k_s V* dt* for a spring of
+    /// stiffness k_s on each block.
     pub fn rise_per_step(&self) -> f64 {
         K_DRIVE * self.model.loading_speed() * self.time_plan.dt_star
     }
 
-    /// Steps that are expected, without those in which a held drive stands: all, or those to the expected
-    /// onset, within a tenth, where the onset ends the run.
+    /// Expected steps, without those in which a held drive stops: all steps, or those to the expected onset,
+    /// within a tenth, where the onset ends the run.
     pub fn expected_steps(&self) -> ExpectedSteps {
         let plan = &self.time_plan;
         let last = plan.last_step as f64;
@@ -91,9 +92,9 @@ impl Case {
         }
     }
 
-    /// The speed of the case and what it costs; none of a single block, or where the friction of the blocks
-    /// depends on speed or time, the speed is a program, or the step follows the speed, so that no other
-    /// speed takes its place. A drive that is held loads slowly at any speed.
+    /// The speed of the case and its costs. None for a single block, and where no other speed can replace
+    /// that of the case: where the friction of the blocks depends on speed or time, the speed is a program,
+    /// or the time step depends on the speed. Also none for a held drive, which loads slowly at any speed.
     pub fn loading_speed(&self) -> Option<LoadingSpeed> {
         let file = &self.file;
         let is_free = self.model.n_blocks() > 1
@@ -113,7 +114,7 @@ impl Case {
 }
 
 impl LoadingSpeed {
-    /// Bound of the difference of mu_s* from its limit of slow loading, in the mean of surfaces: the load k_2
+    /// Bound of the difference of mu_s* from its limit of slow loading, averaged over surfaces: the load k_2
     /// V* N that the drive adds while a front crosses the slider, and half a point. Measured on 29 sliders
     /// with and without texture, V* N from 0.005 to 3.
     pub fn static_bound(&self) -> f64 {
@@ -124,13 +125,13 @@ impl LoadingSpeed {
         K_DRIVE * self.steps.front_ratio
     }
 
-    /// Factor of the speed up to which the drive adds half a point to mu_s*, and drag no larger a share to
+    /// Factor to the speed at which the drive adds half a point to mu_s*, and drag adds no larger share to
     /// kinetic friction.
     pub fn factor_to_slow(&self) -> f64 {
         HALF_A_POINT / self.added_static().max(self.drag_share)
     }
 
-    /// The speed times a factor.
+    /// The speed multiplied by a factor.
     pub fn times(self, factor: f64) -> Self {
         Self {
             over_given: factor * self.over_given,

@@ -1,4 +1,4 @@
-//! How far off periods of stick-slip under rate and state are for their time step, told before the run.
+//! Error of stick-slip periods under rate and state due to the time step, estimated before the run.
 
 use std::f64::consts::PI;
 
@@ -7,33 +7,33 @@ use slipfront::{Friction, RateAndState};
 use super::runnable::Case;
 use slipfront_base::number_format::four_digits;
 
-/// Error of a period for which the note gives a step, relative to the period.
+/// Relative error of a period for which the note suggests a time step.
 const GOOD: f64 = 1e-3;
-/// Largest error that was measured over the one that is expected (`docs/model.md`), rounded up.
+/// Largest ratio of the measured to the expected error (`docs/model.md`), rounded up.
 const SAFETY: f64 = 3.0;
-/// Rounds after which the expected cycle stays as it is to far more digits than it is good for.
+/// Iterations after which the expected cycle has converged to far more digits than its accuracy.
 const ROUNDS: usize = 100;
 
-/// Stick-slip of a block on a spring, as far as it is known before a run.
+/// Expected stick-slip cycle of a block on a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StickSlip {
     /// Period, t*.
     period: f64,
-    /// Least force of the spring, in units of `P mu_s l^2`.
+    /// Smallest force of the spring, in units of `P mu_s l^2`.
     least: f64,
 }
 
 impl Case {
-    /// A sentence on a time step that is too long for stick-slip under rate and state: by how much periods
-    /// are off, which is about
+    /// A sentence on a time step that is too long for stick-slip under rate and state. It gives the error of
+    /// periods, which is about
     ///
     /// ```text
     /// dt (1.5 + a F_n sqrt(k)/(k V))/period
     /// ```
     ///
-    /// and the step with which they are good to 0.1 %. There is none where the drive is stiffer than
+    /// and the step that reduces the error to 0.1 %. There is none where the drive is stiffer than
     /// [critical](RateAndState::critical_stiffness), where blocks or sheets do not move as one, or where
-    /// slips are so large that the spring pushes back, since these differ from each other in any step.
+    /// slips are so large that the spring pushes back, because such slips differ from each other at any step.
     pub fn coarse_for_stick_slip(&self) -> Option<String> {
         let model = &self.model;
         let Friction::RateAndState(law) = &model.friction else {
@@ -48,7 +48,7 @@ impl Case {
         let cycle = StickSlip::expected(law, load, [k, v, model.damping]);
         let dt_star = self.time_plan.dt_star;
         let error = dt_star * (1.5 + law.a * load / (k.sqrt() * v)) / cycle.period;
-        // A number that is none has no note.
+        // No note for NaN.
         if !(error.is_finite() && SAFETY * error > GOOD && cycle.least > 0.0) {
             return None;
         }
@@ -65,8 +65,9 @@ impl Case {
 
 impl StickSlip {
     /// The cycle of a block of unit mass under the normal force `load`, on a spring of stiffness `k` that is
-    /// pulled at `v`. Its state grows with the time of a period, it slips at the speed `v_m` at which the
-    /// spring and the law are in balance with inertia, and it swings beyond that balance as damping says:
+    /// pulled at `v`. Its state grows during the period. The block slips at the speed `v_m`, at which the
+    /// spring, the law and inertia are in balance, and overshoots this balance by an amount that depends on
+    /// the damping:
     ///
     /// ```text
     /// peak = mu_ss(v) + b ln(1 + v period/D_c)                      in units of the load
@@ -98,7 +99,7 @@ impl StickSlip {
     }
 }
 
-/// A number with two digits, rounded down.
+/// A number rounded down to two digits.
 fn two_digits(number: f64) -> String {
     let unit = libm::pow(10.0, libm::floor(libm::log10(number)) - 1.0);
     four_digits(libm::floor(number / unit) * unit)

@@ -1,4 +1,4 @@
-//! Textures of a case file as shapes in blocks, laid over them.
+//! Textures of a case file as shapes in blocks, laid over the lattice.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -21,14 +21,14 @@ use crate::quantity::Length;
 pub(super) struct InBlocks {
     /// The textures, in the order of the file.
     pub(super) textures: Vec<surface::Texture>,
-    /// The area of all textures as asked for, % of the area of the blocks that exist (see
+    /// Requested area of all textures, % of the area of the blocks that exist (see
     /// [`TextureReport`](super::runnable::TextureReport)).
     pub(super) asked_percent: Option<f64>,
     /// The height maps among the textures.
     pub(super) topographies: Vec<Topography>,
 }
 
-/// The textured blocks of the rows that this rank holds, with the textures; masks and height maps are read.
+/// The textured blocks of the rows of this rank, with the textures; masks and height maps are read.
 /// `n_blocks` blocks exist.
 pub(super) fn mesh(
     file: &CaseFile,
@@ -57,7 +57,7 @@ pub(super) fn shapes_in_blocks(
     let mut asked = Some(0.0);
     let mut topographies = Vec::new();
     let mut masks = Masks::default();
-    // How many blocks of a map exist, a rank must know of all rows.
+    // A height map covers all rows, so a rank must know which blocks exist in all of them.
     let exists = match count_height_maps(file) {
         0 => None,
         _ => outline(file, lattice, inputs, &Slab::whole(lattice.nx, lattice.ny), watch)?,
@@ -115,7 +115,7 @@ pub(super) fn shapes_in_blocks(
     })
 }
 
-/// The textures whose outlines are known, in blocks: all but masks and height maps.
+/// The textures with known outlines, in blocks: all but masks and height maps.
 pub(super) fn outlines_in_blocks(
     file: &CaseFile,
     scales: &Scales,
@@ -140,11 +140,12 @@ pub(super) fn outlines_in_blocks(
     file.texture.iter().filter_map(outline).collect()
 }
 
-/// Pitch in blocks of the innermost array of a texture, and whether it is the only one and fills the slider.
+/// Pitch in blocks of the innermost array of a texture, and whether it is the only array and fills the
+/// slider.
 pub(super) fn pitch(texture: &Texture, scales: &Scales, lattice: &Lattice) -> Option<(f64, bool)> {
     let arrays = arrays(&texture.pattern, scales, lattice).ok()?;
     let array = arrays.last()?;
-    // Copies of a groove lie in one direction.
+    // Copies of a groove are repeated along one axis only.
     let is_groove = matches!(texture.shape, Shape::Groove(_));
     let repeated = (0..2).filter(|&axis| array.count[axis] > 1);
     let pitch = repeated
@@ -158,15 +159,15 @@ pub(super) fn pitch(texture: &Texture, scales: &Scales, lattice: &Lattice) -> Op
     Some((pitch, is_regular))
 }
 
-/// Pitch in blocks of textures that are one array which fills the slider.
+/// Pitch in blocks of a texture that is a single array and fills the slider; none for other textures.
 pub(super) fn regular_pitch(textures: &[Texture], scales: &Scales, lattice: &Lattice) -> Option<f64> {
     let [texture] = textures else { return None };
     let (pitch, is_regular) = pitch(texture, scales, lattice)?;
     is_regular.then_some(pitch)
 }
 
-/// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one
-/// over a place of it. An error consists of the key, within the texture, and the sentence.
+/// The arrays of a pattern in blocks, the outermost first. The outermost covers the slider, and the next one
+/// a place of it. An error consists of the key, within the texture, and the sentence.
 pub(super) fn arrays(
     pattern: &Pattern,
     scales: &Scales,
@@ -175,7 +176,7 @@ pub(super) fn arrays(
     let mut room = [lattice.nx as f64, lattice.ny as f64];
     let mut arrays: Vec<surface::Array> = Vec::new();
     for (before, array) in pattern.arrays().filter(|(_, array)| array.is_array()) {
-        // Rows of a hexagonal lattice over its pitch.
+        // Ratio of the row spacing of a hexagonal lattice to its pitch.
         let height = match array.lattice {
             Arrangement::Hexagonal => 0.75_f64.sqrt(),
             Arrangement::Square | Arrangement::Staggered => 1.0,
@@ -198,7 +199,7 @@ pub(super) fn arrays(
         };
         let count = match array.array {
             Count::Of(count) => count.map(|count| count as usize),
-            // What is written in decimals is not lost to rounding.
+            // The margin prevents that rounding of a decimal number loses a copy.
             Count::Auto => [0, 1].map(|axis| ((room[axis] / spacing[axis] * (1.0 + 1e-9)) as usize).max(1)),
         };
         let before_it = |axis: usize| arrays.iter().map(|array| array.count[axis]).product::<usize>();
@@ -227,7 +228,7 @@ pub(super) fn arrays(
     Ok(arrays)
 }
 
-/// Size in blocks of a mask or height map, of which there is one in every place of a pattern.
+/// Size in blocks of a mask or height map: one place of the pattern, or the slider.
 fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], String> {
     let slider = [lattice.nx, lattice.ny];
     let Some(array) = arrays.last() else {
@@ -243,7 +244,7 @@ fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], Stri
     Ok(size)
 }
 
-/// Number of height maps of a case. Their heights are in memory one after the other.
+/// Number of height maps of a case. Their heights are in memory one at a time.
 fn count_height_maps(file: &CaseFile) -> usize {
     let shapes = file.texture.iter().map(|texture| &texture.shape);
     shapes
@@ -251,7 +252,8 @@ fn count_height_maps(file: &CaseFile) -> usize {
         .count()
 }
 
-/// Identity of a mask of a case: file, bits of the threshold, and blocks. Several textures may share one.
+/// Identity of a mask of a case: file, bits of the threshold, and blocks. Several textures may share one
+/// mask.
 type MaskKey<'a> = (&'a str, u64, [usize; 2]);
 
 /// The masks that have been read.
@@ -259,7 +261,7 @@ type MaskKey<'a> = (&'a str, u64, [usize; 2]);
 struct Masks<'a>(HashMap<MaskKey<'a>, Tile>);
 
 impl<'a> Masks<'a> {
-    /// The mask of a texture, of this many blocks.
+    /// The mask of a texture, with this size in blocks.
     fn read(
         &mut self,
         file: &CaseFile,
@@ -275,7 +277,7 @@ impl<'a> Masks<'a> {
         };
         let key = format!("texture.{index}.file");
         let [nx, ny] = size;
-        // Of a mask that covers the slider, a rank needs its own rows.
+        // If a mask covers the slider, a rank needs only its own rows.
         let slab = if (nx, ny) == (inputs.slab.nx, inputs.slab.ny) {
             inputs.slab.clone()
         } else {
@@ -291,7 +293,7 @@ impl<'a> Masks<'a> {
     }
 }
 
-/// How far a texture may reach, in slider lengths. A texture farther away is a typing error, and on a
+/// Largest extent of a texture, in slider lengths. A texture farther away is a typing error, and on a
 /// periodic axis its position would be lost to rounding.
 const REACH: f64 = 100.0;
 

@@ -11,26 +11,26 @@ use crate::case_file::{
 };
 use slipfront_base::number_format::four_digits;
 
-/// Duration and time step of a run, its end and the window of the kinetic friction.
+/// Duration and time step of a run, its end, and the averaging window of kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimePlan {
     /// The time step dt*.
     pub dt_star: f64,
-    /// Limit below which the time step must stay.
+    /// Stability limit of the time step.
     pub step_limit: f64,
     /// Number of steps in which the drive moves: all, unless the drive is held.
     pub last_step: u64,
     /// The condition that ends the run.
     pub stop: Stop,
-    /// Start of the window that kinetic friction is averaged over, on the time of the drive.
+    /// Start of the averaging window of kinetic friction, in the time of the drive.
     pub kinetic: KineticStart,
-    /// Whether the drive is held, and if so up to which of its steps the largest mu* counts as static
+    /// Whether the drive is held, and if so, the last of its steps in which the largest mu* counts as static
     /// friction.
     pub loading: Loading,
 }
 
-/// Load of a block in contact over its load if every block touched, a factor by which the onset comes later;
-/// none unless every block has a drive spring, and can bear its load by that alone.
+/// Ratio of the load of a block in contact to its load if every block touched. The onset is later by this
+/// factor. None unless every block has a drive spring that can bear its load.
 pub(super) fn load_factor(file: &CaseFile, model: &Model) -> Option<f64> {
     match file.drive.attached {
         Attached::At(AttachedEdge::All) => Some(model.surface.load_factor()),
@@ -38,15 +38,15 @@ pub(super) fn load_factor(file: &CaseFile, model: &Model) -> Option<f64> {
     }
 }
 
-/// The step of "auto", where it is stable.
+/// Step of "auto", if it is stable.
 const AUTO_STEP: f64 = 0.1;
 
-/// Longest run, in steps, for which the kernel keeps the numbers of steps in 32 bits.
+/// Largest number of steps of a run: the kernel stores step numbers in 32 bits.
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
-    /// The time plan of a case, refused when the step is unstable, the run too long, or its kinetic window or
-    /// a snapshot after its end. All ranks must call this together.
+    /// The time plan of a case; an error when the step is unstable, the run too long, or its kinetic window
+    /// or a snapshot after its end. All ranks must call this together.
     pub(super) fn of(
         file: &CaseFile,
         scales: &Scales,
@@ -76,7 +76,7 @@ impl TimePlan {
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
-        // A duration that is a whole number of steps up to rounding must not gain one.
+        // A duration that is a whole number of steps must not gain a step by rounding.
         let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
         if steps > MAX_STEPS {
             let sentence = format!(
@@ -116,7 +116,7 @@ impl TimePlan {
         Ok(plan)
     }
 
-    /// Refuses a kinetic window and snapshots after the end of the run.
+    /// Refuses a kinetic window or snapshots after the end of the run.
     fn check_end(&self, file: &CaseFile) -> Result<(), CaseError> {
         let end_star = self.end_star();
         if let AutoOr::Number(from) = file.time.kinetic_from_star
@@ -143,11 +143,10 @@ impl TimePlan {
 }
 
 /// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some
-/// blocks touch and bear f times the load, the onset comes before their own drive springs bear it all, at
-/// f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic window begins,
-/// which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly,
-/// adhesion, and a dead load against the drive delay the onset; under a program of speeds it is counted from
-/// the last of them.
+/// blocks touch and bear f times the load, the onset comes before their own drive springs bear the whole load
+/// at f/(k_s V*). The 2.5/V* before the kinetic window must follow this time, which takes longer than 8/V*
+/// where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead load
+/// against the drive delay the onset. Under a program of speeds, the duration counts from the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -174,8 +173,8 @@ fn delay(file: &CaseFile, scales: &Scales) -> f64 {
     1.0 + file.friction.adhesion.si() / scales.stress()
 }
 
-/// Time t* of a held drive up to which the largest mu* counts as static friction: twice that of the onset
-/// (Eq. 12), or the time at which the drive springs of the blocks that touch bear the whole load, if that is
+/// Time t* of a held drive up to which the largest mu* counts as static friction: twice the time of the onset
+/// (Eq. 12), or the time at which the drive springs of the blocks in contact bear the whole load, if that is
 /// later.
 pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let path = f64::max(
@@ -185,8 +184,8 @@ pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) ->
     path / model.loading_speed() * delay(file, scales) + time_against_load(model)
 }
 
-/// The window of kinetic friction under a drive that is held, and its loading: the largest mu* before the
-/// window, or of the whole run, counts as static friction. A run that ends first has no window.
+/// The averaging window of kinetic friction under a held drive, and its loading. The largest mu* before the
+/// window, or of the whole run, counts as static friction. A run that ends earlier has no window.
 fn held(from_star: f64, dt_star: f64, last_step: u64) -> (KineticStart, Loading) {
     let first = (from_star / dt_star).ceil().max(1.0) as u64;
     let kinetic = KineticStart::At(first.min(last_step + 1) as f64 * dt_star);

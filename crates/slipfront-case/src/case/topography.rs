@@ -1,4 +1,4 @@
-//! Measured topography: the blocks of a height map that touch.
+//! Measured topography: the blocks of a height map that are in contact.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Level, Missing, 
 use crate::quantity::Length;
 use crate::table::TableOptions;
 
-/// A height map as it was read and laid over blocks.
+/// A height map, read and laid over blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topography {
     /// Position of its texture in the case file, from 0.
@@ -23,20 +23,20 @@ pub struct Topography {
     pub points: [usize; 2],
     /// True size of the map along x and along y, m.
     pub size: [f64; 2],
-    /// Blocks over which the map is laid, along x and along y.
+    /// Blocks that the map covers, along x and along y.
     pub blocks: [usize; 2],
     /// Roughness of all points.
     pub roughness: Roughness,
-    /// The least height of a block that touches, m.
+    /// Smallest height of a block in contact, m.
     pub contact_height: f64,
-    /// Sentences on what makes the map doubtful.
+    /// Sentences on doubtful features of the map.
     pub notes: Vec<String>,
 }
 
-/// The blocks over which a height map is laid.
+/// Blocks that a height map covers.
 pub(super) struct Ground<'a> {
     pub(super) lattice: &'a Lattice,
-    /// Marks of the blocks of the whole lattice that exist; all exist if there is no outline.
+    /// Marks of the existing blocks of the whole lattice; none without an outline, because then all exist.
     pub(super) exists: Option<&'a [bool]>,
     /// Number of blocks that exist.
     pub(super) n_blocks: usize,
@@ -47,7 +47,7 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Reads the height map of a texture: the blocks that do not touch, and their area as asked for, % of the
+    /// Reads the height map of a texture: the blocks that do not touch, and their requested area, % of the
     /// area of the blocks that exist.
     pub(super) fn read(
         &self,
@@ -98,7 +98,7 @@ impl Ground<'_> {
         if touching.take(2).count() == 1 && standing.len() > 1 {
             notes.push("only its highest block is in contact and carries the whole load".to_owned());
         }
-        // Of a map that covers the slider, a rank needs its own rows.
+        // If a map covers the slider, a rank needs only its own rows.
         let slab = if self.size == [inputs.slab.nx, inputs.slab.ny] {
             inputs.slab.clone()
         } else {
@@ -124,13 +124,13 @@ impl Ground<'_> {
         Ok((tile, topography, asked))
     }
 
-    /// The heights of the blocks that exist, within an outline for every copy.
+    /// Heights of the blocks that exist; with an outline, for every copy.
     fn standing(&self, heights: &[f64]) -> Vec<f64> {
         let Some(exists) = self.exists else {
             return heights.to_vec();
         };
         let Lattice { nx, ny, edges } = *self.lattice;
-        // A coordinate in the lattice, on a periodic axis counted on beyond its edges.
+        // A lattice coordinate. On a periodic axis, coordinates continue beyond the edges.
         let within = |at: isize, axis: usize| -> Option<usize> {
             let size = [nx, ny][axis] as isize;
             match edges[axis] {
@@ -156,8 +156,8 @@ impl Ground<'_> {
     }
 }
 
-/// The least height, m, at which some blocks touch, at least one of them; none if there is no block. A share
-/// is turned into the height of a block, so that all blocks of equal height touch or none does.
+/// Smallest height, m, of the blocks in contact; none if there is no block. At least one block is in contact.
+/// A share is converted to the height of a block, so that blocks of equal height all touch or all do not.
 fn contact_height(heights: &mut [f64], map: &HeightMap) -> Option<f64> {
     let highest = heights.iter().copied().reduce(f64::max)?;
     Some(match &map.bearing {

@@ -1,4 +1,4 @@
-//! Warnings before a case is run.
+//! Warnings about a case before it runs.
 
 use std::path::Path;
 
@@ -13,40 +13,40 @@ use crate::case_file::{
 };
 use slipfront_base::number_format::{are, count, four_digits, with_si_prefix};
 
-/// Blocks that a pattern may leave free at periodic edges without a warning.
+/// Blocks by which a pattern may fall short of a periodic edge without a warning.
 const LARGE_SEAM: f64 = 0.5;
-/// Difference between the size of a height map and the size of the blocks below it, relative to the latter,
-/// above which there is a warning.
+/// Difference between the size of a height map and the size of the blocks that it covers, relative to the
+/// latter, above which there is a warning.
 const LARGE_SCALE: f64 = 0.01;
-/// Difference between the texture as asked and as meshed, relative to the asked one, above which there is a
-/// warning.
+/// Difference between the requested and the meshed texture, relative to the requested one, above which there
+/// is a warning.
 const LARGE_MISFIT: f64 = 0.25;
-/// A coverage, in percent, below which a share of 1 may have been meant.
+/// Coverage, in percent, below which the user may have meant a fraction of 1.
 const SMALL_COVERAGE: f64 = 1.0;
 /// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
 const LARGE_MISMATCH: f64 = 0.1;
-/// Standard deviation of the mean of a surface from seed to seed, relative to that of the coefficients, above
+/// Standard deviation of the mean of a surface between seeds, relative to that of the coefficients, above
 /// which there is a warning.
 const LARGE_COMMON_SHARE: f64 = 0.5;
 /// Strain of the load above which geometric nonlinearity of the springs shows in the third digit.
 const LARGE_EPSILON: f64 = 1e-2;
 /// Speed above which loading is faster than the slip front.
 const LARGE_V_STAR: f64 = 0.2;
-/// Drag of the damping over kinetic friction above which there is a warning: three times the standard
-/// deviation of mu_k* from surface to surface, 0.3 % on 25 x 25 blocks.
+/// Ratio of the drag of the damping to kinetic friction above which there is a warning: three times the
+/// standard deviation of mu_k* between surfaces, 0.3 % on 25 x 25 blocks.
 const LARGE_DRAG: f64 = 0.01;
-/// Drag over the static strength of the blocks below which there is no warning, however little kinetic
-/// friction there is.
+/// Ratio of the drag to the static strength of the blocks below which there is no warning, however small
+/// kinetic friction is.
 const SMALL_DRAG: f64 = 0.001;
-/// Rise of mu* in a step of a held drive above which there is a warning: twice that of V* = 0.03 in steps of
-/// 0.1.
+/// Rise of mu* in a step of a held drive above which there is a warning: twice the rise at V* = 0.03 in steps
+/// of 0.1.
 const LARGE_INCREMENT: f64 = 2.25e-3;
-/// Fewest blocks for which the paper calls edge effects small.
+/// Least number of blocks for which the paper calls edge effects small.
 const FEW_BLOCKS: usize = 625;
 
 impl Case {
-    /// Warnings about a case outside the range in which the model is valid, or that differs from what was
-    /// asked.
+    /// Warnings about a case outside the range in which the model is valid, or different from what was
+    /// requested.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.texture_warnings();
         warnings.extend(self.friction_warnings());
@@ -67,7 +67,7 @@ impl Case {
         let against_front = self.model.speed_against_front();
         let is_held = self.model.drive.is_held();
         warn(against_front > LARGE_V_STAR && !is_held && !is_rigid, &|| {
-            // But for rounding.
+            // Equal up to rounding.
             if (against_front / v_star - 1.0).abs() < 1e-9 {
                 return format!(
                     "V* = {} is above {LARGE_V_STAR}: the slider slips as a whole before a front can cross it",
@@ -108,14 +108,14 @@ impl Case {
     }
 
     /// Whether steady sliding takes less force than the static strength of the blocks. If not, friction loses
-    /// nothing when they slip, and no fall of mu* is a transition. A law without thresholds loses nothing
-    /// that could be compared.
+    /// nothing when they slip, and no drop of mu* is a transition. A law without thresholds has no static
+    /// strength for this comparison.
     pub fn can_have_transition(&self) -> bool {
         !self.model.friction.has_thresholds()
             || self.expected.steady_level < self.model.surface.mean_static_force()
     }
 
-    /// Warnings where sliding takes as much force as its start, and where damping has a part in the measured
+    /// Warnings if sliding takes as much force as its start, and if damping contributes to the measured
     /// kinetic friction.
     fn level_warnings(&self) -> Vec<String> {
         let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
@@ -124,7 +124,7 @@ impl Case {
         let mut warnings = Vec::new();
         let limit = (LARGE_DRAG * kinetic).max(SMALL_DRAG * held);
         if drag > limit {
-            // The drag is in proportion to the speed.
+            // The drag is proportional to the speed.
             warnings.push(format!(
                 "damping drag at V* = {} adds {} to the kinetic friction of {}, and is included in mu_k*; up to V* = {} it is \
                  less than the scatter between surfaces",
@@ -219,8 +219,8 @@ impl Case {
         warnings
     }
 
-    /// A warning where a height map differs in size from the blocks below it, or has fewer points than they
-    /// are.
+    /// A warning if a height map differs in size from the blocks that it covers, or has fewer points than
+    /// there are blocks.
     fn other_scale(&self, topography: &Topography) -> Option<String> {
         let Topography {
             file,
@@ -236,7 +236,7 @@ impl Case {
             let arrays = self.file.texture[topography.texture].pattern.arrays();
             let innermost = arrays.filter(|(_, array)| array.is_array()).last();
             let [x, y] = size.map(|length| format!("{:?}", with_si_prefix(length, "m")));
-            // Blocks do not change a place whose size is given.
+            // If the size of a place is given, it does not depend on the blocks.
             let own = match innermost.and_then(|(before, array)| Some((before, array.pitch?))) {
                 Some((before, Pitch::Equal(_))) => format!("`{before}pitch` = {x}"),
                 Some((before, Pitch::Each(_))) => format!("`{before}pitch` = [{x}, {y}]"),
@@ -261,15 +261,14 @@ impl Case {
         })
     }
 
-    /// A warning where a pattern that fills the slider does not go on beyond a periodic edge as it does
-    /// within.
+    /// A warning if a pattern that fills the slider is not continuous across a periodic edge.
     fn seam(&self, pattern: &Pattern, number: usize) -> Option<String> {
         let lattice = &self.model.lattice;
         let arrays = arrays(pattern, &self.scales, lattice).ok()?;
         let (array, (_, keys)) = arrays
             .first()
             .zip(pattern.arrays().find(|(_, keys)| keys.is_array()))?;
-        // Copies that are counted at a distance of their own need not fill it.
+        // A given number of copies at a given pitch need not fill the slider.
         if keys.pitch.is_some() && keys.array != Count::Auto {
             return None;
         }
@@ -292,8 +291,7 @@ impl Case {
         })
     }
 
-    /// A warning where most of the spread is between surfaces of different seeds, and little of it within
-    /// one.
+    /// A warning if most of the spread is between surfaces of different seeds, and little within one surface.
     fn correlation_warning(&self) -> Option<String> {
         let share = libm::sqrt(self.correlated_field()?.variance_of_slider());
         let is_random = self.groups.sigma_static_star > 0.0 || self.groups.sigma_kinetic_star > 0.0;
@@ -366,7 +364,7 @@ impl Case {
     }
 }
 
-/// Reason for which a texture covers no block, with the keys to check.
+/// Reason why a texture covers no block, with the keys to check.
 fn why_empty(texture: &Texture) -> &'static str {
     if texture.pattern.invert {
         "the inside of its shapes, which `invert` keeps in contact, covers all blocks"

@@ -1,4 +1,4 @@
-//! The static friction coefficient of a slider without texture as a whole, which is below that of its blocks.
+//! Static friction coefficient of a whole slider without texture, which is below that of its blocks.
 
 use slipfront::{FrictionLaw, Slider};
 
@@ -6,14 +6,14 @@ use super::groups::Groups;
 use super::runnable::Case;
 use crate::case_file::{Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Motion};
 
-/// An estimate of the static friction of a heterogeneous slider as a whole.
+/// Estimate of the static friction of a whole heterogeneous slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WholeSlider {
-    /// mu_s of the slider as a whole.
+    /// mu_s of the whole slider.
     pub mu_static: f64,
-    /// Half the width of the range about the estimate in which a run is expected.
+    /// Half the width of the range around the estimate in which the result of a run is expected.
     pub half_width: f64,
-    /// Value of `friction.mu_static` of the blocks for which the slider as a whole would have the given
+    /// Value of `friction.mu_static` of the blocks for which the whole slider would have the given
     /// coefficient, at the same V*.
     pub for_given: f64,
 }
@@ -53,20 +53,21 @@ const MEASURED: [[[f64; 5]; 4]; 4] = [
     ],
 ];
 
-/// How far a run may be from the estimate, in units of `mu_static`: between the entries of the table the mean
-/// of surfaces is off by up to 0.020, and a single surface scatters about the mean by up to 0.015.
+/// Largest expected difference of a run from the estimate, in units of `mu_static`: between the entries of
+/// the table, the mean of surfaces differs by up to 0.020, and a single surface scatters about the mean by up
+/// to 0.015.
 const ACCURACY: f64 = 0.03;
 
-/// Smallest and largest number of blocks along an axis for which the table was tried.
+/// Smallest and largest number of blocks along an axis for which the table was tested.
 const BLOCKS: [usize; 2] = [25, 200];
-/// Largest spread of kinetic coefficients and largest damping for which the table was tried.
+/// Largest spread of kinetic coefficients and largest damping for which the table was tested.
 const MAX_SIGMA_KINETIC: f64 = 0.1;
 const MAX_OMEGA_STAR: f64 = 0.5;
 
 impl Case {
-    /// Estimate of the static friction of the slider as a whole. None where there is no ground for an
-    /// estimate: with a texture, a slider that is heterogeneous by design, another law of friction or drive,
-    /// or groups outside of the measured ones.
+    /// Estimate of the static friction of the whole slider. None where there is no basis for an estimate:
+    /// with a texture, a slider that is heterogeneous by design, another law of friction or drive, or groups
+    /// outside the measured range.
     pub fn whole_slider(&self) -> Option<WholeSlider> {
         let share = self.has_measured_kind().then(|| interpolated(&self.groups))??;
         let mu_static = self.scales.mu_static_mean;
@@ -77,7 +78,7 @@ impl Case {
         })
     }
 
-    /// Whether the case is of the measured kind, apart from its dimensionless groups.
+    /// Whether the case is like the measured ones, apart from its dimensionless groups.
     fn has_measured_kind(&self) -> bool {
         let (file, model) = (&self.file, &self.model);
         let (drive, load, friction) = (&file.drive, &file.load, &file.friction);
@@ -122,8 +123,8 @@ fn interpolated(groups: &Groups) -> Option<f64> {
     Some(between([along_v(table), along_v(table + 1)], at_r))
 }
 
-/// The interval between neighbours of a rising grid in which a number lies, and its position there; none
-/// outside of the grid.
+/// Interval between neighbours of a rising grid that contains a number, and the relative position of the
+/// number in it; none outside the grid.
 fn place(grid: &[f64], number: f64) -> Option<(usize, f64)> {
     let within = |pair: &[f64]| (pair[0]..=pair[1]).contains(&number);
     let first = grid.windows(2).position(within)?;
@@ -152,7 +153,7 @@ mod tests {
             "friction.sigma_static_star=0.2",
         ];
         assert!((share(&last).unwrap() - 1.010).abs() < 1e-12);
-        // Half-way in all three, as the mean of eight entries.
+        // Half-way in all three: the mean of eight entries.
         let [r, v, sigma] = [0.625, libm::sqrt(0.03 * 0.1), 0.075];
         let changes = [
             format!("friction.r_star={r}"),

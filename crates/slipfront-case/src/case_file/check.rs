@@ -1,4 +1,4 @@
-//! Checks of values against the bounds of the table of keys, as far as the file alone can tell.
+//! Checks of values against the bounds of the table of keys, as far as they depend on the file alone.
 
 use std::ops::Bound::{Excluded, Included};
 use std::ops::RangeBounds;
@@ -11,7 +11,7 @@ use super::values::AutoOr;
 use crate::quantity::{self, Quantity};
 use slipfront_base::number_format::exact;
 
-/// The checks of one table. Keys are named as within that table.
+/// Checks of one table, with the names of keys within that table.
 pub(super) struct Check<'a> {
     source: &'a Source,
     /// The keys of the table or shape of texture.
@@ -20,7 +20,7 @@ pub(super) struct Check<'a> {
 }
 
 impl<'a> Check<'a> {
-    /// The checks of a table or shape of texture that has these keys and stands at `path` of the file.
+    /// Checks of the table or shape of texture at `path` of the file, which has these keys.
     pub(super) fn new(source: &'a Source, keys: &'static [Key], path: &'a str) -> Self {
         Self { source, keys, path }
     }
@@ -30,7 +30,7 @@ impl<'a> Check<'a> {
         format!("{}.{key}", self.path)
     }
 
-    /// An error at the value of a key; the sentence gets the key as the user writes it.
+    /// An error at the value of a key; `sentence` gets the key as the user writes it.
     pub(super) fn refuse(&self, key: &str, sentence: impl FnOnce(&str) -> String) -> Result<(), CaseError> {
         let path = self.path_of(key);
         Err(self.source.error(&path, sentence(&path)))
@@ -41,7 +41,7 @@ impl<'a> Check<'a> {
         self.source.has(&self.path_of(key))
     }
 
-    /// Refuses a value that its key does not take.
+    /// Refuses a value that its key does not accept.
     pub(super) fn value(&self, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
         match self.keys.iter().find(|found| found.name == key) {
             Some(found) => self.value_of(&found.kind, key, value),
@@ -54,7 +54,7 @@ impl<'a> Check<'a> {
         self.hold(key, value.complaint(kind))
     }
 
-    /// Refuses a number out of bounds that depend on other values, or NaN.
+    /// Refuses a number outside bounds that depend on other values, or NaN.
     pub(super) fn number_within(
         &self,
         key: &str,
@@ -73,10 +73,10 @@ impl<'a> Check<'a> {
     }
 }
 
-/// A value that is checked against the kind of its key.
+/// Values that are checked against the kind of their key.
 pub(super) trait Checked {
-    /// A complaint about a value that is not of this kind: the value, and the values allowed. There is none
-    /// about values whose type says all.
+    /// A complaint about a value that is not of this kind: the value, and the values allowed. None where the
+    /// type of the value suffices.
     fn complaint(&self, _kind: &KeyKind) -> Option<String> {
         None
     }
@@ -143,7 +143,7 @@ impl Checked for String {
     fn complaint(&self, kind: &KeyKind) -> Option<String> {
         let KeyKind::File(formats) = kind else { return None };
         if self.contains(char::is_control) {
-            // The backslashes of C:\new\table.csv and what follows them are such a sign.
+            // The backslashes in C:\new\table.csv form such characters.
             return Some(format!(
                 "{self:?}: it contains control characters; write a Windows path in single quotes, such as 'C:\\new\\table.csv', or /"
             ));
@@ -165,7 +165,7 @@ fn is_within(bounds: Bounds, value: f64) -> bool {
     bounds.contains(&value) && value.is_finite()
 }
 
-/// A complaint about a number out of its bounds, or NaN.
+/// A complaint about a number outside its bounds, or NaN.
 fn out_of(bounds: Bounds, value: f64, remark: &str) -> Option<String> {
     let sentence = || format!("{}: it must be {}; {remark}", exact(value), in_words(bounds));
     (!is_within(bounds, value)).then(sentence)

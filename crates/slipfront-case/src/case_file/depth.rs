@@ -1,9 +1,9 @@
-//! Limits the depth of a text and of a key before they are parsed: tables within tables are read, copied,
-//! written and freed by functions that call themselves, each level of which takes some of the stack.
+//! Limits the depth of a text and of a key before they are parsed. Recursive functions read, copy, write and
+//! free nested tables, and each level takes stack space.
 //!
-//! `toml` itself refuses keys of 80 parts and brackets 80 deep, but not both together, which are tables 6400
-//! deep. The parser also counts brackets that close nothing, as in `{ [], a = { [], a = `, so that a text of
-//! such mistakes takes it as deep as it is long.
+//! `toml` itself refuses keys of 80 parts and brackets 80 deep, but not both together, which give tables 6400
+//! deep. The parser also counts brackets that close nothing, as in `{ [], a = { [], a = `, so that with such
+//! mistakes its depth grows with the length of the text.
 
 use toml_parser::Source as Tokens;
 use toml_parser::lexer::TokenKind;
@@ -14,17 +14,17 @@ use super::source::Source;
 /// Deepest nesting of a text: open brackets, and the parts of the keys in front of them. No case needs ten.
 const MAX_DEPTH: usize = 64;
 
-/// Most parts of a key by which a value is set: `texture.0.center.1` is one number of a pair.
+/// Most parts of a key in an override: `texture.0.center.1` is one number of a pair.
 const MAX_PARTS: usize = 4;
 
-/// The parts of a key by which a value is set, such as `texture.0.coverage`.
+/// Parts of a key in an override, such as `texture.0.coverage`.
 ///
 /// # Errors
-/// A sentence, if the parts are too many or no names.
+/// A sentence, if there are too many parts or a part is not a name.
 pub fn parts_of(key: &str) -> Result<Vec<&str>, &'static str> {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
     let is_name = |part: &&str| !part.is_empty() && part.chars().all(is_bare);
-    // One more than there may be, so that a long key is not split to its end.
+    // Takes one more than allowed, so that a long key is not split to its end.
     let parts: Vec<&str> = key.split('.').take(MAX_PARTS + 1).map(str::trim).collect();
     if parts.len() > MAX_PARTS || !parts.iter().all(is_name) {
         return Err(
@@ -34,8 +34,7 @@ pub fn parts_of(key: &str) -> Result<Vec<&str>, &'static str> {
     Ok(parts)
 }
 
-/// Returns the text, which begins at `offset` of the source, if it can be parsed as TOML without going too
-/// deep.
+/// Returns the text, which begins at `offset` of the source, if its nesting is not too deep for the parser.
 ///
 /// # Errors
 /// [`CaseError::Invalid`] at the bracket or dot that is nested too deep.
@@ -51,7 +50,7 @@ pub fn limit_nesting<'t>(source: &Source, offset: usize, text: &'t str) -> Resul
     }
 }
 
-/// A bracket that is open, and the dots since the last key or value began within it.
+/// An open bracket, and the dots since the last key or value within it began.
 struct OpenBracket {
     bracket: Option<TokenKind>,
     dots: usize,
@@ -60,7 +59,7 @@ struct OpenBracket {
 /// Position of the first bracket or dot that leads too deep.
 fn too_deep(text: &str) -> Option<usize> {
     let level = |bracket| OpenBracket { bracket, dots: 0 };
-    // The last one is never closed: brackets that close nothing find no other of their kind.
+    // The outermost level is never closed: unmatched brackets find no opening bracket of their kind.
     let mut open = vec![level(None)];
     let (mut depth, mut joined) = (0, false);
     for token in Tokens::new(text).lex() {
@@ -86,7 +85,7 @@ fn too_deep(text: &str) -> Option<usize> {
                 }
             }
             TokenKind::Whitespace | TokenKind::Comment | TokenKind::Equals | TokenKind::Eof => continue,
-            // Names that a dot joins with those before are of the same key.
+            // Names after a dot belong to the same key.
             _ if joined => {}
             _ => depth -= std::mem::take(&mut innermost.dots),
         }
@@ -114,7 +113,7 @@ mod tests {
             format!("# {}\na = 1", "{".repeat(1000)),
             format!("[[a]]\nb = [{}]", "{ c.d = [] }, ".repeat(1000)),
             format!("a = [{}]", "1.5, [2.5], ".repeat(1000)),
-            // Without commas it is no TOML, but not deep.
+            // Without commas this is not TOML, but it is not deep.
             format!("a = [{}]", "1.5 2.5\n".repeat(1000)),
             "a = '''[[[\n[[['''\n".repeat(100),
             format!("a = {}1{}", "[".repeat(MAX_DEPTH), "]".repeat(MAX_DEPTH)),
@@ -142,8 +141,8 @@ mod tests {
         }
     }
 
-    /// The parser's own limits, which hold for keys and for brackets alone, are not reached: the sentence is
-    /// always one of this crate.
+    /// The parser's own limits, on keys and on brackets alone, are never reached: the sentence is always one
+    /// of this crate.
     #[test]
     fn what_is_let_through_is_parsed() {
         let nested = |levels: usize, key: &str| {

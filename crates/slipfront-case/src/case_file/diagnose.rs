@@ -11,7 +11,7 @@ use super::source::Source;
 use super::synonyms::advice_on;
 use slipfront_base::text::truncated;
 
-/// Messages of the parser about common slips, by their beginnings, and the advice for a user on each.
+/// Messages of the parser about common mistakes, by their beginnings, and the advice to the user on each.
 const GRAMMAR: [(&str, &str); 7] = [
     (
         "string values must be quoted",
@@ -34,7 +34,7 @@ const GRAMMAR: [(&str, &str); 7] = [
     ("invalid key-value pair", "a line is `key = value` or `[table]`"),
 ];
 
-/// An error of TOML's grammar in text that begins at `offset` of the source.
+/// An error of TOML syntax in text that begins at `offset` of the source.
 pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> CaseError {
     let span = error.span().unwrap_or(0..0);
     let span = span.start + offset..span.end + offset;
@@ -54,17 +54,17 @@ pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> 
     source.error_at(span, sentence)
 }
 
-/// Quotation marks of printed text, which word processors put in the place of straight ones.
+/// Typographic quotation marks, which word processors put in place of straight ones.
 const PRINTED_QUOTES: [char; 8] = [
     '\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}',
 ];
 
-/// Advice on the words at a span that is not TOML, where they show what was meant: the message of the parser
-/// is about what it takes them for.
+/// Advice on words at a span that is not TOML, if they show what the user meant: the message of the parser
+/// describes only what it takes them for.
 fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Option<String> {
     let (before, after) = source.line_around(span.start);
     let marked = source.slice(span.clone());
-    // A text that seems not to be closed is marked behind its end.
+    // For a string that seems unclosed, the span is after its end.
     let in_text = if message.starts_with("invalid basic string") {
         before
     } else {
@@ -101,7 +101,7 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
     let whole = before.rsplit(|c: char| c.is_whitespace() || c == '=').next()?;
     let digits = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
     let decimals = &rest[..digits];
-    // Only digits stand where a comma divides a number.
+    // In a number, only digits surround a comma.
     (!decimals.is_empty() && whole.parse::<i64>().is_ok()).then(|| {
         let (point, list) = (format!("{whole}.{decimals}"), format!("[{whole}, {decimals}]"));
         format!(
@@ -112,7 +112,7 @@ fn advice_on_words(source: &Source, span: &Range<usize>, message: &str) -> Optio
     })
 }
 
-/// An error of serde at `span`, while the table under `header` is read, whose keys are `known`; they are the
+/// An error of serde at `span`, while reading the table under `header` with the keys `known`. They are the
 /// keys of `section` if the table is one of a case.
 pub(super) fn value_error(
     source: &Source,
@@ -124,7 +124,7 @@ pub(super) fn value_error(
 ) -> CaseError {
     let message = one_line(message);
     if let Some((key, expected)) = name_and_expected(&message, "unknown field `") {
-        // A table within the one under `header` has keys of its own.
+        // A table within the one under `header` has its own keys.
         let inner = source.key_at(&span).filter(|_| expected != known);
         let sentence = match inner {
             Some(inner) => keys::unknown(&truncated(key), &format!("`{inner}`"), &expected),
@@ -144,7 +144,7 @@ pub(super) fn value_error(
     } else if let Some(expected) = expected_by(&message) {
         let whole = source.written(subject);
         let takes = key.and_then(|key| takes(key, &message));
-        // An element of a list that has a form of its own, such as a corner of a polygon, is named alone.
+        // An element of a list with its own form, such as a corner of a polygon, is quoted alone.
         let (verb, written) = match source.slice(span.clone()) {
             element if takes.is_none() && element != whole => ("holds", element),
             _ => ("is", whole),
@@ -170,7 +170,8 @@ fn name_and_expected<'m>(message: &'m str, start: &str) -> Option<(&'m str, Vec<
     Some((name, expected.split('`').skip(1).step_by(2).collect()))
 }
 
-/// Advice on a word that is none of the `known` words if it is about the table of its key, the `subject`.
+/// Advice on a word that is not one of the `known` words. A synonym is suggested if it is in the table of the
+/// `subject`, the key of the word.
 fn unknown_word(word: &str, known: &[&str], subject: &str) -> String {
     let quoted: Vec<String> = known.iter().map(|word| format!("\"{word}\"")).collect();
     let list = quoted.join(", ");
@@ -187,7 +188,7 @@ fn one_line(message: &str) -> String {
     message.trim().replace('\n', ", ")
 }
 
-/// The expected type in a message of serde about a value of another type or length.
+/// The expected type in a message of serde about a value of the wrong type or length.
 fn expected_by(message: &str) -> Option<&str> {
     if message == "integer number overflowed" {
         return Some("a whole number");
@@ -204,7 +205,7 @@ fn expected_by(message: &str) -> Option<&str> {
     }
 }
 
-/// The values that a key takes by the table of keys; none where serde says more about their form.
+/// The values that a key accepts according to the table of keys; none where serde says more about their form.
 fn takes(key: &Key, message: &str) -> Option<String> {
     let example = if key.default.starts_with('[') {
         format!(", such as {}", key.default)
@@ -222,7 +223,7 @@ fn takes(key: &Key, message: &str) -> Option<String> {
         KeyKind::Whole { least, most, .. } => {
             format!("a pair of whole numbers from {least} to {most}{example}")
         }
-        // A word or a pair of words has told so itself.
+        // The message of the word or pair of words already says so.
         KeyKind::Words(_) if message.starts_with("expected ") => return None,
         KeyKind::Words(words) => {
             let words: Vec<String> = words().iter().map(|word| format!("\"{word}\"")).collect();
@@ -235,12 +236,12 @@ fn takes(key: &Key, message: &str) -> Option<String> {
     })
 }
 
-/// Further advice about a value as it was `written`: a number needs no quotes and a point, not a comma, and a
-/// key with a unit may have a partner without, and the other way round. In other cases a number has its
-/// remark.
+/// Further advice about a value, as `written`. A number needs no quotes, and a decimal point instead of a
+/// comma. A key with a unit may have a partner without one, and vice versa. Otherwise the advice is the
+/// remark on the number.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     let quantity = |key: &Key| matches!(key.kind, KeyKind::Quantity { .. });
-    // The same thing with a unit, or without.
+    // The partner with a unit if this key has none, or without.
     let mut partners = key.partners().filter_map(|name| section?.key(name));
     let partner = partners.find(|partner| quantity(partner) != quantity(key));
     let inside = written.trim_matches(['"', '\'']);
@@ -261,8 +262,8 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
         {
             format!("; with a unit, the key is `{}`", partner.name)
         }
-        // Its partner is the same thing without a unit, as `v_star` of `speed`, or another one, as `coverage`
-        // of `lambda`.
+        // The partner is the same quantity without a unit, such as `v_star` for `speed`, or another quantity,
+        // such as `coverage` for `lambda`.
         (KeyKind::Quantity { .. }, Some(partner))
             if partner.name.ends_with("_star") && written.is_empty() =>
         {
@@ -273,7 +274,7 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     }
 }
 
-/// The type that serde expected, with TOML's names of types in place of Rust's.
+/// The type that serde expected, in TOML's terms instead of Rust's.
 fn in_plain_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),

@@ -111,17 +111,17 @@ key_rows! {
     }
 }
 
-/// A stiffness with its unit.
+/// Kind of a stiffness with its unit.
 const STIFFNESS: KeyKind = quantity("N/m", within(1e-30, 1e30));
 const DRIVE_STIFFNESS: KeyKind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
-/// A speed of a program.
+/// Kind of a speed of a program.
 const PROGRAM_SPEED: KeyKind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
 
 /// Largest number of segments of a program.
 const MAX_SEGMENTS: usize = 10_000;
 
 impl Drive {
-    /// The edge whose blocks alone have a drive spring.
+    /// The edge with the only blocks that have a drive spring, if there is one.
     pub fn edge(&self) -> Option<Edge> {
         match self.attached {
             Attached::At(AttachedEdge::Left) => Some(Edge::Left),
@@ -175,7 +175,7 @@ impl Drive {
         self.attached.check(check)
     }
 
-    /// Refuses drives that no bulk body has: it is driven by its whole upper face.
+    /// Refuses drives that do not apply to a bulk body, which is driven over its whole upper face.
     fn check_for_bulk(&self, check: &Check) -> Result<(), CaseError> {
         let is_auto = self.stiffness == DriveStiffness::Each(AutoOrStiffness::Auto);
         let keys = [
@@ -251,7 +251,7 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
     Ok(())
 }
 
-/// The stiffness of a drive spring, unless the program chooses it.
+/// Stiffness of a drive spring, or the word that leaves the choice to the program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum AutoOrStiffness {
@@ -270,7 +270,7 @@ impl Checked for AutoOrStiffness {
     }
 }
 
-/// An edge is one of the words.
+/// The word is checked when it is read.
 impl Checked for AttachedEdge {}
 
 /// The segments of a program are checked one by one.

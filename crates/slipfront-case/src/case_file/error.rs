@@ -45,7 +45,7 @@ pub enum CaseError {
 #[error("{}{sentence}{}", place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default(),
     place.as_ref().map(Place::excerpt).unwrap_or_default())]
 pub struct Invalid {
-    /// Place at which the wrong value was written; none for values that were set in code.
+    /// Place of the wrong value; none for values set in code.
     pub place: Option<Place>,
     /// The error, and the remedy.
     pub sentence: String,
@@ -70,10 +70,10 @@ pub enum Place {
         line: usize,
         /// Column in characters, from 1.
         column: usize,
-        /// The line, and below it a caret under the value.
+        /// The line, and a caret under the value.
         excerpt: String,
     },
-    /// A place in the value of a `--set`, which is given here.
+    /// A place in the value of a `--set`, with this text.
     Override(String),
 }
 
@@ -120,7 +120,7 @@ fn excerpt(line: &str, start: usize, width: usize) -> String {
     if line.trim().is_empty() || before.chars().count() > MAX_EXCERPT {
         return String::new();
     }
-    // Tabs stay tabs, so that the caret stands below its character however wide they are.
+    // Tabs stay tabs, so that the caret is below its character for any tab width.
     let margin = before.replace(|c| c != '\t', " ");
     let line = truncated(line);
     let room = line.chars().count().saturating_sub(before.chars().count());

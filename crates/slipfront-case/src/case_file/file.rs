@@ -29,7 +29,8 @@ use super::words::Loading;
 
 /// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.
 ///
-/// A parsed case is within all bounds; one that was changed in code can be [checked](CaseFile::check) again.
+/// A parsed case is within all bounds. A case that was changed in code can be [checked](CaseFile::check)
+/// again.
 ///
 /// ```
 /// use slipfront_case::case_file::{CaseFile, DriveSpeed};
@@ -69,8 +70,9 @@ pub struct CaseFile {
 impl CaseFile {
     /// Reads a case from the text of a TOML file, changed by `overrides` of the form `drive.v_star=0.05`.
     ///
-    /// `name` stands for the file in messages. An override's value is TOML, or else a string as it stands; it
-    /// replaces a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is set.
+    /// `name` is the name of the file in messages. The value of an override is TOML, or otherwise a literal
+    /// string. It replaces a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is
+    /// set.
     ///
     /// # Errors
     /// [`CaseError::Invalid`], with its place, for text that is not TOML, unknown keys and values out of
@@ -91,7 +93,7 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that the case names, and the source of the case, for errors about a file.
+    /// All files that the case names, and the source of the case, for errors about a file.
     pub fn files_mut(&mut self) -> (impl Iterator<Item = NamedFile<'_>>, &Source) {
         let named = |key: &str, name, holds| NamedFile {
             key: key.to_owned(),
@@ -135,11 +137,10 @@ impl CaseFile {
         )
     }
 
-    /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
+    /// Checks every bound that depends only on the file. [`parse`](Self::parse) has already done so.
     ///
     /// # Errors
-    /// [`CaseError::Invalid`], with the value, its bound and what to do, at the place where the value was
-    /// written.
+    /// [`CaseError::Invalid`] at the place of the value, with the value, its bound and the remedy.
     pub fn check(&self) -> Result<(), CaseError> {
         let check = |table| Check::new(&self.source, keys_of(table), table);
         self.slider.check(&check("slider"))?;
@@ -164,19 +165,19 @@ impl CaseFile {
         self.output.check(&check("output"), body)
     }
 
-    /// Writes the case with every default filled in, in the order of the design; reading it back gives an
+    /// Writes the case with all defaults filled in, in the order of the design. Reading it back gives an
     /// equal case.
     ///
     /// # Errors
-    /// Errors of [`check`](Self::check) for a case that was changed in code, so that the written text can be
+    /// Errors of [`check`](Self::check), so that the written text of a case that was changed in code can be
     /// read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
-        // By way of a table, so that the keys of every struct need only one writer.
+        // Written through a table, so that the keys of every struct need only one writer.
         Ok(toml::to_string(&self.to_table()?)?)
     }
 
-    /// The tables of the case, without keys that its friction does not have.
+    /// The tables of the case, without keys that do not apply to its friction.
     fn to_table(&self) -> Result<toml::Value, toml::ser::Error> {
         let mut tables = toml::Value::try_from(self)?;
         let friction = tables.get_mut("friction").and_then(toml::Value::as_table_mut);
@@ -186,7 +187,7 @@ impl CaseFile {
         Ok(tables)
     }
 
-    /// Every key, in backticks, with its value, defaults filled in.
+    /// Every key, in backticks, with its value; defaults are filled in.
     ///
     /// ```
     /// use slipfront_case::case_file::CaseFile;
@@ -195,14 +196,14 @@ impl CaseFile {
     /// ```
     pub fn values(&self) -> Vec<(String, String)> {
         let mut values = Vec::new();
-        // A case that was loaded can be written.
+        // A loaded case can always be written.
         let tables = self.to_table();
         flatten("", &tables.unwrap_or(toml::Value::Boolean(false)), &mut values);
         values
     }
 }
 
-/// Adds all values below a key, by their full keys. An array of plain values is one value.
+/// Adds all values below a key, with their full keys. An array of plain values is one value.
 fn flatten(key: &str, value: &toml::Value, values: &mut Vec<(String, String)>) {
     let below = |name: &str| match key {
         "" => name.to_owned(),
@@ -229,16 +230,16 @@ pub struct NamedFile<'a> {
     pub key: String,
     /// Path of the file, relative to the case file.
     pub name: &'a mut String,
-    /// Use for which the file is read.
+    /// Use of the file.
     pub holds: FileUse,
 }
 
-/// Use for which a file is read.
+/// Use of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileUse {
     /// A value of each block, or an image of the slider.
     Blocks,
-    /// Measured heights, of any number of points.
+    /// Measured heights, with any number of points.
     HeightMap,
     /// Displacements and velocities of each block, four numbers.
     State,
@@ -250,7 +251,7 @@ impl Default for CaseFile {
     }
 }
 
-/// A case file that was parsed as TOML, from which cases are made by overrides.
+/// A case file parsed as TOML, from which overrides make cases.
 #[derive(Clone, Debug)]
 pub struct ParsedCase<'t> {
     root: DeTable<'t>,
@@ -268,7 +269,7 @@ impl<'t> ParsedCase<'t> {
         Self::parse_from(text, Source::new(name, text))
     }
 
-    /// Parses the text of a case file; `source` is that text, with what is known of its places.
+    /// Parses the text of a case file; `source` is that text, with the known places of its keys.
     ///
     /// # Errors
     /// [`CaseError::Invalid`] for text that is not TOML.
@@ -282,7 +283,7 @@ impl<'t> ParsedCase<'t> {
         })
     }
 
-    /// Sets these keys of the file, one after the other, as `--set` does.
+    /// Sets these keys of the file in order, as `--set` does.
     ///
     /// # Errors
     /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from
@@ -308,7 +309,7 @@ impl<'t> ParsedCase<'t> {
     }
 
     /// Makes the case with these overrides the base of many cases. The base is read once, so that
-    /// [`with`](Self::with) only reads the tables that are changed further.
+    /// [`with`](Self::with) reads only the tables that change further.
     ///
     /// # Errors
     /// [`CaseError::Invalid`] for an override that does not fit; errors of the case come from `with`.
@@ -330,7 +331,7 @@ impl<'t> ParsedCase<'t> {
         self.plain.as_ref()
     }
 
-    /// The case with these overrides, one after the other.
+    /// The case with these overrides, applied in order.
     ///
     /// # Errors
     /// [`CaseError::Invalid`], with its place, for an unknown key or a value out of its bounds.
@@ -373,7 +374,7 @@ impl<'t> ParsedCase<'t> {
             output: table!(output, tables.read("output")?),
             source: Source::default(),
         };
-        // The first in the file, not the first of the alphabet.
+        // The first in the file, not in the alphabet.
         let first = || tables.root.keys().min_by_key(|key| key.span().start);
         // A design file may begin with the tables of a study file.
         let of_design = || tables.root.keys().find(|key| *key.get_ref() == keys::DESIGN);

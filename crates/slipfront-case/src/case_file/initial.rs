@@ -11,8 +11,8 @@ use crate::key_rows;
 use crate::quantity::{Length, Speed};
 
 key_rows! {
-    /// `[initial]`: displacements and velocities at the start, where the blocks do not begin at rest at their
-    /// rest sites.
+    /// `[initial]`: displacements and velocities at the start, unless the blocks begin at rest at their rest
+    /// sites.
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Initial {
@@ -49,7 +49,7 @@ impl Initial {
         *self == Self::default()
     }
 
-    /// Whether no file is given, so that blocks begin at rest at their rest sites.
+    /// Whether no file is given, so that the blocks begin at rest at their rest sites.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.state_file.is_none() && self.files().into_iter().flatten().all(|(_, name)| name.is_none())
     }

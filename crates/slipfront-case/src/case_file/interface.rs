@@ -1,4 +1,4 @@
-//! Keys that go with an upright sheet, along whose edge friction acts, and keys that do not.
+//! Keys that apply to an upright sheet, with friction along its edge, and keys that do not.
 
 use super::check::Check;
 use super::error::CaseError;
@@ -9,7 +9,7 @@ use super::motion::Redistribute;
 use super::words::{Body, FrictionAlong, Motion};
 
 impl CaseFile {
-    /// Refuses keys that have no meaning for an upright sheet, or for any other slider.
+    /// Refuses keys that do not apply to an upright sheet, and keys that apply only to it.
     pub(super) fn check_interface(&self) -> Result<(), CaseError> {
         let check = |table| Check::new(&self.source, keys_of(table), table);
         let has_foundation = self.load.foundation.is_some() || self.load.foundation_star.is_some();
@@ -74,7 +74,7 @@ impl CaseFile {
                 "it would turn out of its substrate",
             ),
         ];
-        // Within a degree of y.
+        // The direction is within a degree of y.
         let [along, _] = slipfront::Drive::at_angle(0.0, self.drive.direction).direction;
         if along.abs() < 0.0174 {
             return check("drive").refuse("direction", |key| {

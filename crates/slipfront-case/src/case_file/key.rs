@@ -1,5 +1,5 @@
-//! Keys of a case file: kind, bounds, default and title of each, and the functions by which rows of the table
-//! are written.
+//! Keys of a case file: kind, bounds, default and title of each, and the functions that build the rows of the
+//! table.
 //!
 //! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
 
@@ -15,8 +15,7 @@ pub type Bounds = (Bound<f64>, Bound<f64>);
     reason = "the sentence of each variant tells what its fields are"
 )]
 pub enum KeyKind {
-    /// A number, or one of the given words in its place. The remark ends the sentence about a number out of
-    /// bounds.
+    /// A number, or one of the given words. The remark ends the sentence about a number outside the bounds.
     Number {
         bounds: Bounds,
         remark: &'static str,
@@ -24,8 +23,8 @@ pub enum KeyKind {
     },
     /// A string of number and unit; the bounds are in the SI unit `unit`.
     Quantity { unit: &'static str, bounds: Bounds },
-    /// A whole number, or a pair of them. The noun names the value where "from 1 to 64" does not say enough;
-    /// the remark ends the sentence about a number out of bounds.
+    /// A whole number, or a pair of them. The noun names the value where "from 1 to 64" is not enough; the
+    /// remark ends the sentence about a number outside the bounds.
     Whole {
         least: u64,
         most: u64,
@@ -36,11 +35,11 @@ pub enum KeyKind {
     Words(fn() -> &'static [&'static str]),
     /// `true` or `false`.
     Switch,
-    /// The path of a file of one of the given formats.
+    /// The path of a file in one of the given formats.
     File(&'static [&'static str]),
-    /// A table of keys of its own, or a list of such tables, with an example.
+    /// A table with its own keys, or a list of such tables, with an example.
     Table(&'static str, &'static [Key]),
-    /// A value whose bounds depend on others, or that has a form of its own, with its bounds in words.
+    /// A value with bounds that depend on others, or with its own form; the text describes its bounds.
     Special(&'static str),
 }
 
@@ -51,12 +50,12 @@ pub struct Title {
     pub words: &'static str,
     /// Symbol of the quantity; empty if it has none. Subscripts are Unicode's subscript letters.
     pub symbol: &'static str,
-    /// Unit of the quantity as pictures print it; empty for a number without unit.
+    /// Unit of the quantity as pictures print it; empty for a number without a unit.
     pub unit: &'static str,
 }
 
-/// Unit in which a dimensionless key counts, whose name ends in `_star`. It depends on the edge of a block
-/// and on the thickness.
+/// Unit of a dimensionless key, with a name that ends in `_star`. The unit depends on the edge of a block and
+/// on the thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StarUnit {
     /// The unit of V*.
@@ -67,10 +66,10 @@ pub enum StarUnit {
     Rate,
     /// The unit of displacement.
     Displacement,
-    /// The stiffness E h of the spring of a block, whose value per area is held on other blocks:
-    /// `K = k* E h/l^2`.
+    /// The stiffness E h of the spring of a block. Its value per area stays constant on other blocks: `K = k*
+    /// E h/l^2`.
     SpringOfBlock,
-    /// The stiffness E h of all springs together.
+    /// The stiffness E h of all springs combined.
     Stiffness,
     /// No unit: a ratio, or a spread of coefficients.
     One,
@@ -87,24 +86,24 @@ pub struct Key {
     pub kind: KeyKind,
     /// Default of the key as TOML; empty if it has none.
     pub default: &'static str,
-    /// The keys that set the same quantity: a table has one of them.
+    /// The alternative keys for the same quantity: a table has one of them.
     partners: [Option<&'static str>; 4],
-    /// Unit in which a key with a star counts; none for other keys.
+    /// Unit of a key with a star; none for other keys.
     pub star: Option<StarUnit>,
-    /// Title of the key; none for keys that no picture has along an axis.
+    /// Title of the key; none for keys that are not an axis of any picture.
     pub title: Option<Title>,
-    /// Symbol or equation of the paper; empty if it has none.
+    /// Symbol or equation in the paper; empty if it has none.
     pub paper: &'static str,
-    /// Words that follow the bounds of the kind in the reference; empty if these say all.
+    /// Text after the bounds of the kind in the reference; empty if the bounds are complete.
     pub further_bounds: &'static str,
-    /// Sentences that follow the meaning in the reference, with its links.
+    /// Sentences after the meaning in the reference, with their links.
     pub note: &'static str,
-    /// Words in place of the default; empty where the default or the meaning says all.
+    /// Text in place of the default; empty where the default or the meaning is enough.
     pub without: &'static str,
 }
 
 impl Key {
-    /// The keys that set the same quantity: a table has one of them.
+    /// The alternative keys for the same quantity: a table has one of them.
     pub fn partners(&self) -> impl Iterator<Item = &'static str> + use<> {
         self.partners.into_iter().flatten()
     }
@@ -138,25 +137,25 @@ impl Key {
         self
     }
 
-    /// The key with words that follow the bounds of its kind in the reference.
+    /// The key with text after the bounds of its kind in the reference.
     pub const fn further_bounds(mut self, words: &'static str) -> Self {
         self.further_bounds = of_reference(words);
         self
     }
 
-    /// The key with sentences that follow its meaning in the reference.
+    /// The key with sentences after its meaning in the reference.
     pub const fn note(mut self, sentences: &'static str) -> Self {
         self.note = of_reference(sentences);
         self
     }
 
-    /// The key with words for what a file without it has, in place of a default.
+    /// The key with a text for files without it, in place of a default.
     pub const fn without(mut self, words: &'static str) -> Self {
         self.without = of_reference(words);
         self
     }
 
-    /// The key with its name, and its meaning as a doc comment has it.
+    /// The key with its name, and its meaning from a doc comment.
     pub const fn named(mut self, name: &'static str, doc: &'static str) -> Self {
         self.name = name;
         self.doc = of_reference(doc.trim_ascii());
@@ -164,13 +163,13 @@ impl Key {
     }
 }
 
-/// The words where the program has a disk, and thus may write pages of reference. A module for a browser has
-/// none of them, and is smaller.
+/// The text, if the program has a disk and may write pages of reference. A module for a browser omits it to
+/// be smaller.
 const fn of_reference(words: &'static str) -> &'static str {
     if cfg!(feature = "disk") { words } else { "" }
 }
 
-/// A key with a default as TOML, or an empty one, that takes values of a kind.
+/// A key that accepts values of this kind, with a default as TOML; an empty default is none.
 pub const fn key(default: &'static str, kind: KeyKind) -> Key {
     Key {
         name: "",
@@ -218,7 +217,7 @@ pub(super) const fn within(low: f64, high: f64) -> Bounds {
     (Included(low), Included(high))
 }
 
-/// Bounds above `low`, up to and with `high`.
+/// Bounds above `low`, up to and including `high`.
 pub(super) const fn above(low: f64, high: f64) -> Bounds {
     (Excluded(low), Included(high))
 }
@@ -228,11 +227,11 @@ pub(super) const fn between(low: f64, high: f64) -> Bounds {
     (Excluded(low), Excluded(high))
 }
 
-/// Kind of a stiffness per area with its unit.
+/// Kind of a stiffness per area.
 pub(super) const STIFFNESS_PER_AREA: KeyKind = quantity("N/m^3", within(1e-30, 1e40));
-/// The longest time, in t*.
+/// The largest time, in t*.
 pub(super) const MAX_TIME_STAR: f64 = 1e9;
-/// Bounds of a time that has passed.
+/// Bounds of a positive time.
 pub(super) const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
 /// The largest coordinate or size of a texture, m.
 const MAX_LENGTH: f64 = 1e9;
@@ -252,10 +251,10 @@ pub(super) const SPEED_STAR: KeyKind = number(above(0.0, 10.0), "it is in the un
 pub(super) const TIME_STAR: KeyKind = number(POSITIVE_TIME, "it is a time t*");
 /// A slip.
 pub(super) const SLIP_STAR: KeyKind = number(above(0.0, 1e9), "it is in units of P mu_s l^2/(E h)");
-/// The word that stands for a number which the case decides.
+/// The word for a number that the case determines.
 pub(super) const AUTO: &[&str] = &["auto"];
 
-/// Two lists of keys joined to one.
+/// Concatenates two lists of keys.
 pub(super) const fn joined<const COUNT: usize>(first: &[Key], second: &[Key]) -> [Key; COUNT] {
     let mut keys = [first[0]; COUNT];
     let mut place = 0;

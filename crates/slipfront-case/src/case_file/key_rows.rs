@@ -1,12 +1,12 @@
-//! Tables of a file that are declared by a row for each key.
+//! Tables of a file, declared with one row per key.
 
-/// Declares the struct of a table and the keys of the table, `KEYS`, by a row for each key: its meaning as a
+/// Declares the struct of a table and the keys of the table, `KEYS`, with one row per key: its meaning as a
 /// doc comment, its name, the type of its value, and its [`key`](super::key).
 ///
-/// Where one of several keys sets the same quantity, such as `v_star` and `speed` in `[drive]`, their rows
-/// stand in brackets. The struct has an enum in their place, which says which key was given, and a table with
-/// none of them is refused with the sentence behind `or`. A second struct then has the keys as they stand in
-/// the file, and conversions from and to the first.
+/// Rows of alternative keys for one quantity, such as `v_star` and `speed` in `[drive]`, are in brackets. The
+/// struct then has an enum in their place for the key that was given. A table with none of them is refused
+/// with the sentence after `or`. A second struct has the keys as in the file, with conversions from and to
+/// the first.
 #[macro_export]
 macro_rules! key_rows {
     (
@@ -65,14 +65,14 @@ macro_rules! key_rows {
             }
 
             impl $enum {
-                /// Name of the key that was given.
+                /// Name of the given key.
                 pub const fn key(&self) -> &'static str {
                     match self {
                         $(Self::$Variant(_) => stringify!($one),)+
                     }
                 }
 
-                /// Checks the value of the key that was given.
+                /// Checks the value of the given key.
                 pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
                     match self {
                         $(Self::$Variant(value) => check.value(stringify!($one), value),)+

@@ -17,15 +17,15 @@ use super::shapes;
 use super::slider::Slider;
 use super::time::Time;
 
-/// The keys that stand together: those of a table, or of a shape of texture.
+/// A group of keys: those of a table, or of a shape of texture.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
     /// The name of the table; for a shape of texture, the shape.
     pub name: &'static str,
     /// Whether the section is a shape of `[[texture]]`.
     pub is_shape: bool,
-    /// Keys of the section, in the order of the documentation. `shape` itself is not among the keys of a
-    /// texture.
+    /// Keys of the section, in the order of the documentation. The key `shape` itself is not one of the keys
+    /// of a texture.
     pub keys: &'static [Key],
 }
 
@@ -40,7 +40,7 @@ impl Section {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
+    /// Gives a table the defaults of its missing keys, unless a partner is present.
     pub(super) fn fill_in(&self, table: &mut DeTable<'_>) {
         fill_in(
             table,
@@ -50,10 +50,10 @@ impl Section {
     }
 }
 
-/// The default of a key, parsed; none if it has none.
+/// Parsed default of a key; none if it has none.
 type ParsedDefault = Option<Spanned<DeValue<'static>>>;
 
-/// The defaults of all sections by their names. They are parsed once, since a study makes many cases.
+/// The defaults of all sections by their names. They are parsed once, because a study makes many cases.
 static DEFAULTS: LazyLock<HashMap<&str, Vec<ParsedDefault>>> = LazyLock::new(|| {
     let sections = SECTIONS.iter();
     sections
@@ -61,13 +61,13 @@ static DEFAULTS: LazyLock<HashMap<&str, Vec<ParsedDefault>>> = LazyLock::new(|| 
         .collect()
 });
 
-/// The defaults of keys, in their order.
+/// Parsed defaults of keys, in order.
 fn defaults(keys: &[Key]) -> Vec<ParsedDefault> {
-    // A key without a default has an empty text, which is no value.
+    // A key without a default has an empty text, which is not a value.
     keys.iter().map(|key| DeValue::parse(key.default).ok()).collect()
 }
 
-/// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
+/// Gives a table the defaults of its missing keys, unless a partner is present.
 fn fill_in(table: &mut DeTable<'_>, keys: &[Key], defaults: &[ParsedDefault]) {
     for (key, value) in keys.iter().zip(defaults) {
         let Some(value) = value else { continue };
@@ -81,7 +81,7 @@ fn fill_in(table: &mut DeTable<'_>, keys: &[Key], defaults: &[ParsedDefault]) {
     }
 }
 
-/// Gives a table that is none of a case the defaults of the keys that it and the tables in it lack.
+/// Gives a table outside a case, and the tables in it, the defaults of their missing keys.
 pub(super) fn fill_in_all(table: &mut DeTable<'_>, keys: &[Key]) {
     fill_in(table, keys, &defaults(keys));
     for key in keys {
@@ -127,7 +127,7 @@ const fn section(is_shape: bool, name: &'static str, keys: &'static [Key]) -> Se
     Section { name, is_shape, keys }
 }
 
-/// The title of a key such as `drive.v_star` or `texture.0.coverage`, and the position of its texture.
+/// The title of a key such as `drive.v_star` or `texture.0.coverage`, and the index of its texture.
 pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
     let (table, rest) = path.split_once('.')?;
     let (texture, name) = match rest.split_once('.') {
@@ -138,8 +138,7 @@ pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
     Some((keys.next()?.title?, texture))
 }
 
-/// The unit in which a key of this name counts, in a section or in a table within one; none for a key without
-/// a star.
+/// The unit of a key with this name, in a section or in a table within one; none for a key without a star.
 pub(crate) fn star_unit(name: &str) -> Option<StarUnit> {
     fn of(keys: &[Key], name: &str) -> Option<StarUnit> {
         keys.iter().find_map(|key| match key.kind {

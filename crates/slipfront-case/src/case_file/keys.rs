@@ -1,4 +1,4 @@
-//! The keys of a case file, those that exclude each other, and the key that a misspelt one was meant to be.
+//! The keys of a case file, those that exclude each other, and suggestions for misspelt keys.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -8,10 +8,10 @@ use super::key_table::{SECTIONS, TEXTURE, partners};
 use super::source::Source;
 use super::synonyms::advice_on;
 
-/// The longest name that is compared with the known ones, in bytes.
+/// Largest length of a name that is compared with the known ones, in bytes.
 const MAX_NAME: usize = 100;
 
-/// Length in bytes of the shortest word that names a longer one of which it is a part, such as "stress" for
+/// Length in bytes of the shortest word that matches a longer name as a part of it, such as "stress" in
 /// "contact_stress_star".
 const MIN_PART: usize = 4;
 
@@ -26,12 +26,12 @@ pub const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
 /// The table that only a design file has.
 pub(super) const DESIGN: &str = "design";
 
-/// A table's header as it stands in the file.
+/// Header of a table as in the file.
 pub(super) fn header(table: &str) -> String {
     header_below("", table)
 }
 
-/// The header of a table within a table `above`, which ends in a dot.
+/// Header of a table within a table. `above` is the name of the outer table, which ends in a dot.
 pub fn header_below(above: &str, table: &str) -> String {
     if table == TEXTURE {
         format!("[[{above}{table}]]")
@@ -40,19 +40,19 @@ pub fn header_below(above: &str, table: &str) -> String {
     }
 }
 
-/// The header of a texture, for messages.
+/// Header of a texture, for messages.
 pub(super) fn texture_header(shape: &str) -> String {
     format!("[[texture]] of shape \"{shape}\"")
 }
 
-/// The header of the first table that has the key.
+/// Header of the first table that has the key.
 fn home_of(key: &str) -> Option<String> {
     let home = SECTIONS.iter().find(|section| section.key(key).is_some())?;
     let header = if home.is_shape { texture_header } else { header };
     Some(header(home.name))
 }
 
-/// The keys that set the same quantity as a key such as `drive.v_star`, which has `drive.speed`.
+/// Keys for the same quantity as a key such as `drive.v_star`, here `drive.speed`.
 pub fn partners_of(key: &str) -> Vec<String> {
     let Some((table, leaf)) = key.rsplit_once('.') else {
         return Vec::new();
@@ -68,7 +68,7 @@ pub fn exclude_each_other(one: &str, other: &str) -> bool {
     partners_of(one).iter().any(|partner| partner == other)
 }
 
-/// Refuses a table that holds both keys of a pair.
+/// Refuses a table with two keys that exclude each other.
 pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), CaseError> {
     for section in &SECTIONS {
         let tables: Vec<&DeTable<'_>> = match root.get(section.table()).map(Spanned::get_ref) {
@@ -101,7 +101,7 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
     Ok(())
 }
 
-/// The sentence about a key that the table under `header` does not have.
+/// Sentence about a key that the table under `header` does not have.
 pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     let advice = match (advice_on(key), home_of(key), nearest(key, known)) {
@@ -113,7 +113,7 @@ pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     format!("unknown key `{key}` in {header}{advice} Known keys: {list}")
 }
 
-/// The sentence about a key or table that the file as a whole does not have.
+/// Sentence about a key or table that does not belong to the file at top level.
 pub fn unknown_table(key: &str) -> String {
     if let Some(home) = home_of(key) {
         return format!("`{key}` is outside its table: it belongs in {home}");
@@ -139,7 +139,7 @@ pub fn unknown_table(key: &str) -> String {
     }
 }
 
-/// The sentence about a texture whose `shape` is missing, not a string, or not known.
+/// Sentence about a texture with a `shape` that is missing, not a string, or unknown.
 pub(super) fn unknown_shape(shape: Option<&str>) -> String {
     let shapes = SECTIONS.iter().filter(|section| section.is_shape);
     let shapes: Vec<&str> = shapes.map(|section| section.name).collect();
@@ -158,9 +158,10 @@ pub(super) fn unknown_shape(shape: Option<&str>) -> String {
     }
 }
 
-/// The word among `known` that `word` was probably meant to be.
+/// The closest match for `word` among the `known` words.
 pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
-    // The distance takes time and memory in proportion to the word, which may be as long as the file.
+    // The time and memory for the distance grow with the length of the word, which may be as long as the
+    // file.
     if word.len() > MAX_NAME {
         return None;
     }

@@ -1,13 +1,13 @@
-//! A length that follows the block because no key gives it.
+//! A length that equals the block length because no key gives it.
 
 use std::fmt;
 
-/// A length of the material that equals the length of a block because no key gives it.
+/// A length of the material that equals the block length because no key gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LengthOfABlock {
     /// The length, such as "the thickness of the sheet".
     pub length: &'static str,
-    /// The key that would give the length.
+    /// The key to give the length.
     pub key: &'static str,
 }
 

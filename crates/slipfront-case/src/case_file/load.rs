@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use super::error::CaseError;
 use super::keys::nearest;
 
-/// The largest file that is read as a case, in MiB.
+/// Largest case file that is read, in MiB.
 const MAX_MIB: u64 = 16;
 
 /// Reads a case or study file of at most 16 MiB.
 ///
 /// # Errors
-/// When the path is missing, a folder, too large or not UTF-8 text.
+/// When the path is missing, a folder, too large, or not UTF-8 text.
 pub fn read_text(path: &Path) -> Result<String, CaseError> {
     let path = path.to_owned();
     if path.is_dir() {
@@ -39,15 +39,15 @@ pub fn read_text(path: &Path) -> Result<String, CaseError> {
     read_text_from(file, &path)
 }
 
-/// Reads the text of a case of at most 16 MiB from an open file or a pipe, which errors call `path`.
+/// Reads the text of a case of at most 16 MiB from an open file or a pipe; errors call it `path`.
 ///
 /// # Errors
-/// When it cannot be read, is too large or not UTF-8 text.
+/// When it cannot be read, is too large, or is not UTF-8 text.
 pub fn read_text_from(input: impl Read, path: &Path) -> Result<String, CaseError> {
     let path = path.to_owned();
     let limit = MAX_MIB << 20;
     let mut bytes = Vec::new();
-    // The limit holds for what is read, since a device or a pipe tells no size.
+    // The limit applies to the bytes that are read, because a device or a pipe reports no size.
     if let Err(source) = input.take(limit + 1).read_to_end(&mut bytes) {
         return Err(CaseError::Unreadable { path, source });
     }
@@ -65,8 +65,7 @@ pub fn read_text_from(input: impl Read, path: &Path) -> Result<String, CaseError
     })
 }
 
-/// Whether text is UTF-16: it begins with a mark of its byte order, or with a character of ASCII beside a
-/// zero byte.
+/// Whether text is UTF-16: it begins with a byte order mark, or with an ASCII character next to a zero byte.
 fn is_utf16(bytes: &[u8]) -> bool {
     matches!(
         bytes,
@@ -74,11 +73,12 @@ fn is_utf16(bytes: &[u8]) -> bool {
     )
 }
 
-/// Largest number of entries of a folder among which a similar name is looked for.
+/// Largest number of entries of a folder that are searched for a similar name.
 const MAX_ENTRIES: usize = 10_000;
 
-/// The file that a missing one was probably meant to be: one of a similar name, or with the ending .toml, in
-/// the same folder, or else in its folder `cases`, `cases/studies`, `cases/designs` or `cases/calibrations`.
+/// The file that was probably meant by a missing path: a file with a similar name, or with the extension
+/// .toml, in the same folder, or otherwise in its folder `cases`, `cases/studies`, `cases/designs` or
+/// `cases/calibrations`.
 fn similar_file(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let stem = path.file_name()?.to_str()?.trim_end_matches(".toml");
@@ -100,11 +100,11 @@ fn similar_file(path: &Path) -> Option<PathBuf> {
         let mut stems: Vec<String> = entries
             .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
             .collect();
-        // The order of a folder is that of no name.
+        // The order of a folder is not sorted by name.
         stems.sort();
         let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
         let near = folder.join(format!("{}.toml", nearest(stem, &stems)?));
-        // A link that leads nowhere is listed under the name that it has.
+        // A dangling link is listed under its own name.
         (near != path).then_some(near)
     })
 }

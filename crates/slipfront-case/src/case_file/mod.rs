@@ -1,7 +1,7 @@
-//! The case file: every key that a user can write, with its default, and the text it is read from.
+//! The case file: every key that a user can write, with its default, and the text that it is read from.
 //!
 //! Text is parsed as TOML, changed by overrides (`--set`), read into these structs, and checked against every
-//! bound that needs nothing but the file. Everything else, from units to the lattice, is done when a case is
+//! bound that depends only on the file. Everything else, from units to the lattice, is done when a case is
 //! built from the file.
 
 mod check;

@@ -118,7 +118,7 @@ impl Load {
         self.shear.as_ref().map(|_| "shear").or(of_star)
     }
 
-    /// Refuses a shear load beside a drive, slider or contacts that none is derived for.
+    /// Refuses a shear load with a drive, slider or contacts for which none is derived.
     pub(super) fn check_shear(&self, check: &Check, motion: Motion, body: Body) -> Result<(), CaseError> {
         let Some(key) = self.shear_key() else {
             return Ok(());
@@ -149,14 +149,14 @@ impl Load {
     }
 }
 
-/// The blocks in contact that carry the load of textured ones.
+/// The blocks in contact that carry the load of textured blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
     untagged,
     expecting = "expected true, false, or a distance such as { within = \"400 um\" }"
 )]
 pub enum Redistribute {
-    /// All blocks in contact, or none: then the load of textured blocks is lost.
+    /// All blocks in contact, or none. With none, the load of textured blocks is lost.
     All(bool),
     /// The blocks in contact near each textured block.
     Near(Near),

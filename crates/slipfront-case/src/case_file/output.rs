@@ -1,4 +1,4 @@
-//! The table `[output]`: the results that are written, their instants and their resolution.
+//! The table `[output]`: the results to write, their instants and their resolution.
 
 use serde::{Deserialize, Serialize};
 use slipfront::observe::Field;
@@ -46,10 +46,10 @@ key_rows! {
     }
 }
 
-/// A time between snapshots or rows.
+/// Kind of a time between snapshots or rows.
 const SPACING: KeyKind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
 
-/// A time of a snapshot in a list of them.
+/// Kind of a time in a list of snapshots.
 const SNAPSHOT_TIME: KeyKind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
 
 /// The instants at which fields are written.
@@ -58,9 +58,9 @@ const SNAPSHOT_TIME: KeyKind = number(within(0.0, MAX_TIME_STAR), "snapshots are
 pub enum Snapshots {
     /// `"auto"`: the instants A to F of Fig. 4, found by the run itself.
     Auto,
-    /// A list of t*, increasing; none when empty.
+    /// A list of times t*, increasing; no snapshots if it is empty.
     At(Vec<f64>),
-    /// `{ every = 5.0 }`: at multiples of that t*, and at the instants A to F.
+    /// `{ every = 5.0 }`: at multiples of this t*, and at the instants A to F.
     Every(f64),
 }
 
@@ -73,7 +73,8 @@ impl Output {
         }
         match &self.snapshots {
             Snapshots::Auto => {}
-            // A table of its own in the file, or the value of `snapshots`: either has a place.
+            // The place of the error is the key `every`, in a table of its own or within the value of
+            // `snapshots`.
             Snapshots::Every(every) => check.value_of(&SPACING, "snapshots.every", every)?,
             Snapshots::At(times) => {
                 for time in times {
@@ -100,7 +101,7 @@ impl Output {
     }
 }
 
-/// `snapshots` as it stands in the file.
+/// `snapshots` as in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,

@@ -13,11 +13,11 @@ use super::error::CaseError;
 use super::key_table::partners;
 use super::source::Source;
 
-/// A key of a case file and its new value. The override removes a key that excludes it, as `drive.speed` does
-/// `drive.v_star`; the later of two overrides of one key holds.
+/// A key of a case file and its new value. The override removes keys that exclude this key, as `drive.speed`
+/// excludes `drive.v_star`. If two overrides set one key, the later one applies.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Override {
-    /// The override as messages repeat it: `KEY=VALUE`.
+    /// The override as quoted in messages: `KEY=VALUE`.
     text: String,
     key: Range<usize>,
     value: Range<usize>,
@@ -40,11 +40,10 @@ impl Override {
         }
     }
 
-    /// Reads an override of the form `KEY=VALUE`. The value is TOML, or a string as it stands if it is not
-    /// TOML.
+    /// Reads an override of the form `KEY=VALUE`. The value is TOML, or otherwise a literal string.
     ///
     /// # Errors
-    /// When there is no value, and when a value that begins like a string, list or table of TOML is none.
+    /// When there is no value, and when a value begins like a string, list or table of TOML but is not TOML.
     pub fn parse(text: &str) -> Result<Self, CaseError> {
         let mut source = Source::default();
         let start = source.add_override(text);
@@ -64,7 +63,7 @@ impl Override {
                 "the override has no value: write KEY=VALUE, such as drive.v_star=0.05",
             ));
         }
-        // What opens a string, a list or a table was meant to be one.
+        // A value that opens a string, a list or a table must be complete.
         if value.starts_with(['"', '\'', '[', '{']) {
             let start = start + value_start;
             DeValue::parse(limit_nesting(&source, start, value)?)
@@ -83,7 +82,7 @@ impl Override {
         &self.text[self.key.clone()]
     }
 
-    /// The value of the override: a string where it is not TOML.
+    /// The value of the override: a string if it is not TOML.
     pub fn value(&self) -> toml::Value {
         let text = &self.text[self.value.clone()];
         let parsed = format!("value = {text}").parse::<toml::Table>();
@@ -96,7 +95,7 @@ impl Override {
         self.key().split('.').next().unwrap_or_default().trim()
     }
 
-    /// Applies the override to a parsed file; its text is added to the source.
+    /// Applies the override to a parsed file, and adds its text to the source.
     pub(super) fn apply<'i>(&'i self, root: &mut DeTable<'i>, source: &mut Source) -> Result<(), CaseError> {
         let start = source.add_override(&self.text);
         let source = &*source;
@@ -109,7 +108,7 @@ impl Override {
             span: &span,
         };
         let text = &self.text[self.value.clone()];
-        // What is not TOML is a string without quotes, which a shell takes away.
+        // A value that is not TOML is a string without quotes, which a shell removes.
         let string = || Spanned::new(0..text.len(), DeValue::String(Cow::Borrowed(text)));
         let start = start + self.value.start;
         let parsed = limit_nesting(source, start, text)
@@ -160,7 +159,7 @@ impl Change<'_> {
             [] => Ok(()),
             [key] => {
                 self.remove_partners(table, key)?;
-                // Removed first: inserting alone would keep the old key with the old span.
+                // Removed first, because inserting alone would keep the old key with the old span.
                 table.remove(*key);
                 table.insert(self.spanned(Cow::Borrowed(*key)), value);
                 Ok(())
@@ -182,7 +181,7 @@ impl Change<'_> {
         }
     }
 
-    /// Sets `rest[1..]` of the element `rest[0]`; the index one beyond the last adds an element.
+    /// Sets `rest[1..]` of the element `rest[0]`; the index one past the last adds an element.
     fn set_element<'i>(
         &self,
         values: &mut DeArray<'i>,
@@ -213,7 +212,7 @@ impl Change<'_> {
         }
     }
 
-    /// Removes the keys that exclude `key`; refuses when an override set one of them.
+    /// Removes the keys that exclude `key`; an error when an override has set one of them.
     fn remove_partners(&self, table: &mut DeTable<'_>, key: &str) -> Result<(), String> {
         for partner in partners(self.table, key) {
             if let Some(old) = table.remove(partner)

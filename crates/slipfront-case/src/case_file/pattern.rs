@@ -11,7 +11,7 @@ use super::words::Arrangement;
 use crate::key_rows;
 use crate::quantity::Length;
 
-/// Largest number of columns, and of rows, of all arrays of a texture together.
+/// Largest total number of columns, and of rows, of all arrays of a texture.
 pub(crate) const MAX_COUNT: u64 = 1000;
 /// Kind of the number of columns and rows.
 const COUNT: KeyKind = whole(1, MAX_COUNT);
@@ -20,7 +20,7 @@ const COUNT: KeyKind = whole(1, MAX_COUNT);
 pub(super) const PITCH: KeyKind = KeyKind::Special("a length, or a pair; more than 0, at most 1e9 m");
 
 key_rows! {
-    /// The pattern in which the shape of a texture is repeated; by default it stands once.
+    /// The pattern that repeats the shape of a texture; by default there is a single copy.
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Pattern {
@@ -38,7 +38,7 @@ key_rows! {
     }
 }
 
-/// Places in columns and rows.
+/// Array of places in columns and rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Array {
@@ -56,7 +56,7 @@ pub struct Array {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "CountKey", into = "CountKey")]
 pub enum Count {
-    /// The value `"auto"`: as many as have room in steps of `pitch`, or one without a pitch.
+    /// The value `"auto"`: as many as fit in steps of `pitch`, or one without a pitch.
     #[default]
     Auto,
     /// The value `[columns, rows]`, 1 to 1000 each.
@@ -67,7 +67,7 @@ pub enum Count {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PitchKey", into = "PitchKey")]
 pub enum Pitch {
-    /// One length: between columns and between rows, or for a hexagonal lattice between all neighbours.
+    /// One length: between columns and between rows, or between all neighbours of a hexagonal lattice.
     Equal(Length),
     /// The value `[x, y]`: between columns, and between rows.
     Each([Length; 2]),
@@ -146,7 +146,7 @@ impl Pitch {
 
 const COUNT_EXPECTED: &str = "expected \"auto\" or a pair of whole numbers from 1 to 1000, such as [4, 3]";
 
-/// The key `array` as it stands in the file.
+/// The key `array` as in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,
@@ -178,7 +178,7 @@ impl From<Count> for CountKey {
     }
 }
 
-/// The key `pitch` as it stands in the file: texts, so that a length that cannot be read keeps its own
+/// The key `pitch` as in the file. It holds texts, so that a length that cannot be read keeps its own
 /// message.
 #[derive(Serialize, Deserialize)]
 #[serde(

@@ -1,17 +1,17 @@
-//! The names by which serde reads a type: the fields of a struct, the words of an enum.
+//! The names that serde reads for a type: the fields of a struct, or the words of an enum.
 
 use serde::de::value::Error as ProbeError;
 use serde::de::{DeserializeOwned, Deserializer, Error as _, Visitor};
 
-/// The keys of the struct or the words of the enum `T`, in their order.
+/// The keys of the struct or the words of the enum `T`, in order.
 pub fn names_of<T: DeserializeOwned>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
-    // The probe has no value to give, so that this ends in an error, after the names were noted.
+    // The probe has no value to return, so deserialization always fails, after it has recorded the names.
     let _ = T::deserialize(Probe(&mut names));
     names
 }
 
-/// A deserializer that notes the names for which a type asks.
+/// A deserializer that records the names that a type requests.
 struct Probe<'a>(&'a mut &'static [&'static str]);
 
 impl<'de> Deserializer<'de> for Probe<'_> {

@@ -1,5 +1,5 @@
-//! Reads the values of a parsed file into structs. toml has a deserializer too, which offers every type of
-//! value to every type that is read, each time with code of its own; this one offers what can be meant, so
+//! Reads the values of a parsed file into structs. The deserializer of toml offers every type of value to
+//! every type that is read, with separate code for each pair. This one offers only the possible types, so
 //! that the module of a page without a server is 120 kB smaller.
 
 use std::fmt;
@@ -12,7 +12,7 @@ use serde::de::{
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeTable, DeValue};
 
-/// Why a value cannot be read, and its place, where that is known.
+/// Reason why a value cannot be read, and its place, if it is known.
 #[derive(Debug)]
 pub(super) struct ReadError {
     pub(super) message: String,
@@ -20,7 +20,7 @@ pub(super) struct ReadError {
 }
 
 impl ReadError {
-    /// Says that the error is at this place, unless a narrower one is known.
+    /// Sets the place of the error, unless a narrower one is known.
     fn at(mut self, span: &Range<usize>) -> Self {
         self.span.get_or_insert_with(|| span.clone());
         self
@@ -42,7 +42,7 @@ impl serde::de::Error for ReadError {
     }
 }
 
-/// A value that is read.
+/// A value to be read.
 pub(super) struct Reader<'i> {
     value: DeValue<'i>,
     span: Range<usize>,
@@ -57,7 +57,7 @@ impl<'i> From<Spanned<DeValue<'i>>> for Reader<'i> {
     }
 }
 
-/// A whole number that fits one of the types of whole numbers that keys have.
+/// A whole number that fits one of the integer types of keys.
 enum Whole {
     Signed(i64),
     Unsigned(u64),
@@ -72,13 +72,13 @@ impl Whole {
     }
 }
 
-/// A number with a fraction or an exponent; none if it is too large to compute with.
+/// A number with a fraction or an exponent; none if it overflows.
 fn float(text: &str) -> Option<f64> {
     let number: f64 = text.parse().ok()?;
     (number.is_finite() || text.contains("inf") || text.contains("nan")).then_some(number)
 }
 
-/// Says that a value is not of the type that is expected.
+/// Error for a value that does not have the expected type.
 fn unexpected(value: &DeValue<'_>, expected: &dyn Expected) -> ReadError {
     let found = match value {
         DeValue::String(text) => Unexpected::Str(text),
@@ -107,7 +107,7 @@ fn whole<'i, V: Visitor<'i>>(number: DeInteger<'i>, visitor: V) -> Result<V::Val
 }
 
 impl<'de> Reader<'de> {
-    /// Visits the value; an error has its place.
+    /// Visits the value. An error gets its place.
     fn visit<T>(self, visit: impl FnOnce(DeValue<'de>) -> Result<T, ReadError>) -> Result<T, ReadError> {
         let Self { value, span } = self;
         visit(value).map_err(|error| error.at(&span))
@@ -126,8 +126,7 @@ impl<'de> Reader<'de> {
 
     fn text<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         self.visit(|value| match value {
-            // Not as borrowed text, for which every type would need code of its own: cases keep no borrowed
-            // text.
+            // Not borrowed text, which would need separate code for every type: cases keep no borrowed text.
             DeValue::String(text) => visitor.visit_str(&text),
             other => Err(unexpected(&other, &visitor)),
         })
@@ -148,7 +147,7 @@ impl<'de> Reader<'de> {
     }
 }
 
-/// Functions of a deserializer that read values as one of the functions of [`Reader`] does.
+/// Functions of a deserializer that all call one function of [`Reader`].
 macro_rules! read_as {
     ($($how:ident: $($function:ident)+;)*) => {$($(
         fn $function<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
@@ -207,7 +206,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         self.table(visitor)
     }
 
-    /// A key that is there has a value.
+    /// A key that is present has a value.
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         let span = self.span.clone();
         visitor.visit_some(self).map_err(|error| error.at(&span))
@@ -242,7 +241,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 }
 
-/// The values of an array, one after the other.
+/// The values of an array, in order.
 struct Elements<'i>(<DeArray<'i> as IntoIterator>::IntoIter);
 
 impl<'de> SeqAccess<'de> for Elements<'de> {
@@ -255,10 +254,10 @@ impl<'de> SeqAccess<'de> for Elements<'de> {
     }
 }
 
-/// The keys of a table with their values, one after the other.
+/// The keys of a table with their values, in order.
 struct Entries<'i> {
     left: <DeTable<'i> as IntoIterator>::IntoIter,
-    /// Value of the key that was read last.
+    /// Value of the last key that was read.
     value: Option<Spanned<DeValue<'i>>>,
 }
 

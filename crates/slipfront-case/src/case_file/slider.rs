@@ -14,11 +14,11 @@ use crate::key_rows;
 use crate::quantity::{Density, Length, Pressure, Rate, StiffnessPerArea};
 use slipfront_base::number_format::count;
 
-/// Why properties that differ from block to block do not go with a bulk body.
+/// Reason why properties that differ between blocks are refused for a bulk body.
 const UNEQUAL: &str = "how far they reach into a bulk body is not known";
 /// Largest number of blocks along an axis.
 pub(crate) const MAX_BLOCKS: u64 = 100_000;
-/// Least and largest property of a block over that of the whole slider.
+/// Smallest and largest ratio of a property of a block to that of the whole slider.
 pub(crate) const MIN_RELATIVE: f64 = 1e-6;
 pub(crate) const MAX_RELATIVE: f64 = 1e6;
 
@@ -121,7 +121,7 @@ key_rows! {
 }
 
 key_rows! {
-    /// A sheet of the stack that stands for a bulk body.
+    /// A sheet of the stack that models a bulk body.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SheetOfStack {
@@ -134,7 +134,7 @@ key_rows! {
 }
 
 key_rows! {
-    /// A property relative to that of the whole slider that changes linearly along an axis, from one edge to
+    /// A property relative to that of the whole slider, with a linear change along an axis, from one edge to
     /// the other.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -149,25 +149,25 @@ key_rows! {
     }
 }
 
-/// A property of a block over that of the whole slider.
+/// Kind of a property of a block relative to that of the whole slider.
 const RELATIVE_PROPERTY: KeyKind = number(
     within(MIN_RELATIVE, MAX_RELATIVE),
     "it is relative, so that 1 changes nothing",
 );
 const GRADE: KeyKind = KeyKind::Table("{ along = \"x\", from = 1, to = 0.1 }", Grade::KEYS);
 
-/// Thickness of a sheet of a stack.
+/// Kind of the thickness of a sheet of a stack.
 const THICKNESS_OF_SHEET: KeyKind = quantity("m", within(1e-12, 1e3));
-/// Fewest and most sheets of a stack: with one there is nothing to couple, and three are within 0.1 % of a
+/// Fewest and most sheets of a stack: one sheet has nothing to couple to, and three are within 0.1 % of a
 /// deep body.
 const SHEETS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// Young's modulus of a case without the key, in Pa.
 const DEFAULT_MODULUS: f64 = 100e9;
 
-/// Largest number of all blocks.
+/// Largest total number of blocks.
 pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
-/// Smallest number of blocks along a periodic axis, where a block has two neighbours.
+/// Smallest number of blocks along a periodic axis, so that a block has two different neighbours.
 const MIN_BLOCKS_PERIODIC: u32 = 3;
 
 impl Slider {
@@ -227,7 +227,7 @@ impl Slider {
         self.check_outline(check)
     }
 
-    /// Refuses halved springs where not every edge is that of a sheet of squares between blocks.
+    /// Refuses halved springs unless every edge is that of a sheet of squares between blocks.
     fn check_edge_springs(&self, check: &Check) -> Result<(), CaseError> {
         let [nx, ny] = self.blocks;
         let why = if self.edge_springs.are_whole() {
@@ -264,7 +264,7 @@ impl Slider {
         })
     }
 
-    /// Refuses keys of a bulk body for a sheet, and the other way round.
+    /// Refuses keys of a bulk body for a sheet, and vice versa.
     fn check_body(&self, check: &Check) -> Result<(), CaseError> {
         check.value("height", &self.height)?;
         check.value("poisson", &self.poisson)?;
@@ -386,7 +386,7 @@ impl Slider {
         }
     }
 
-    /// Whether the slider is as thick as a block, because no key says how thick it is.
+    /// Whether the slider is as thick as a block because no key gives its thickness.
     pub(crate) fn thickness_is_a_block(&self) -> bool {
         self.body == Body::Sheet && self.thickness.is_none()
     }

@@ -11,24 +11,24 @@ use super::error::{CaseError, Place};
 use slipfront_base::ordered::map_of;
 use slipfront_base::text::truncated;
 
-/// The longest key whose place is noted, in bytes: all known keys are shorter. Each key below one of many
-/// megabytes would take its length.
+/// Largest length of a key with a recorded place, in bytes; all known keys are shorter. Without the limit, a
+/// key of many megabytes would be stored again for each key below it.
 const MAX_KEY: usize = 64;
 
-/// The text that a case was read from, kept so that errors found later name their place.
+/// The text of a case, kept so that later errors can name their place.
 ///
-/// All sources compare equal, so that cases are equal whatever they were read from.
+/// All sources compare equal, so that cases from different texts may be equal.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
     name: Arc<str>,
     file: Arc<str>,
-    /// The overrides, each with the position of its first byte: positions go on behind the file, so that a
-    /// span determines its text.
+    /// The overrides, each with the position of its first byte. Positions continue after the file, so that a
+    /// span identifies its text.
     overrides: Vec<(usize, String)>,
-    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; longer keys are
-    /// left out.
+    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`, without longer
+    /// keys.
     places: BTreeMap<String, Range<usize>>,
-    /// The file that this text is a table of, if it is not as the user wrote it.
+    /// The file that contains this text as a table, if the user did not write the text itself.
     whole: Option<Arc<Whole>>,
 }
 
@@ -55,8 +55,8 @@ impl Source {
         }
     }
 
-    /// Says that the text is that of the table `table` of a file which the user wrote: errors name their
-    /// places there.
+    /// Declares that the text is the table `table` of a file that the user wrote: errors then name their
+    /// places in this file.
     pub fn of_table(mut self, whole: Source, table: &str) -> Self {
         let table = table.to_owned();
         self.whole = Some(Arc::new(Whole { source: whole, table }));
@@ -87,7 +87,7 @@ impl Source {
         piece.unwrap_or_default()
     }
 
-    /// The text before and after a position, within the line of the file or the override that holds it.
+    /// The text before and after a position, within its line of the file or its override.
     pub(super) fn line_around(&self, position: usize) -> (&str, &str) {
         let (start, text) = match self.override_at(position) {
             Some((start, text)) => (*start, text.as_str()),
@@ -111,24 +111,24 @@ impl Source {
         }
     }
 
-    /// Notes the place of every value of a parsed file.
+    /// Records the place of every value of a parsed file.
     pub fn note_places(&mut self, root: &DeTable<'_>) {
         note_table(&mut self.places, "", root);
     }
 
-    /// The key whose value has exactly this span, or else the innermost one around it.
+    /// The key of the value with exactly this span, or otherwise of the smallest value around it.
     pub fn key_at(&self, span: &Range<usize>) -> Option<&str> {
         let around = self
             .places
             .iter()
             .filter(|(_, place)| place.start <= span.start && span.end <= place.end);
-        // Of equal spans the longest key: a table made by `--set` spans no more than its only value.
+        // Among equal spans, the longest key: a table made by `--set` has the span of its only value.
         around
             .min_by_key(|(key, place)| (place.len(), usize::MAX - key.len()))
             .map(|(key, _)| key.as_str())
     }
 
-    /// The value of `key` as the user wrote it; empty if there is none.
+    /// The value of `key` as the user wrote it; empty if the user did not.
     pub(super) fn written(&self, key: &str) -> &str {
         let span = self.places.get(key).cloned();
         span.map_or("", |span| self.slice(span))
@@ -141,7 +141,7 @@ impl Source {
 
     /// An error about the value of `key`, such as `drive.v_star` or `texture.0.coverage`.
     ///
-    /// The error carries the place of that value, or none when the value is a default or was set in code.
+    /// The error has the place of this value, or none when the value is a default or was set in code.
     pub fn error(&self, key: &str, sentence: impl Into<String>) -> CaseError {
         let span = self.places.get(key).cloned();
         CaseError::invalid(span.map(|span| self.place(span)), sentence)
@@ -152,7 +152,7 @@ impl Source {
         CaseError::invalid(Some(self.place(span)), sentence)
     }
 
-    /// The place of a span: the line and column where it begins, or the `--set` that it lies in.
+    /// The place of a span: the line and column where it begins, or the `--set` that contains it.
     pub fn place(&self, span: Range<usize>) -> Place {
         match self.override_at(span.start) {
             Some((_, text)) => Place::Override(truncated(text)),
@@ -162,11 +162,11 @@ impl Source {
         }
     }
 
-    /// The place of a span in the file that this text is a table of: of the value or key there, or of the
-    /// table around it.
+    /// The place of a span in the file that contains this text as a table: the place of the value or key
+    /// there, or of the table around it.
     fn place_in_whole(&self, span: &Range<usize>) -> Option<Place> {
         let Whole { source, table } = self.whole.as_deref()?;
-        // The span is that of a value, or of a key, whose value is the next with its name.
+        // The span is that of a value, or of a key. The value of a key is the next one with its name.
         let name = self.slice(span.clone());
         let named = self
             .places
@@ -181,7 +181,7 @@ impl Source {
         place.map(|span| source.place(span))
     }
 
-    /// The override that holds a position, and the position where it begins.
+    /// The override that contains a position, and the position where it begins.
     pub(super) fn override_at(&self, position: usize) -> Option<&(usize, String)> {
         self.overrides.iter().rev().find(|(start, _)| *start <= position)
     }
@@ -210,8 +210,8 @@ fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &
     places.insert(key, span_of(value));
 }
 
-/// The span of a value; of a list of numbers or words one of which an override has set, the span of the last
-/// of these: what the file holds is not what the list is.
+/// The span of a value. If an override has set elements of a list of numbers or words, this is the span of
+/// the last of them, because the list in the file is no longer the value.
 fn span_of(value: &Spanned<DeValue<'_>>) -> Range<usize> {
     let span = value.span();
     let DeValue::Array(values) = value.get_ref() else {

@@ -1,9 +1,8 @@
-//! Words that people try first, and the keys of a case file in their place.
+//! Words that people try first, and the keys of a case file to use instead.
 
 use super::{friction, shapes};
 
-/// Each word, in small letters if it is longer than one letter, and the advice on it. Keys stand in
-/// backquotes.
+/// Each word, in lower case if it is longer than one letter, and the advice on it. Keys are in backquotes.
 const COMMON: &[(&str, &str)] = &[
     ("E", YOUNG),
     ("young", YOUNG),
@@ -243,7 +242,7 @@ fn synonyms() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
 
 /// The advice on a word.
 pub(super) fn advice_on(word: &str) -> Option<&'static str> {
-    // Of one letter, E and e, V and v differ.
+    // For single letters, case matters: E and e, V and v.
     let small = word.to_lowercase();
     synonyms()
         .find(|(known, _)| *known == word || (word.len() > 1 && *known == small))
@@ -255,7 +254,7 @@ mod tests {
     use super::*;
     use crate::case_file::key_table::SECTIONS;
 
-    /// Every key that is named exists. No word is a key itself, which would be misdirected from the wrong
+    /// Every key that advice names exists. No word is a key itself, which would be misdirected from the wrong
     /// table, unless its advice names it.
     #[test]
     fn advice_names_keys_that_exist() {

@@ -1,4 +1,4 @@
-//! Reads the tables of a parsed file one after the other; errors name their place.
+//! Reads the tables of a parsed file one by one; errors name their place.
 
 use serde::de::DeserializeOwned;
 use toml::Spanned;
@@ -13,7 +13,7 @@ use super::probe::names_of;
 use super::reader::Reader;
 use super::source::Source;
 
-/// The tables of a parsed file that are still to be read.
+/// The tables of a parsed file that remain to be read.
 pub struct Tables<'a, 'i> {
     /// The tables that have not been read yet.
     pub root: DeTable<'i>,
@@ -22,16 +22,16 @@ pub struct Tables<'a, 'i> {
 }
 
 impl<'i> Tables<'_, 'i> {
-    /// The table `[name]` of a case, or an empty one where the file has none.
+    /// The table `[name]` of a case, or an empty one if the file has none.
     pub(super) fn read<T: DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
         let table = self.table(name)?;
         self.read_section(table, name, &header(name))
     }
 
-    /// The table `[name]`, which has these keys, or an empty one where the file has none.
+    /// The table `[name]`, which has these keys, or an empty one if the file has none.
     ///
     /// # Errors
-    /// [`CaseError::Invalid`] for a value that is no table, unknown keys, and values of another type.
+    /// [`CaseError::Invalid`] for a value that is not a table, unknown keys, and values of another type.
     pub fn read_with<T: DeserializeOwned>(&mut self, name: &str, keys: &[Key]) -> Result<T, CaseError> {
         let mut table = self.table(name)?;
         if let DeValue::Table(given) = table.get_mut() {
@@ -51,7 +51,7 @@ impl<'i> Tables<'_, 'i> {
         Ok(table)
     }
 
-    /// A table that stands under `header`, with the defaults of a table or shape of texture called `section`.
+    /// The table under `header`, with the defaults of a table or shape of texture called `section`.
     pub(super) fn read_section<T: DeserializeOwned>(
         &self,
         mut table: Spanned<DeValue<'i>>,
@@ -65,7 +65,7 @@ impl<'i> Tables<'_, 'i> {
         self.read_keys(table, header, section)
     }
 
-    /// A table that stands under `header`, of any type that toml can read.
+    /// The table under `header`, of any type that toml can read.
     pub fn read_table<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,
@@ -78,7 +78,7 @@ impl<'i> Tables<'_, 'i> {
         })
     }
 
-    /// Reads a table that stands under `header`, and has the keys of `section` if it is one of a case.
+    /// Reads the table under `header`, which has the keys of `section` if it belongs to a case.
     pub(super) fn read_keys<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,
@@ -87,7 +87,7 @@ impl<'i> Tables<'_, 'i> {
     ) -> Result<T, CaseError> {
         let span = table.span();
         T::deserialize(Reader::from(table)).map_err(|error| {
-            // An error about the table as a whole, such as a size that is missing, comes without a span.
+            // An error about the whole table, such as a missing size, has no span.
             let span = error.span.unwrap_or(span);
             value_error(
                 self.source,

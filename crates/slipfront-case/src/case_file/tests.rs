@@ -1,6 +1,6 @@
 use super::*;
 
-/// The table of keys has every key that the structs read, in their order.
+/// The table of keys has every key that the structs read, in the same order.
 #[test]
 fn the_table_has_the_keys_of_the_structs() {
     let pattern = names_of::<Pattern>();
@@ -25,8 +25,8 @@ fn the_table_has_the_keys_of_the_structs() {
     }
 }
 
-/// A case that is made from one that was read before equals a case read anew, and is refused for the same
-/// reason at the same place.
+/// A case made from an already parsed one equals a newly read case, and is refused for the same reason at the
+/// same place.
 #[test]
 fn tables_that_no_override_changes_are_read_once() {
     let text = "drive.v_star = 0.05\n[slider]\nblocks = [50, 40]\n[time]\nduration_star = 50\n[[texture]]\nshape = 'groove'\n\

@@ -16,10 +16,10 @@ use super::tables::Tables;
 /// One `[[texture]]` of the file; a block is textured when its centre lies inside any of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Texture {
-    /// `shape` and the keys that it has.
+    /// `shape` and its keys.
     #[serde(flatten)]
     pub shape: Shape,
-    /// The keys that every shape has.
+    /// The keys common to all shapes.
     #[serde(flatten)]
     pub pattern: Pattern,
 }
@@ -32,7 +32,8 @@ impl Texture {
 }
 
 impl<'i> Tables<'_, 'i> {
-    /// An error about the first key of a texture without `shape` that no shape has, if there is one.
+    /// An error about the first key that no shape has, in a texture without `shape`; none if there is no such
+    /// key.
     fn unknown_to_all_shapes(&self, table: &DeTable<'i>) -> Option<CaseError> {
         let mut known: Vec<&str> = vec!["shape"];
         let shapes = SECTIONS.iter().filter(|section| section.is_shape);
@@ -70,7 +71,8 @@ impl<'i> Tables<'_, 'i> {
         values.into_iter().map(|value| self.read_texture(value)).collect()
     }
 
-    /// Reads a texture by its `shape`. Serde's internally tagged enums would lose the places of all keys.
+    /// Reads a texture according to its `shape`. Serde's internally tagged enums would lose the places of all
+    /// keys.
     fn read_texture(&self, value: Spanned<DeValue<'i>>) -> Result<Texture, CaseError> {
         let span = value.span();
         let DeValue::Table(mut table) = value.into_inner() else {
@@ -89,7 +91,7 @@ impl<'i> Tables<'_, 'i> {
             {
                 return Err(error);
             }
-            // The span of a table that an override has added is that of the override.
+            // A table that an override has added has the span of the override.
             let made = match self.source.override_at(span.start) {
                 Some(_) if shape.is_none() => ". The case has no such texture, so that this begins one",
                 _ => "",
@@ -98,7 +100,7 @@ impl<'i> Tables<'_, 'i> {
             return Err(self.source.error_at(shape_span, sentence));
         };
         section.fill_in(&mut table);
-        // The keys of the pattern, which all shapes have, are read apart.
+        // The keys of the pattern, which are common to all shapes, are read separately.
         let mut pattern = DeTable::default();
         for key in names_of::<Pattern>() {
             if let Some((key, value)) = table.remove_entry(*key) {

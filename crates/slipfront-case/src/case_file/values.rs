@@ -1,4 +1,4 @@
-//! Shapes of values that several tables use: pairs, and words beside numbers.
+//! Forms of values that several tables use: pairs, and words in place of numbers.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -19,7 +19,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Pair<T> {
     }
 }
 
-/// Visitor that counts the values inside the visit, where an error still gets the place of the pair.
+/// Visitor that counts the values during the visit, so that an error still gets the place of the pair.
 struct PairVisitor<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
@@ -40,8 +40,8 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
     }
 }
 
-/// Reads a length from a text, so that a text that cannot be read keeps its own message where several shapes
-/// of a value are tried.
+/// Reads a length from a text. A text that cannot be read keeps its own message where a value may have
+/// several forms.
 pub(super) fn length(text: &str) -> Result<Length, String> {
     text.parse().map_err(|error: QuantityError| error.to_string())
 }
@@ -71,8 +71,8 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
     }
 }
 
-/// Visitor that lets a word be looked up inside the visit, where an error still gets the place of the word.
-/// It is one for all words.
+/// Visitor that looks up a word during the visit, so that an error still gets the place of the word. It is
+/// not generic, so that all words share its code.
 struct WordVisitor<'a>(&'a mut dyn FnMut(&str) -> Result<(), ValueError>);
 
 impl Visitor<'_> for WordVisitor<'_> {
@@ -112,7 +112,7 @@ where
     Ok(words.into_iter().map(|Word(value)| value).collect())
 }
 
-/// A number, or a word that stands for one.
+/// A number, or a word in place of one.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number, or a word such as \"auto\"")]
 pub(super) enum WordOrNumber {
@@ -120,11 +120,11 @@ pub(super) enum WordOrNumber {
     Word(String),
 }
 
-/// A number that the program chooses unless the user does.
+/// A number chosen by the user or by the program.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
 pub enum AutoOr {
-    /// `"auto"`: the program chooses, as the documentation of the key says.
+    /// `"auto"`: the program chooses, according to the documentation of the key.
     Auto,
     /// The user's number.
     Number(f64),

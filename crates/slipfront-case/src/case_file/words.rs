@@ -1,4 +1,4 @@
-//! Keys that take one of several words.
+//! Keys that accept one of several words.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,20 +8,20 @@ use serde::{Deserialize, Serialize};
 pub enum Outline {
     /// The shape with all blocks.
     Rectangle,
-    /// The disc that fills as many blocks along x as along y.
+    /// The disc inscribed in a square of blocks.
     Disc,
     /// The shape with the blocks of a file.
     Mask,
 }
 
-/// Kind of body that a slider is.
+/// Kind of body of the slider.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Body {
     /// A sheet of the thickness of the slider.
     #[default]
     Sheet,
-    /// A stack of sheets, which stands for a body that is thick under its texture.
+    /// A stack of sheets, as a model of a body that is thick under its texture.
     Bulk,
 }
 
@@ -35,10 +35,10 @@ impl Body {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrictionAlong {
-    /// The plane of the slider, which lies on its substrate.
+    /// The plane of the slider, which lies flat on its substrate.
     #[default]
     Plane,
-    /// The axis along rows, of a sheet that stands upright on its substrate.
+    /// The axis along rows, for a sheet that is upright on its substrate.
     X,
 }
 
@@ -91,13 +91,13 @@ pub enum Motion {
     Rotation,
 }
 
-/// Times at which the far ends of the drive springs move.
+/// Times when the far ends of the drive springs move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Loading {
     /// The far ends move in every step.
     Constant,
-    /// The far ends stand while a block in contact slides.
+    /// The far ends stop while a block in contact slides.
     Held,
 }
 
@@ -109,7 +109,7 @@ pub enum Arrangement {
     #[default]
     Square,
     /// A hexagonal arrangement: every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches
-    /// apart, so that every copy has six neighbours at one distance.
+    /// apart, so that every copy has six neighbours at equal distance.
     Hexagonal,
     /// A staggered arrangement: every second row is shifted by half a pitch.
     Staggered,

@@ -123,7 +123,7 @@ fn messages_say_what_to_write() {
     assert!(error::<kind::Length>(&"1".repeat(201)).contains("201 bytes"));
 }
 
-/// A suggestion has the wanted dimension, and a unit that is known elsewhere is converted.
+/// A suggestion has the wanted dimension, and a known foreign unit is converted.
 #[test]
 fn suggestions_are_of_the_wanted_dimension() {
     let psi = error::<kind::Pressure>("5 psi");
@@ -138,7 +138,7 @@ fn suggestions_are_of_the_wanted_dimension() {
     ] {
         assert!(said.ends_with(&format!("write \"{written}\"")), "{said}");
     }
-    // What is written can be read, and is what was meant to the six digits that are printed.
+    // The suggestion can be read, and equals the original value to the six digits that are printed.
     for (symbol, dimension, size) in FOREIGN_UNITS {
         if dimension == Pressure::DIMENSION {
             let said = error::<kind::Pressure>(&format!("3 {symbol}"));
@@ -153,7 +153,7 @@ fn suggestions_are_of_the_wanted_dimension() {
     assert!(error::<kind::Speed>("1,5 mm/s").ends_with("the decimal sign is a point"));
     assert!(error::<kind::Pressure>("1 N/mm3").contains("write it as in"));
     assert!(error::<kind::Pressure>("1 kPaa").ends_with("did you mean `kPa`?"));
-    // `ps` is no pressure; of `mN` and `ms` the second is a time.
+    // `ps` is not a pressure; of `mN` and `ms`, only the second is a time.
     assert!(error::<kind::Pressure>("5 psy").contains("write it as in \"100 kPa\""));
     assert!(error::<kind::Speed>("1 m/mn").ends_with("did you mean `ms`?"));
 }
@@ -172,7 +172,7 @@ fn a_bare_toml_number_is_refused_with_advice() {
     }
 }
 
-/// `digits` x 10^`exponent` in positional notation: no exponent for the reader to get wrong.
+/// `digits` x 10^`exponent` in positional notation, so that the reader sees no exponent.
 fn positional(digits: u64, exponent: i32) -> String {
     let zeros = |n: i32| "0".repeat(usize::try_from(n).unwrap_or(0));
     let digits = digits.to_string();

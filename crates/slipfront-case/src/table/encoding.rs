@@ -6,13 +6,13 @@ use std::str::from_utf8;
 /// Encoding of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// UTF-8, of which ASCII is a part.
+    /// UTF-8, which includes ASCII.
     Utf8,
     /// UTF-16, the lower byte first.
     Utf16Le,
     /// UTF-16, the higher byte first.
     Utf16Be,
-    /// Latin-1 as Windows extends it (code page 1252): what is not valid UTF-8.
+    /// Latin-1 with the extensions of Windows (code page 1252): any text that is not valid UTF-8.
     Windows1252,
 }
 
@@ -30,7 +30,7 @@ impl Encoding {
             [0xfe, 0xff, ..] => return Self::Utf16Be,
             _ => {}
         }
-        // Text of any of these tables is mostly ASCII, of which every second byte of UTF-16 is zero.
+        // Text of any of these tables is mostly ASCII, and in UTF-16 every second byte of ASCII is zero.
         let zeros = |first: usize| {
             head.iter()
                 .skip(first)
@@ -50,7 +50,7 @@ impl Encoding {
         }
     }
 
-    /// The text of a source as UTF-8, without the mark of its byte order.
+    /// The text of a source as UTF-8, without its byte order mark.
     pub(super) fn decoded<R: Read>(self, source: R) -> DecodedText<R> {
         DecodedText {
             encoding: self,
@@ -62,21 +62,21 @@ impl Encoding {
         }
     }
 
-    /// The text of these bytes; what is none is replaced.
+    /// The text of these bytes; invalid bytes are replaced.
     pub(crate) fn text(self, bytes: &[u8]) -> String {
         let mut text = Vec::new();
-        // Nothing fails where bytes are in memory.
+        // Reading from memory cannot fail.
         let _ = self.decoded(bytes).read_to_end(&mut text);
         String::from_utf8_lossy(&text).into_owned()
     }
 
-    /// Moves the characters that `bytes` begin with to the end of `text`; those that are cut stay, unless
-    /// nothing follows them.
+    /// Moves the characters at the beginning of `bytes` to the end of `text`. An incomplete character stays,
+    /// unless this is the end.
     fn decode(self, bytes: &mut Vec<u8>, text: &mut String, is_end: bool) {
         let of_units = |unit: fn([u8; 2]) -> u16| {
             let (pairs, _) = bytes.as_chunks();
             let mut units = Vec::from_iter(pairs.iter().map(|pair| unit(*pair)));
-            // The first half of a pair waits for the second.
+            // The first half of a surrogate pair waits for the second.
             if !is_end && units.last().is_some_and(|unit| (0xd800..0xdc00).contains(unit)) {
                 units.pop();
             }
@@ -111,7 +111,7 @@ impl Encoding {
         bytes.drain(..taken);
     }
 
-    /// The name of the encoding, unless it is the usual one.
+    /// The name of the encoding, unless it is UTF-8.
     pub(super) fn unusual(self) -> Option<&'static str> {
         match self {
             Self::Utf8 => None,
@@ -121,7 +121,7 @@ impl Encoding {
     }
 }
 
-/// Characters of the code page 1252 from 0x80 to 0x9f, where it differs from Latin-1.
+/// Characters of code page 1252 from 0x80 to 0x9f, where it differs from Latin-1.
 const WINDOWS_1252: [char; 32] = [
     '\u{20ac}', '\u{81}', '\u{201a}', '\u{192}', '\u{201e}', '\u{2026}', '\u{2020}', '\u{2021}', '\u{2c6}',
     '\u{2030}', '\u{160}', '\u{2039}', '\u{152}', '\u{8d}', '\u{17d}', '\u{8f}', '\u{90}', '\u{2018}',
@@ -129,17 +129,17 @@ const WINDOWS_1252: [char; 32] = [
     '\u{203a}', '\u{153}', '\u{9d}', '\u{17e}', '\u{178}',
 ];
 
-/// Number of bytes that are decoded at once.
+/// Number of bytes that are decoded at a time.
 const CHUNK: u64 = 1 << 16;
 
-/// A text as UTF-8 while it is read. Libraries that decode bring tables of all encodings, which would make
-/// the page's module a tenth larger.
+/// Converts a text to UTF-8 while it is read. Decoding libraries contain tables for all encodings, which
+/// would make the page's module a tenth larger.
 pub(super) struct DecodedText<R> {
     encoding: Encoding,
     source: R,
-    /// Bytes of a character that is cut.
+    /// Bytes of an incomplete character.
     bytes: Vec<u8>,
-    /// Decoded text, of which the first `taken` bytes were given away.
+    /// Decoded text; its first `taken` bytes have already been returned.
     text: String,
     taken: usize,
     is_start: bool,
@@ -173,7 +173,7 @@ mod tests {
 
     use super::*;
 
-    /// Bytes that come one by one.
+    /// Source that returns its bytes one by one.
     struct OneByOne<'b>(&'b [u8]);
 
     impl Read for OneByOne<'_> {

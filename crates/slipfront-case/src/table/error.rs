@@ -1,10 +1,10 @@
-//! Reasons for which a text is no table of numbers.
+//! Reasons why a text is not a table of numbers.
 
 use std::io;
 
 use slipfront_base::text::truncated;
 
-/// Reason for which a table cannot be read: a sentence that goes on after the name of the file.
+/// Reason why a table cannot be read: a sentence that continues after the name of the file.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TableError {

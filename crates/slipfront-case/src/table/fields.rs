@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-/// A line whose last field has no closing quotation mark.
+/// A line without a closing quotation mark in its last field.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct OpenQuote;
 
-/// The fields of a line, without blanks around them. A field may stand in quotation marks, where two of them
-/// are one; several blanks that separate are one.
+/// The fields of a line, without surrounding blanks. A field may be in quotation marks, with a doubled mark
+/// for one inside it. Several blanks count as one separator.
 pub(super) fn fields(line: &str, separator: char) -> Result<Vec<Cow<'_, str>>, OpenQuote> {
     let mut fields = Vec::new();
     let mut rest = line;
@@ -32,17 +32,17 @@ pub(super) fn fields(line: &str, separator: char) -> Result<Vec<Cow<'_, str>>, O
     }
 }
 
-/// A field without blanks around it, nor marks of the byte order, which files that were joined have inside.
+/// A field without surrounding blanks and byte order marks, which concatenated files contain.
 fn bare(field: &str) -> &str {
     field.trim_matches(|character: char| character.is_whitespace() || character == '\u{feff}')
 }
 
-/// Whether a character stands around a field without being a part of it.
+/// Whether a character may surround a field without being a part of it.
 fn is_padding(separator: char) -> impl Fn(char) -> bool {
     move |character| character.is_whitespace() && character != separator
 }
 
-/// The field behind a quotation mark, and what follows its end.
+/// The field after an opening quotation mark, and the text after its end.
 fn quoted_field(text: &str) -> Result<(Cow<'_, str>, &str), OpenQuote> {
     let mut end = text.find('"').ok_or(OpenQuote)?;
     let mut has_quotes = false;

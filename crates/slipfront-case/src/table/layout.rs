@@ -1,4 +1,4 @@
-//! Where a table has its names, its units and its numbers, and how they are written.
+//! Layout of a table: the lines with its names, units and numbers, and their format.
 
 use std::borrow::Cow;
 
@@ -11,13 +11,13 @@ use super::error::TableError;
 use super::fields::fields;
 use super::number::{clock_time, has_groups, number};
 
-/// Number of bytes at the beginning of a table from which its layout is found.
+/// Number of bytes at the beginning of a table that determine its layout.
 pub const HEAD_BYTES: u64 = 1 << 20;
 
-/// Separators that are looked for; among those that fit as well the first.
+/// Separators to try; among equally good ones, the first is taken.
 const SEPARATORS: [char; 4] = [';', '\t', ',', ' '];
 
-/// Decimal sign of numbers, as files name it.
+/// Decimal sign of numbers, by its name in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DecimalSign {
@@ -27,7 +27,7 @@ pub enum DecimalSign {
     Comma,
 }
 
-/// Separator of fields, as files name it.
+/// Separator of fields, by its name in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldSeparator {
@@ -35,9 +35,9 @@ pub enum FieldSeparator {
     Comma,
     /// `1;2`.
     Semicolon,
-    /// Tabulators.
+    /// Tab characters.
     Tab,
-    /// One blank or several.
+    /// One or several blanks.
     Blank,
 }
 
@@ -63,7 +63,7 @@ impl FieldSeparator {
     }
 }
 
-/// Properties of a table that its reader states, in place of those that would be found.
+/// Properties of a table that the user states, instead of those that would be detected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TableOptions {
     /// Line of the names, from 1; 0 if there are none.
@@ -75,7 +75,7 @@ pub struct TableOptions {
 }
 
 impl TableOptions {
-    /// The options as files and commands state them.
+    /// The options from their names in files and commands.
     pub fn stated(
         header_line: Option<u64>,
         decimal: Option<DecimalSign>,
@@ -98,7 +98,7 @@ pub struct NamedLine {
     pub texts: Vec<String>,
 }
 
-/// Where a table has its names, its units and its numbers, and how they are written.
+/// Layout of a table: the lines with its names, units and numbers, and their format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableLayout {
     /// Encoding of the text.
@@ -117,7 +117,8 @@ pub struct TableLayout {
     pub columns: usize,
     /// Lines above the names that are neither blank nor comments: their number, and the text of the first.
     above: Option<(usize, String)>,
-    /// Lines above the first one with numbers alone, likewise.
+    /// First line of the matrix, which has mostly numbers; the number of lines above it that are neither
+    /// blank nor comments; and the text of the first of these.
     above_numbers: Option<(u64, usize, String)>,
 }
 
@@ -137,15 +138,15 @@ impl Line<'_> {
     }
 }
 
-/// A way to read a table.
+/// A possible reading of a table.
 struct Reading {
     layout: TableLayout,
-    /// Fields of rows that are numbers, less those that are not.
+    /// Number of numeric fields in rows, minus the number of other fields.
     score: i64,
 }
 
 impl TableLayout {
-    /// Finds the layout of the table that begins with `head`, all of it if it is short.
+    /// Finds the layout of the table that begins with `head`, which is the whole table if it is short.
     ///
     /// ```
     /// use slipfront_case::table::{TableLayout, TableOptions};
@@ -159,7 +160,7 @@ impl TableLayout {
     /// ```
     ///
     /// # Errors
-    /// When the head is no text, can be read in two ways, or does not have what `options` states.
+    /// When the head is not text, can be read in two ways, or does not have the properties in `options`.
     pub fn find(head: &[u8], options: TableOptions) -> Result<Self, TableError> {
         binary(head).map_or(Ok(()), |kind| Err(TableError::Binary(kind)))?;
         let encoding = Encoding::of(head);
@@ -168,7 +169,7 @@ impl TableLayout {
         let stated = sep_line(text);
         let separators: Vec<char> = match options.separator.or(stated) {
             Some(separator) => vec![separator],
-            // Separators that the text does not have read it alike: one of them is enough.
+            // All separators that are not in the text give the same reading, so one of them is enough.
             None => {
                 let absent = SEPARATORS.into_iter().find(|sign| !text.contains(*sign));
                 let is_tried = |sign: &char| text.contains(*sign) || absent == Some(*sign);
@@ -189,8 +190,8 @@ impl TableLayout {
         best(readings, text, options)
     }
 
-    /// Properties of the table beyond names in its first line, commas between fields and decimal points:
-    /// a sentence without its stop.
+    /// Properties of the table that differ from names in the first line, commas between fields and decimal
+    /// points, in a sentence without a full stop.
     pub fn took(&self) -> Option<String> {
         let mut took = Vec::new();
         match &self.names {
@@ -225,7 +226,7 @@ impl TableLayout {
         (!took.is_empty()).then(|| took.join("; "))
     }
 
-    /// The layout of a table of which every line has numbers.
+    /// The layout of a table with numbers in every line.
     pub(crate) fn of_numbers_alone(self) -> Self {
         Self {
             names: None,
@@ -236,7 +237,7 @@ impl TableLayout {
         }
     }
 
-    /// The layout of a table whose rows begin with the first line of numbers, whatever stands above.
+    /// The layout of a table with rows that begin at the first line of numbers, whatever is above.
     pub(crate) fn without_names(self) -> Self {
         let (first_line, above) = match self.above_numbers.clone() {
             Some((line, lines, first)) => (line, Some((lines, first))),
@@ -251,7 +252,7 @@ impl TableLayout {
         }
     }
 
-    /// Drops empty fields at the end of a row, and refuses one that has more fields than there are names.
+    /// Drops empty fields at the end of a row, and refuses a row with more fields than there are names.
     pub(super) fn fit(&self, line: u64, fields: &mut Vec<Cow<'_, str>>) -> Result<(), TableError> {
         let Some(names) = &self.names else { return Ok(()) };
         while fields.len() > names.texts.len() && fields.last().is_some_and(|field| field.is_empty()) {
@@ -276,7 +277,7 @@ impl TableLayout {
 }
 
 impl Reading {
-    /// The text with this separator and decimal sign.
+    /// Reads the text with this separator and decimal sign.
     fn of(
         text: &str,
         encoding: Encoding,
@@ -301,12 +302,12 @@ impl Reading {
             })
             .filter(|line| !line.fields.is_empty())
             .collect();
-        // Rows are the longest sequence of lines with as many fields, at least half of which are numbers.
+        // Rows are the longest sequence of lines with equal numbers of fields, at least half of them numeric.
         let sequences = lines.chunk_by(|a, b| a.is_row() && b.is_row() && a.fields.len() == b.fields.len());
         let rows = sequences.filter(|lines| lines[0].is_row()).rev();
         let longest = rows.max_by_key(|lines| lines.len()).unwrap_or_default();
         let columns = longest.first().map_or(0, |line| line.fields.len());
-        // Columns of numbers are those that most of these rows have.
+        // Numeric columns are those with a number in most of these rows.
         let in_most = |column: &usize| {
             2 * longest
                 .iter()
@@ -315,7 +316,7 @@ impl Reading {
                 > longest.len()
         };
         let of_numbers: Vec<usize> = (0..columns).filter(in_most).collect();
-        // What stands in a column that rows leave empty is a word of an instrument.
+        // In a column that is empty in the rows, an instrument may have written a word.
         let is_empty = |column: &usize| longest.iter().all(|line| line.fields[*column].is_empty());
         let of_nothing: Vec<usize> = (0..columns).filter(is_empty).collect();
         let has_all = |line: &&Line| {
@@ -342,11 +343,12 @@ impl Reading {
                     lines: n_lines,
                 }
             })?),
-            // Names are texts of which there are as many as columns, or more.
+            // Names are a line of texts, at least as many as there are columns.
             None => (0..first)
                 .rev()
                 .find(|&at| lines[at].fields.len() >= columns && lines[at].numbers == 0)
-                // Fewer names than columns are an error of the rows, and not a line of an instrument.
+                // If there are fewer names than columns, the rows are wrong: the line is not one of an
+                // instrument.
                 .or_else(|| {
                     let at = first.checked_sub(1)?;
                     let are_names = separator != ' ' && lines[at].fields.len() > 1 && lines[at].numbers == 0;
@@ -355,7 +357,8 @@ impl Reading {
         };
         let has_units = |at: usize| {
             let line = lines.get(at)?;
-            // Quantities of an instrument have units that are no matter here, such as those of temperatures.
+            // Quantities of an instrument may have units that are not known here, such as those of
+            // temperatures.
             let is_short =
                 |field: &Cow<'_, str>| field.chars().take(UNIT_MAX_CHARS + 1).count() <= UNIT_MAX_CHARS;
             let are_units = line.numbers == 0
@@ -365,7 +368,7 @@ impl Reading {
             are_units.then_some(at)
         };
         let (names, units) = match names {
-            // The nearest line of texts may be that of the units.
+            // The nearest line of texts may contain the units.
             Some(at) if options.header_line.is_none() && at > 0 && has_units(at).is_some() => {
                 let above = &lines[at - 1];
                 match above.fields.len() >= columns && above.numbers == 0 {
@@ -386,7 +389,7 @@ impl Reading {
             None => lines.get(first).map_or(1, |line| line.number),
         };
         let above = &lines[..names.unwrap_or(first)];
-        // What an instrument writes above a matrix has fewer fields, or fewer numbers.
+        // Lines of an instrument above a matrix have fewer fields, or fewer numbers.
         let is_of_matrix =
             |line: &Line| 2 * line.numbers > line.fields.len() && 2 * line.fields.len() >= columns;
         let first_of_matrix = lines.iter().position(is_of_matrix).unwrap_or(0);
@@ -408,15 +411,15 @@ impl Reading {
     }
 }
 
-/// The reading of which most fields are numbers.
+/// The reading with the most numeric fields.
 fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<TableLayout, TableError> {
-    // Among readings that fit as well the first is taken: `max_by_key` would take the last.
+    // Among equally good readings, the first is taken; `max_by_key` alone would take the last.
     let found = readings
         .into_iter()
         .rev()
         .max_by_key(|reading| (reading.score, reading.layout.columns));
     let Some(Reading { layout, .. }) = found else {
-        // A separator and a decimal sign are always tried.
+        // At least one separator and one decimal sign are always tried.
         return Err(TableError::Ambiguous("it is empty".to_owned()));
     };
     let rows = text.lines().zip(1..).skip(layout.first_line as usize - 1);
@@ -445,7 +448,7 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
              say which, as `decimal` = \"comma\" does, or write the numbers without it"
         )));
     }
-    // Without names nothing tells that `0,500,0,0175` has two numbers and not four.
+    // Without names, `0,500,0,0175` may be two numbers or four.
     if layout.separator == ','
         && layout.names.is_none()
         && options.separator.is_none()
@@ -461,8 +464,8 @@ fn best(readings: Vec<Reading>, text: &str, options: TableOptions) -> Result<Tab
     Ok(layout)
 }
 
-/// The beginning of a text that shows how the table is written: comments, and lines of [`LOOKED_AT`] bytes.
-/// The last line of a text that `is_cut` is left out, unless there is no other.
+/// The beginning of a text that determines the layout: comments, and lines of [`LOOKED_AT`] bytes. If the
+/// text `is_cut`, its last line is left out, unless it is the only one.
 fn looked_at(text: &str, is_cut: bool) -> &str {
     let (mut end, mut counted) = (0, 0);
     for line in text.split_inclusive('\n') {
@@ -478,10 +481,10 @@ fn looked_at(text: &str, is_cut: bool) -> &str {
     &text[..end]
 }
 
-/// Number of bytes of lines without comments from which a layout is found.
+/// Number of bytes of lines without comments that determine a layout.
 const LOOKED_AT: usize = 1 << 14;
 
-/// Whether fields are whole numbers by pairs, of which the second has the form of decimals.
+/// Whether fields are pairs of whole numbers, with the form of decimals in the second of each.
 fn is_doubled(fields: &[Cow<'_, str>]) -> bool {
     let is_whole = |field: &Cow<'_, str>| field.parse::<i64>().is_ok();
     let is_padded = |field: &Cow<'_, str>| field.len() > 1 && field.starts_with('0');
@@ -503,7 +506,7 @@ fn trimmed(mut fields: Vec<Cow<'_, str>>) -> Vec<Cow<'_, str>> {
 /// Largest number of characters of a unit.
 const UNIT_MAX_CHARS: usize = 10;
 
-/// Whether a text can be the unit of a column, such as `N`, `(mm)`, `[-]`, `m/s^2` or nothing.
+/// Whether a text can be the unit of a column, such as `N`, `(mm)`, `[-]`, `m/s^2` or an empty text.
 fn is_unit(text: &str) -> bool {
     const WORDS: [&str; 39] = [
         "s", "sec", "ms", "us", "min", "h", "m", "mm", "um", "nm", "cm", "n", "mn", "kn", "gf", "kgf", "g",
@@ -520,14 +523,14 @@ fn is_unit(text: &str) -> bool {
         || (small.contains('/') && small.split('/').all(|part| WORDS.contains(&part)))
 }
 
-/// The separator that a first line `sep=;` of Excel states.
+/// The separator in a first line `sep=;` of Excel.
 fn sep_line(text: &str) -> Option<char> {
     let first = text.lines().next()?.trim_matches('"');
     let mut stated = first.strip_prefix("sep=")?.chars();
     stated.next().filter(|separator| SEPARATORS.contains(separator))
 }
 
-/// The kind of a file that is no text, by its first bytes.
+/// The kind of a file that is not text, from its first bytes.
 fn binary(head: &[u8]) -> Option<&'static str> {
     match head {
         [b'P', b'K', 3, 4, ..] => Some("a workbook or an archive"),

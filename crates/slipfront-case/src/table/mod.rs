@@ -1,13 +1,12 @@
-//! Tables of text as instruments and programs write them: measured records, height maps, fields of
-//! coefficients.
+//! Text tables from instruments and programs: measured records, height maps, fields of coefficients.
 //!
 //! ```text
 //! bytes -> text (encoding) -> lines -> fields (separator) -> numbers (decimal sign)
 //! ```
 //!
-//! A [`TableLayout`] is found from the beginning of a table: its encoding, its separator, its decimal sign,
-//! the lines with names and units, and where the numbers begin. It says what it took, and refuses a table
-//! that can be read in two ways. A [`TableRows`] then reads line after line.
+//! A [`TableLayout`] is detected from the beginning of a table: its encoding, its separator, its decimal
+//! sign, the lines with names and units, and where the numbers begin. It reports what it has detected, and
+//! refuses a table that can be read in two ways. A [`TableRows`] then reads line by line.
 
 mod encoding;
 mod error;

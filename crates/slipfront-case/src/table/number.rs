@@ -1,6 +1,6 @@
 //! Numbers and times of a table.
 
-/// A number with this decimal sign, a point or a comma; it may be infinite or no number (`nan`).
+/// Reads a number with this decimal sign, a point or a comma; it may be infinite or NaN (`nan`).
 ///
 /// ```
 /// use slipfront_case::table::number;
@@ -16,19 +16,19 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
     }
     match field.split_once(',') {
         None => field.parse().ok().filter(|_| !field.contains('.')),
-        // A separator of columns may stand behind a number without decimals.
+        // A trailing comma is not a decimal sign: it may separate columns.
         Some((_, "")) => None,
         Some((whole, decimals)) if !whole.contains('.') => format!("{whole}.{decimals}").parse().ok(),
         Some(_) => None,
     }
 }
 
-/// Seconds of a time of the day.
+/// Time of day in seconds.
 ///
 /// - From midnight: `10:04:31`, `10:04:31,250` or `1:04:31 PM`.
-/// - From the first midnight of 2000, behind a date: `2024-01-31T10:04:31` or `31.01.2024 10:04:31`.
-/// - From midnight too, behind a date with slashes whose year stands last: which number is the month is not
-///   known.
+/// - From the first midnight of 2000, after a date: `2024-01-31T10:04:31` or `31.01.2024 10:04:31`.
+/// - From midnight too, after a date with slashes and the year last: it does not show which number is the
+///   month.
 ///
 /// ```
 /// use slipfront_case::table::clock_time;
@@ -38,7 +38,7 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
 /// assert_eq!(clock_time("1:2"), None);
 /// ```
 pub fn clock_time(field: &str) -> Option<f64> {
-    // Most fields are no times: this is all that they cost.
+    // Most fields are not times, and are rejected here at little cost.
     field.find(':')?;
     let is_half = |half: &&str| ["AM", "PM"].iter().any(|known| half.eq_ignore_ascii_case(known));
     let (rest, half) = match field.rsplit_once(' ').filter(|(_, half)| is_half(half)) {
@@ -61,7 +61,7 @@ pub fn clock_time(field: &str) -> Option<f64> {
     parts.next().is_none().then_some(whole + seconds)
 }
 
-/// Days of a date from 2000-01-01 in the Gregorian calendar.
+/// Days from 2000-01-01 to a date in the Gregorian calendar.
 fn day(date: &str) -> Option<i64> {
     let mut parts = date.split(['-', '/', '.']).map(|part| part.parse::<i64>().ok());
     let numbers = [parts.next()??, parts.next()??, parts.next()??];
@@ -74,13 +74,13 @@ fn day(date: &str) -> Option<i64> {
     if !is_date || parts.next().is_some() {
         return None;
     }
-    // The day of the Julian count: years begin in March, so that the day of a leap year comes last.
+    // Day of the Julian count: years begin in March, so that the leap day is last.
     let early = (14 - month) / 12;
     let (year, month) = (year + 4800 - early, month + 12 * early - 3);
     Some(day + (153 * month + 2) / 5 + 365 * year + year / 4 - year / 100 + year / 400 - 32_045 - 2_451_545)
 }
 
-/// Whether a field is a number with thousands separators beside its decimal sign, such as `1,000.5`.
+/// Whether a field is a number with thousands separators in addition to its decimal sign, such as `1,000.5`.
 ///
 /// ```
 /// use slipfront_case::table::has_thousands;
@@ -97,8 +97,8 @@ pub fn has_thousands(field: &str, decimal: char) -> bool {
         || (decimals.contains(decimal) && has_groups(field, decimal))
 }
 
-/// Whether a field can be a number with a thousands separator: groups of three digits behind one to three, of
-/// which the first is not 0.
+/// Whether a field can be a number with a thousands separator: one to three digits that do not begin with 0,
+/// followed by groups of three digits.
 pub(super) fn has_groups(field: &str, separator: char) -> bool {
     let field = field.trim_start_matches(['+', '-']);
     let mut groups = field.split(separator);

@@ -1,4 +1,4 @@
-//! The rows of a table, one after the other.
+//! Reader of the rows of a table.
 
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader, Read};
@@ -8,18 +8,18 @@ use super::error::TableError;
 use super::fields::fields;
 use super::layout::TableLayout;
 
-/// The rows of numbers of a table, below its lines of names and units, without comments and blank lines.
+/// The rows of numbers of a table, after its lines of names and units, without comments and blank lines.
 pub struct TableRows<'l, R: Read> {
     layout: &'l TableLayout,
     text: BufReader<DecodedText<R>>,
-    /// Largest number of bytes of a line.
+    /// Largest length of a line in bytes.
     line_max: u64,
     line: Vec<u8>,
     number: u64,
 }
 
 impl<'l, R: Read> TableRows<'l, R> {
-    /// The rows of a source that stands at its beginning, with lines of at most `line_max` bytes.
+    /// The rows of a source at its beginning, with lines of at most `line_max` bytes.
     pub fn new(source: R, layout: &'l TableLayout, line_max: u64) -> Self {
         Self {
             layout,
@@ -33,8 +33,8 @@ impl<'l, R: Read> TableRows<'l, R> {
     /// The fields of the next row and the number of its line, from 1; none at the end.
     ///
     /// # Errors
-    /// When the source fails, a line is too long, a field goes over several lines, or a row has more fields
-    /// than there are names.
+    /// When the source fails, a line is too long, a field spans several lines, or a row has more fields than
+    /// there are names.
     #[expect(clippy::type_complexity, reason = "a row is a number and its fields")]
     pub fn next_row(&mut self) -> Result<Option<(u64, Vec<Cow<'_, str>>)>, TableError> {
         loop {

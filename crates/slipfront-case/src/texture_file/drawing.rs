@@ -1,4 +1,4 @@
-//! The outlines of the textures of a case, layer by layer.
+//! Outlines of the textures of a case, layer by layer.
 
 use slipfront::surface::{
     Contour, Ellipse, Shape, Texture, clip, contours, copies_overlap, mask_outline, mesh,
@@ -8,10 +8,10 @@ use super::error::TextureFileError;
 use crate::case::Case;
 use crate::case_file::Outline;
 
-/// Largest number of corners of all outlines: a file of about a gigabyte.
+/// Largest number of corners of all outlines: they give a file of about a gigabyte.
 const MAX_CORNERS: usize = 1 << 24;
 
-/// The outlines of a texture, or of all.
+/// Outlines of one or all textures of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutlineDrawing {
     /// Width and height of the slider, in blocks.
@@ -20,7 +20,7 @@ pub struct OutlineDrawing {
     pub block: f64,
     /// The edge of the slider, in blocks: one line, or several if it has holes or islands.
     pub slider: Vec<Contour>,
-    /// Outlines in blocks, a layer for each texture that has any; a block is textured if any layer fills it.
+    /// Outlines in blocks, one layer per texture that has any; a block is textured if any layer fills it.
     pub layers: Vec<Layer>,
     /// Notes about the drawing.
     pub notes: Vec<String>,
@@ -29,15 +29,15 @@ pub struct OutlineDrawing {
 /// Outlines that are filled together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// Name of the layer: that of a texture, counted from 1.
+    /// Name of the layer: that of its texture, counted from 1.
     pub name: String,
-    /// Filling of the outlines.
+    /// Fill rule of the outlines.
     pub fill: Fill,
     /// Outlines of the layer.
     pub contours: Vec<Contour>,
 }
 
-/// Filling of outlines.
+/// Fill rule of outlines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
     /// The points inside any of the outlines.
@@ -69,7 +69,7 @@ impl OutlineDrawing {
             let parts = |shape: &Contour| clip(shape, &drawing.slider);
             let shapes: Option<Vec<Vec<Contour>>> =
                 contours(lattice, texture).map(|shapes| shapes.iter().map(parts).collect());
-            // Parts of one shape may lie around each other, if it crosses itself or the slider has holes.
+            // Parts of one shape may enclose each other, if it crosses itself or the slider has holes.
             let may_nest = matches!(texture.shape, Shape::Polygon(_)) || drawing.slider.len() > 1;
             let nests = may_nest && shapes.iter().flatten().any(|parts| parts.len() > 1);
             let is_even_odd = texture.inverted || nests;
@@ -131,9 +131,9 @@ fn corners(texture: &Texture) -> usize {
     copies.saturating_mul(texture.shape.n_corners())
 }
 
-/// The lines around some blocks, holes among them.
+/// Lines around the chosen blocks, including the edges of holes.
 fn block_edges(chosen: &[bool], [nx, ny]: [usize; 2]) -> Vec<Contour> {
-    // A frame of other blocks closes the lines along the slider's edges.
+    // A frame of unchosen blocks closes the lines along the slider's edges.
     let mut framed = vec![false; (nx + 2) * (ny + 2)];
     for (row, blocks) in chosen.chunks(nx).enumerate() {
         framed[(row + 1) * (nx + 2) + 1..][..nx].copy_from_slice(blocks);

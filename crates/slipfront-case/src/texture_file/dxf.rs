@@ -1,5 +1,5 @@
-//! Outlines as DXF of AutoCAD 2000, the oldest version that has ellipses, in millimetres. A layer for each
-//! texture, and one for the slider.
+//! Outlines as DXF of AutoCAD 2000, the oldest version with ellipses, in millimetres: one layer per texture,
+//! and one for the slider.
 
 use std::f64::consts::TAU;
 use std::fmt::Display;
@@ -8,14 +8,14 @@ use slipfront::surface::{Contour, Piece};
 
 use super::drawing::OutlineDrawing;
 
-/// Handles of the parts that every drawing has; entities and layers have handles from [`FIRST_FREE`] on.
+/// Handles of the parts of every drawing; entities and layers have handles from [`FIRST_FREE`] up.
 const MODEL_SPACE: u64 = 0x1f;
 const PAPER_SPACE: u64 = 0x1b;
 const FIRST_FREE: u64 = 0x100;
-/// The blocks that every drawing has.
+/// The blocks of every drawing.
 const SPACES: [(&str, u64); 2] = [("*Model_Space", MODEL_SPACE), ("*Paper_Space", PAPER_SPACE)];
 
-/// The drawing as a file.
+/// The drawing as the text of a file.
 pub(super) fn text(drawing: &OutlineDrawing) -> String {
     let layers: Vec<&str> = drawing.layers.iter().map(|layer| layer.name.as_str()).collect();
     let mut entities = File::new();
@@ -42,7 +42,7 @@ pub(super) fn text(drawing: &OutlineDrawing) -> String {
         (9, &"$HANDSEED"),
         (5, &hex(tables.next_handle)),
     ]);
-    // Millimetres, of the metric system.
+    // Unit millimetre, metric system.
     file.pairs(&[
         (9, &"$INSUNITS"),
         (70, &4),
@@ -84,7 +84,7 @@ fn hex(handle: u64) -> String {
     format!("{handle:X}")
 }
 
-/// The text of a part of the file.
+/// Text of a part of the file.
 struct File {
     text: String,
     next_handle: u64,
@@ -98,7 +98,7 @@ impl File {
         }
     }
 
-    /// Lines of a code and of its value.
+    /// Adds the lines of each code and its value.
     fn pairs(&mut self, pairs: &[GroupPair]) {
         for (code, value) in pairs {
             self.text += &format!("{code}\n{value}\n");
@@ -114,7 +114,7 @@ impl File {
         hex(self.next_handle - 1)
     }
 
-    /// The beginning of an entity of this kind and class, which belongs to the space `owner`.
+    /// Begins an entity of this kind and class, which belongs to the space `owner`.
     fn entity(&mut self, kind: &str, class: &str, owner: u64, layer: &str) {
         let handle = self.handle();
         self.pairs(&[
@@ -127,7 +127,7 @@ impl File {
         ]);
     }
 
-    /// A closed line, of edges in blocks of this length.
+    /// A closed line. `block` is the length of a block, the unit of its coordinates.
     fn contour(&mut self, layer: &str, contour: &Contour, block: f64) {
         let Contour::Ellipse(ellipse) = contour else {
             return self.polyline(layer, &contour.pieces(), block);
@@ -140,7 +140,7 @@ impl File {
         }
         let [c, s] = ellipse.axis;
         self.entity("ELLIPSE", "AcDbEllipse", MODEL_SPACE, layer);
-        // The first axis of a file is the longer one.
+        // DXF requires the longer axis first.
         let (major, ratio) = if a > b {
             ([a * c, a * s], b / a)
         } else {
@@ -157,10 +157,10 @@ impl File {
         self.pairs(&[(40, &ratio), (41, &0), (42, &TAU)]);
     }
 
-    /// A closed line of lines and arcs of circles: an arc of the angle `t` bulges by `tan(t/4)`.
+    /// A closed line of line segments and circular arcs: an arc of angle `t` has the bulge `tan(t/4)`.
     fn polyline(&mut self, layer: &str, pieces: &[Piece], block: f64) {
         self.entity("LWPOLYLINE", "AcDbPolyline", MODEL_SPACE, layer);
-        // Closed.
+        // The flag 1 closes the line.
         self.pairs(&[(90, &pieces.len()), (70, &1)]);
         for piece in pieces {
             let [x, y] = piece.ends()[0].map(|length| length * block);
@@ -171,7 +171,7 @@ impl File {
         }
     }
 
-    /// The tables that a drawing must have, and its layers.
+    /// The required tables of a drawing, and its layers.
     fn tables(&mut self, layers: &[&str]) {
         self.section("TABLES");
         self.table("VPORT", "8", &[]);
@@ -229,7 +229,7 @@ impl File {
         self.pairs(&[(0, &"ENDTAB"), (0, &"ENDSEC")]);
     }
 
-    /// The blocks that a drawing must have.
+    /// The required blocks of a drawing.
     fn blocks(&mut self) {
         self.section("BLOCKS");
         for (name, owner) in SPACES {
@@ -251,7 +251,7 @@ impl File {
         self.pairs(&[(0, &"ENDSEC")]);
     }
 
-    /// A table of records, each a class, a name and pairs.
+    /// A table of records, each with a class, a name and pairs.
     fn table(&mut self, name: &str, handle: &str, records: &[TableRecord]) {
         self.pairs(&[
             (0, &"TABLE"),

@@ -1,12 +1,13 @@
-//! Reasons for which a file of a texture is not written.
+//! Reasons why a file of a texture is not written.
 
 use crate::arrays::ArrayError;
 use crate::case_file::CaseError;
 
-/// Largest number of pixels of a picture along a side, and of all: no program, this one included, reads more.
+/// Largest number of pixels of a picture along a side, and in total: no program, including this one, reads
+/// more.
 pub(super) const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
 
-/// An error of a file of a texture that was asked for.
+/// An error in writing the file of a texture.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TextureFileError {
@@ -36,7 +37,7 @@ pub enum TextureFileError {
 }
 
 impl TextureFileError {
-    /// Whether the request is to blame, so that another file could be asked for.
+    /// Whether the request is wrong, so that the user could ask for another file.
     pub fn is_input(&self) -> bool {
         !matches!(self, Self::Write(_))
     }

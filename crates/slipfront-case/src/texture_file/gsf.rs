@@ -3,7 +3,7 @@
 use super::textured_blocks::textured_blocks;
 use crate::case::Case;
 
-/// The height of the blocks, without a unit: 1 where they touch, 0 where they are textured.
+/// The height of the blocks, without a unit: 1 for blocks in contact, 0 for textured ones.
 pub(super) fn field(case: &Case) -> Vec<u8> {
     let (nx, ny) = (case.model.lattice.nx, case.model.lattice.ny);
     let length = |blocks: usize| blocks as f64 * case.scales.block_size;
@@ -13,7 +13,7 @@ pub(super) fn field(case: &Case) -> Vec<u8> {
         length(ny)
     )
     .into_bytes();
-    // From one to four zeros, so that the numbers begin at a multiple of four.
+    // Pads with one to four zeros, so that the numbers begin at a multiple of four.
     bytes.resize(bytes.len() / 4 * 4 + 4, 0);
     for row in textured_blocks(case).chunks(nx).rev() {
         for textured in row {

@@ -1,5 +1,5 @@
-//! The texture of a case as a file for other programs, in true size: outlines for a laser or a drawing
-//! program, SVG and DXF, and blocks as a picture or a height field, PNG and GSF.
+//! The texture of a case as a file for other programs, in true size: as outlines for a laser or a drawing
+//! program (SVG and DXF), or as blocks in a picture or a height field (PNG and GSF).
 
 mod drawing;
 mod dxf;
@@ -26,11 +26,12 @@ pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
     Ok(clearance(&case.model.lattice, &case.textures_in_blocks()?))
 }
 
-/// Writes the texture of a case to `path`, in the format of its ending; `scale` is the number of pixels of a
-/// block along a side of a picture, one if there is none. Returns notes about the file.
+/// Writes the texture of a case to `path`, in the format of its extension. `scale` is the number of pixels
+/// per block along a side of a picture, by default one. Returns notes about the file.
 ///
 /// # Errors
-/// [`TextureFileError`], if the ending names no format, the file would be too large, or cannot be written.
+/// [`TextureFileError`] if the extension names no format, or if the file would be too large or cannot be
+/// written.
 pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<String>, TextureFileError> {
     let (bytes, notes) = contents(case, path, scale)?;
     write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
@@ -43,7 +44,7 @@ pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<Strin
 /// The bytes of the file that [`write()`] writes to `path`, and notes about it.
 ///
 /// # Errors
-/// [`TextureFileError`], if the ending names no format, or the file would be too large.
+/// [`TextureFileError`] if the extension names no format, or if the file would be too large.
 pub fn contents(
     case: &Case,
     path: &Path,

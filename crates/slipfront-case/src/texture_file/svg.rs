@@ -1,4 +1,4 @@
-//! Outlines as SVG: user units are millimetres, and y points down. A group for each texture, and the edge of
+//! Outlines as SVG, with millimetres as user units and y downwards: one group per texture, and the edge of
 //! the slider.
 
 use std::fmt::Write;
@@ -7,7 +7,7 @@ use slipfront::surface::{Contour, Ellipse, Piece};
 
 use super::drawing::{Fill, OutlineDrawing};
 
-/// Width of the slider's edge over the edge of a block; a program that cuts takes its middle.
+/// Line width of the slider's edge relative to a block edge; a program that cuts follows the centre line.
 const EDGE_WIDTH: f64 = 0.05;
 
 /// The drawing as a page of the slider's size.
@@ -31,7 +31,7 @@ pub(super) fn text(drawing: &OutlineDrawing) -> String {
 fn elements(drawing: &OutlineDrawing, fill: Fill, contours: &[Contour]) -> String {
     let page = SvgPage(drawing);
     match fill {
-        // Holes need one path for all.
+        // Holes need a single path for all outlines.
         Fill::EvenOdd => {
             let path: Vec<String> = contours.iter().map(|contour| page.path(contour)).collect();
             format!("<path d=\"{}\"/>\n", path.join(" "))
@@ -40,7 +40,7 @@ fn elements(drawing: &OutlineDrawing, fill: Fill, contours: &[Contour]) -> Strin
     }
 }
 
-/// The page on which a drawing is laid.
+/// The page of a drawing.
 struct SvgPage<'a>(&'a OutlineDrawing);
 
 impl SvgPage<'_> {
@@ -70,17 +70,18 @@ impl SvgPage<'_> {
         let pieces = contour.pieces();
         for (at, piece) in pieces.iter().enumerate() {
             let [[x_0, y_0], [x, y]] = piece.ends().map(|end| self.point(end));
-            // A string takes every text.
+            // Writing to a string cannot fail.
             if at == 0 {
                 let _ = write!(path, "M{x_0} {y_0}");
             }
             let _ = match piece {
-                // The end of the path draws the last line.
+                // Closing the path draws the last line.
                 Piece::Line(_) if at + 1 == pieces.len() => Ok(()),
                 Piece::Line(_) => write!(path, "L{x} {y}"),
                 Piece::Arc(ellipse, [from, to]) => {
                     let [a, b] = ellipse.semi_axes.map(|axis| axis * self.0.block);
-                    // Never more than a quarter; y points down, so that a sweep of 1 is clockwise.
+                    // Arcs are never more than a quarter turn. Because y points down, a sweep of 1 is
+                    // clockwise.
                     let sweep = u8::from(from > to);
                     write!(path, "A{a} {b} {} 0 {sweep} {x} {y}", turn(ellipse))
                 }
@@ -90,7 +91,7 @@ impl SvgPage<'_> {
     }
 }
 
-/// Degrees from x towards y, which points down.
+/// Rotation in degrees from x towards y, which points down.
 fn turn(ellipse: &Ellipse) -> f64 {
     0.0 - libm::atan2(ellipse.axis[1], ellipse.axis[0]).to_degrees()
 }

@@ -6,7 +6,8 @@ use slipfront_case::case_file::CaseFile;
 
 use super::{files, notes};
 
-/// Every bad file says in `# error:` lines what the message must hold, and in `# set:` lines its overrides.
+/// Every bad file has `# error:` lines with the expected parts of the message, and `# set:` lines with its
+/// overrides.
 #[test]
 fn every_bad_file_is_refused_with_its_sentence() {
     let files = files("bad");
@@ -15,7 +16,7 @@ fn every_bad_file_is_refused_with_its_sentence() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
 }
 
-/// A complaint about the error of a bad file, if there is one.
+/// A complaint if the error of a bad file is not the expected one.
 fn complaint(path: &Path) -> Option<String> {
     let name = path.file_name().unwrap().display();
     let text = fs::read_to_string(path).unwrap();

@@ -1,10 +1,10 @@
-//! Bulk bodies: the note on a slider that is one under its texture and no sheet, the stack of sheets that
-//! stands for one, and its critical size.
+//! Bulk bodies: the note on a slider that is a bulk body under its texture, not a sheet; the stack of sheets
+//! that models one; and its critical size.
 
 use slipfront::lattice::SpringStiffness;
 use slipfront_case::case::Case;
 
-/// Dimples of 100 um at 200 um on a slider of 1 mm.
+/// Dimples of 100 um with a pitch of 200 um on a slider of 1 mm.
 const DIMPLES: &str = "slider = { blocks = [50, 50], block_size = '20 um' }
 [[texture]]
 shape = 'cavity'
@@ -16,12 +16,12 @@ fn case(text: &str, overrides: &[String]) -> Case {
     Case::parse(text, "case", "", overrides).unwrap_or_else(|error| panic!("{text}\n{overrides:?}\n{error}"))
 }
 
-/// Settings as a user writes them for `--set`.
+/// Settings in the form that a user writes for `--set`.
 fn sets(sets: &[&str]) -> Vec<String> {
     sets.iter().map(|set| (*set).to_owned()).collect()
 }
 
-/// The note on a slider of this thickness, which is one of its warnings.
+/// The note on a slider of this thickness. It must be one of the case's warnings.
 fn note(text: &str, thickness: &str) -> Option<String> {
     let case = case(text, &[format!("slider.thickness=\"{thickness}\"")]);
     let note = case.thick_for_texture();
@@ -33,15 +33,15 @@ fn note(text: &str, thickness: &str) -> Option<String> {
     note
 }
 
-/// How many times as much the texture changes in a bulk body.
+/// Factor by which the texture changes more in a bulk body, from the note.
 fn times(text: &str, thickness: &str) -> String {
     let note = note(text, thickness).unwrap();
     let (_, from) = note.split_once("mu_s* by about ").unwrap();
     from.split_once(" times").unwrap().0.to_owned()
 }
 
-/// The keys that the sentence gives, as a user copies them for `--set`; the first quoted key is the one that
-/// it is about.
+/// The keys in the sentence, in the form that a user copies for `--set`. The first quoted key is the subject
+/// of the sentence.
 fn keys(note: &str) -> Vec<String> {
     let quoted = note.split('`').skip(3).step_by(2);
     quoted.map(|keys| keys.replacen(" = ", "=", 1)).collect()
@@ -49,7 +49,7 @@ fn keys(note: &str) -> Vec<String> {
 
 #[test]
 fn a_thickness_above_a_third_of_the_feature_is_noted() {
-    // A third of 100 um, and a thousandth more for rounding.
+    // A third of 100 um, with a margin of a thousandth for rounding.
     assert_eq!(note(DIMPLES, "33.3 um"), None);
     assert_eq!(
         note(DIMPLES, "33.4 um").unwrap(),
@@ -60,7 +60,7 @@ fn a_thickness_above_a_third_of_the_feature_is_noted() {
     );
 }
 
-/// Where thickness and pitch have the ratio of a known answer, the factor is that of the answer.
+/// If the ratio of thickness to pitch is that of a known answer, the factor is the one of the answer.
 #[test]
 fn the_factor_is_that_of_the_known_thicknesses() {
     for (thickness, expected) in [
@@ -72,7 +72,7 @@ fn the_factor_is_that_of_the_known_thicknesses() {
     ] {
         assert_eq!(times(DIMPLES, thickness), expected, "{thickness}");
     }
-    // Thinner than any that is known: a tenth of the pitch.
+    // Thinner than any known ratio: a tenth of the pitch.
     let small = DIMPLES.replace("lambda = '50 um'", "lambda = '10 um'");
     assert_eq!(times(&small, "19.9 um"), "less than 0.9");
 }
@@ -102,7 +102,8 @@ fn the_keys_that_a_note_gives_make_a_body_without_one() {
     );
 }
 
-/// The longest wave length is the pitch of an array that fills the slider, and else the slider.
+/// The longest wavelength is the pitch of an array that fills the slider, or otherwise the side of the
+/// slider.
 #[test]
 fn the_stack_follows_from_the_longest_wave() {
     let single = "slider = { blocks = [50, 40], block_size = '20 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '50 um'";
@@ -119,8 +120,8 @@ fn the_stack_follows_from_the_longest_wave() {
     }
 }
 
-/// In the units of the lattice, `k_s = K l^2/(E h_1)` and `g* = g l^2/(E h_1)`; on finer blocks the body is
-/// the one of the coarser.
+/// In the units of the lattice: `k_s = K l^2/(E h_1)` and `g* = g l^2/(E h_1)`. Finer blocks give the same
+/// body.
 #[test]
 fn the_model_has_the_sheets_of_the_body() {
     let text = DIMPLES;
@@ -153,13 +154,13 @@ fn the_model_has_the_sheets_of_the_body() {
             body.mount * per_area,
         ];
         for (found, expected) in found.into_iter().zip(expected) {
-            // Of some products.
+            // Rounding of some products.
             assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
         }
     }
 }
 
-/// Sheets that are given are taken as they are.
+/// Given sheets are used unchanged.
 #[test]
 fn sheets_may_be_given() {
     let sheets = "slider.sheets=[{ thickness = '2 um', coupling = '1e15 N/m^3' }, { thickness = '6 um', coupling = '4e14 N/m^3' }]";
@@ -175,7 +176,7 @@ fn sheets_may_be_given() {
     assert_eq!(given.model.springs(), SpringStiffness::default());
 }
 
-/// The numbers that a body has, given as sheets, make the same model but for rounding.
+/// The numbers of a body, given as sheets, make the same model up to rounding.
 #[test]
 fn the_sheets_of_a_body_may_be_given() {
     let bulk = "slider.body=\"bulk\"";
@@ -269,8 +270,8 @@ fn what_a_bulk_body_does_not_have_is_refused() {
     assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
 }
 
-/// The load of a textured block goes to the blocks in contact within a pitch, in metres, whatever the mesh;
-/// all of it arrives.
+/// The load of a textured block goes to the blocks in contact within a pitch, in metres, for any mesh. The
+/// total load is conserved.
 #[test]
 fn load_is_shared_within_a_pitch() {
     let patch = format!("{DIMPLES}array = [2, 2]");
@@ -282,11 +283,11 @@ fn load_is_shared_within_a_pitch() {
     };
     let bulk = "slider.body='bulk'";
     let found = load(&patch, &[bulk]);
-    // A tenth of a pitch is 1 block: the pitch has 10.
+    // A tenth of a pitch is 1 block: the pitch has 10 blocks.
     assert_eq!(load(&patch, &["load.redistribute={ within = '200 um' }"]), found);
     let total: f64 = found.iter().sum();
     assert!((total / 2500.0 - 1.0).abs() < 1e-12, "{total}");
-    // Far from the patch nothing is added; near it more than equal sharing gives.
+    // Far from the patch the load is unchanged; near it, it is more than with equal sharing.
     let equal = load(&patch, &[])[0];
     assert!(found[0] == 1.0 && equal > 1.0, "{} {equal}", found[0]);
     let largest = found.iter().copied().fold(0.0, f64::max);
@@ -324,7 +325,7 @@ fn a_texture_without_a_pitch_says_how_near() {
     assert!(refused(&["load.redistribute='all'"]).contains("it must be true, false, or a distance"));
 }
 
-/// Small features, and pitches that are longer than the longest wave, have waves beyond the fit.
+/// Small features, and pitches longer than the longest wavelength, need waves outside the fit.
 #[test]
 fn what_the_stack_leaves_out_is_noted() {
     let notes = |text: &str, given: &[&str]| {
@@ -354,7 +355,7 @@ fn paper_blocks_bare_sliders_and_thin_sheets_have_no_note() {
     assert_eq!(note(DIMPLES, "8 um"), None);
 }
 
-/// Where a mask is repeated, the pitch is known, and the features in it are not.
+/// If a mask is repeated, its pitch is known, but its features are not.
 #[test]
 fn of_a_mask_the_pitch_counts() {
     let folder = tempfile::tempdir().unwrap();
@@ -378,7 +379,7 @@ fn of_a_mask_the_pitch_counts() {
     assert_eq!(note("", "2 mm"), None);
 }
 
-/// Textures that a search draws have a smallest feature and no pitch.
+/// Textures drawn by a search have a smallest feature, but no pitch.
 #[test]
 fn a_feature_alone_is_enough_for_a_note() {
     let sheet = case(DIMPLES, &["slider.thickness=\"20 um\"".to_owned()]);
@@ -390,8 +391,7 @@ fn a_feature_alone_is_enough_for_a_note() {
     );
 }
 
-/// `L_c = 2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E and `w = (mu_s - mu_k) P/D_c`, whatever the
-/// thickness.
+/// `L_c = 2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E and `w = (mu_s - mu_k) P/D_c`, for any thickness.
 #[test]
 fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
     for thickness in ["20 um", "2 mm"] {
@@ -411,9 +411,9 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
         let of_body = case(&of_body, &[]).lengths();
         let of_body = of_body.iter().find(|length| length.name == found.name).unwrap();
         assert_eq!(of_body.enough, Some(3.0));
-        // Of some products and sums of equal numbers.
+        // Rounding of some products and sums of equal numbers.
         assert!((of_body.blocks / found.blocks - 1.0).abs() < 1e-12);
-        // Of some products and sums of equal numbers.
+        // Rounding of some products and sums of equal numbers.
         assert!(
             (found.metres / expected - 1.0).abs() < 1e-12,
             "{} m for {expected} m",
@@ -422,9 +422,9 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
     }
 }
 
-/// A layer in which slip of any size is stable has no critical size, a layer just above has one of the order
-/// of `pi sqrt(a G H/(w - G/H))` with `a = (4 - 2 kappa/3)/(1 + kappa)`, which a long wave takes beyond G/H;
-/// of a stack that is given the springs in series tell.
+/// A layer in which slip of any size is stable has no critical size. A layer just above this limit has one of
+/// the order of `pi sqrt(a G H/(w - G/H))` with `a = (4 - 2 kappa/3)/(1 + kappa)`, because the stiffness
+/// along a long wave is `G/H + a G H q^2`. For a given stack, the springs in series determine stability.
 #[test]
 fn slip_in_stiff_layers_is_stable() {
     let text = "slider = { blocks = [50, 50], block_size = '20 um', body = 'bulk' }\n[friction]\nmu_static = 0.6\nr_star = 0.5\n\
@@ -451,7 +451,7 @@ fn slip_in_stiff_layers_is_stable() {
     let (kappa, high): (f64, f64) = (3.0 - 4.0 / 3.0, 1.01 * shear_modulus / weakening);
     let of_layer = (4.0 - 2.0 * kappa / 3.0) / (1.0 + kappa) * shear_modulus * high;
     let expected = (of_layer / (weakening - shear_modulus / high)).sqrt();
-    // 2.316 in place of pi; terms of the fourth order in q H, which is a tenth.
+    // 2.316 in place of pi; terms of the fourth order in q H, which is a tenth, are neglected.
     assert!(
         (found.metres / (2.316 * expected) - 1.0).abs() < 0.02,
         "{} {expected}",
@@ -468,13 +468,13 @@ fn slip_in_stiff_layers_is_stable() {
     assert!(size(&stack(0.99)).blocks.is_finite());
 }
 
-/// The strain of a body follows from its modulus, and not from the thickness of a sheet that stands for it:
-/// `P mu_s (1 - nu)/G` of a deep one.
+/// The strain of a body follows from its modulus, not from the thickness of a sheet that models it. For a
+/// deep body it is `P mu_s (1 - nu)/G`.
 #[test]
 fn the_strain_of_a_body_is_its_own() {
     let body = case(DIMPLES, &sets(&["slider.body=\"bulk\"", "slider.poisson=0.4"]));
     let expected = body.scales.stress() * 0.6 / (100e9 / 2.8);
-    // The stack is within some 5 % of the body along the waves of the fit.
+    // The stack is within about 5 % of the body for the waves of the fit.
     assert!(
         (body.strain_of_load() / expected - 1.0).abs() < 0.06,
         "{} {expected}",

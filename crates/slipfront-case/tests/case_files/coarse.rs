@@ -1,4 +1,4 @@
-//! Notes on blocks that are too coarse for the outline of a texture, and the blocks that they name.
+//! Notes on blocks that are too coarse for the outline of a texture, and the blocks that they suggest.
 
 use slipfront_case::case::Case;
 
@@ -6,7 +6,7 @@ fn case(text: &str, overrides: &[String]) -> Case {
     Case::parse(text, "case", "", overrides).unwrap_or_else(|error| panic!("{text}\n{overrides:?}\n{error}"))
 }
 
-/// The settings that the sentence names, as a user copies them for `--set`.
+/// The settings that the sentence suggests, in the form that a user copies for `--set`.
 fn remedies(note: &str) -> Vec<String> {
     let quoted = note.split('`').skip(1).step_by(2);
     quoted.map(|keys| keys.replacen(" = ", "=", 1)).collect()
@@ -23,8 +23,8 @@ fn blocks_of(overrides: &[String]) -> [u64; 2] {
 const DIMPLES: &str =
     "[[texture]]\nshape = 'cavity'\nlambda = '30 um'\npitch = '120 um'\nlattice = 'hexagonal'";
 
-/// Dimples of 60 um that are 120 um apart, on a slider of 2 mm: they need five blocks each, and their gaps of
-/// 60 um two.
+/// Dimples of 60 um with a pitch of 120 um, on a slider of 2 mm: each needs five blocks, and each gap of 60
+/// um needs two.
 #[test]
 fn a_slider_of_two_millimetres_needs_167_blocks() {
     for (blocks, expected) in [
@@ -69,8 +69,7 @@ fn a_slider_of_two_millimetres_needs_167_blocks() {
     }
 }
 
-/// The blocks that are named are fine enough, and the next coarser ones of the slider are not, for any cause
-/// of coarseness.
+/// The suggested blocks are fine enough, and the next coarser ones are not, for any cause of coarseness.
 #[test]
 fn the_blocks_that_are_named_are_the_fewest() {
     let on = |slider: &str, texture: &str| format!("[slider]\n{slider}\n[[texture]]\n{texture}");
@@ -141,13 +140,13 @@ fn the_blocks_that_are_named_are_the_fewest() {
         );
         let fine = case(&text, &remedies);
         assert_eq!(fine.too_coarse(), None, "{text}\n{note}");
-        // The slider stays as it is, to the digits of its block size.
+        // The size of the slider is unchanged, to the digits of its block size.
         for axis in 0..2 {
             let length = |case: &Case, blocks: u64| case.scales.block_size * blocks as f64;
             let change = length(&fine, new[axis]) / length(&coarse, old[axis]) - 1.0;
             assert!(change.abs() < 1e-9, "{text}\n{note}");
         }
-        // The next coarser blocks of which both sides can be made.
+        // The next coarser blocks that divide both sides.
         let step = [0, 1].map(|axis| {
             (1..=old[axis]).find(|part| old[axis] % part == 0 && old[1 - axis] * part % old[axis] == 0)
         });
@@ -172,11 +171,11 @@ fn what_is_fine_enough_or_not_known_is_not_noted() {
     for text in [
         "",
         "[[texture]]\nshape = 'groove'\nwidth = '5 um'",
-        // Beside the slider.
+        // Off the slider.
         "[[texture]]\nshape = 'cavity'\nlambda = '1 um'\ncenter = ['-5 um', '5 um']",
-        // One copy alone lies on the slider.
+        // Only one copy is on the slider.
         "[[texture]]\nshape = 'cavity'\nlambda = '4 um'\narray = [3, 3]\npitch = '26 um'",
-        // Grooves that cross have no gap between them.
+        // Crossing grooves have no gap between them.
         "[[texture]]\nshape = 'groove'\nwidth = '5 um'\n[[texture]]\nshape = 'groove'\norientation = 'along'\nwidth = '5 um'",
     ] {
         assert_eq!(case(text, &[]).too_coarse(), None, "{text}");
@@ -201,7 +200,7 @@ fn what_no_slider_can_show_is_told_as_such() {
         note,
         "the smallest dimple is 0.001 blocks across; the outline needs 5, blocks of 200 pm, of which no slider of this size can be made"
     );
-    // A coverage of a disc is a share of blocks that other blocks do not have exactly.
+    // The coverage of a disc is a share of blocks that other blocks do not reproduce exactly.
     let text = "[slider]\nblocks = [40, 40]\noutline = 'disc'\n[[texture]]\nshape = 'cavity'\ncoverage = 0.5";
     assert!(
         case(text, &[])

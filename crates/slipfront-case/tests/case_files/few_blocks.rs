@@ -1,4 +1,4 @@
-//! The note on few blocks whose coefficients are random though no key asks for it.
+//! The note on few blocks with random coefficients that no key asks for.
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
@@ -8,7 +8,7 @@ fn case(text: &str) -> Case {
     Case::parse(text, "case", "", &[]).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
-/// The note on a case, which is one of its warnings.
+/// The note on a case. It must be one of the case's warnings.
 fn note(text: &str) -> Option<String> {
     let case = case(text);
     let note = case.few_random_blocks();
@@ -41,7 +41,7 @@ fn few_blocks_that_draw_their_coefficients_are_noted() {
     );
 }
 
-/// Textured blocks do not count: 6 x 6 of which half are textured are 18.
+/// Textured blocks do not count: 6 x 6 blocks, half of them textured, count as 18.
 #[test_case("slider.blocks = [5, 5]", false)]
 #[test_case("slider.blocks = [4, 6]", true)]
 #[test_case("slider.blocks = [6, 6]", false)]
@@ -50,8 +50,8 @@ fn blocks_in_contact_count(text: &str, is_noted: bool) {
     assert_eq!(note(text).is_some(), is_noted);
 }
 
-/// A spread other than the default was given, and so was a correlation length; rate and state draws nothing,
-/// and springs in contact have no kinetic coefficient.
+/// A spread other than the default was given deliberately, and so was a correlation length. Rate and state
+/// draws no coefficients, and springs in contact have no kinetic coefficient.
 #[test]
 fn coefficients_that_are_not_drawn_by_default_have_no_note() {
     for keys in [
@@ -65,7 +65,7 @@ fn coefficients_that_are_not_drawn_by_default_have_no_note() {
     }
 }
 
-/// A case as a run records it has all keys; its warnings are those of the case.
+/// A case that a run has recorded has all keys, and the same warnings as the original case.
 #[test]
 fn a_printed_case_has_the_same_note() {
     let text = "slider.blocks = [2, 2]";

@@ -146,8 +146,8 @@ fn a_case_changed_in_code_is_checked_without_a_place() {
     );
 }
 
-/// The step is 0.1 where that is stable, and the run lasts as long as it takes to load the slider through its
-/// own drive springs.
+/// The step is 0.1 where this is stable, and the run is long enough to load the slider through its own drive
+/// springs.
 #[test]
 fn steps_and_durations_follow_the_blocks() {
     let case = |modulus: f64| {
@@ -166,7 +166,7 @@ fn steps_and_durations_follow_the_blocks() {
     }
 }
 
-/// The springs of the driven blocks are together as stiff as the case says, whatever each is.
+/// The total stiffness of the springs of the driven blocks is the given one, whatever the single springs are.
 #[test]
 fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
     for attach in ["all", "left"] {
@@ -178,7 +178,7 @@ fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
             let case = Case::parse(&text, "case", "", &[]).unwrap();
             let (slider, k_drive) = (case.model.slider(), case.model.drive.k_drive);
             let sum: f64 = (0..70).map(|b| k_drive * slider.drive_spring(b)).sum();
-            // 70 terms are rounded.
+            // Rounding of 70 terms.
             assert!((sum / 0.5 - 1.0).abs() < 1e-13, "{attach}, {from} to {to}: {sum}");
             let sum = k_drive * slider.sum_of_drive_springs(&case.model.lattice);
             assert!((sum / 0.5 - 1.0).abs() < 1e-13, "{attach}, {from} to {to}: {sum}");
@@ -186,8 +186,8 @@ fn a_total_stiffness_is_the_sum_of_all_drive_springs() {
     }
 }
 
-/// Equal blocks of any modulus and density have the V* of a case with this material; for a grade the
-/// equivalent speed is stated.
+/// For equal blocks of any modulus and density, the warning has the V* of a case with this material; for a
+/// grade, it has the equivalent speed.
 #[test]
 fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     let fast = |keys: &str| {
@@ -225,8 +225,8 @@ fn fast_loading_is_told_in_the_speed_that_equal_blocks_would_have() {
     assert_eq!(graded, Some(of_equal(&expected)));
 }
 
-/// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their
-/// load, and 2.5/V* more. Blocks under an edge drive bear their load by the springs of others.
+/// Where fewer than half of the blocks touch, the run lasts until their own drive springs bear their load,
+/// and 2.5/V* longer. Under an edge drive, the springs of other blocks bear the load.
 #[test]
 fn runs_last_longer_where_few_blocks_touch() {
     let end = |texture: &str, changes: &[&str]| {
@@ -265,8 +265,8 @@ fn runs_last_longer_where_few_blocks_touch() {
     }
 }
 
-/// Times are compared with the end of the run that its own drive springs determine: later than 8/V* for a
-/// soft slider, earlier for a stiff one, whose moduli are known only when a file is read.
+/// Times are compared with the end of the run, which the drive springs of the slider determine: later than
+/// 8/V* for a soft slider, earlier for a stiff one. The moduli are known only when a file is read.
 #[test]
 fn times_are_held_against_the_end_of_the_run_itself() {
     let folder = tempfile::tempdir().unwrap();
@@ -289,7 +289,7 @@ fn times_are_held_against_the_end_of_the_run_itself() {
     assert!(refused.contains("the run ends at 40.0000"), "{refused}");
 }
 
-/// A coverage below 1 % is noted with what it would be as a share of 1; 1 % and more, and sizes, are not.
+/// A coverage below 1 % has a note with its value as a fraction of 1; 1 % and more, and sizes, have none.
 #[test]
 fn a_coverage_that_may_be_a_share_is_noted() {
     let note = |size: &str| {
@@ -307,7 +307,7 @@ fn a_coverage_that_may_be_a_share_is_noted() {
 }
 
 /// The coverage of a pattern does not depend on its form: a pitch that fills the slider, a count, an array in
-/// an array, or a mask for each cell.
+/// an array, or a mask in each cell.
 #[test]
 fn patterns_can_be_said_in_several_ways() {
     let case = |pattern: &str| {
@@ -331,7 +331,7 @@ fn patterns_can_be_said_in_several_ways() {
         warnings.iter().all(|warning| !warning.contains("pattern")),
         "{warnings:?}"
     );
-    // pi 2^2 of 144 blocks.
+    // pi 2^2 blocks out of 144.
     assert!((report.asked_percent.unwrap() - 100.0 * std::f64::consts::PI * 4.0 / 144.0).abs() < 1e-12);
     let (inverted, report, _) = case("array = [4, 2]\ninvert = true");
     assert!(counted.iter().zip(&inverted).all(|(one, other)| one != other));
@@ -339,7 +339,7 @@ fn patterns_can_be_said_in_several_ways() {
         (report.asked_percent.unwrap() - 100.0 * (1.0 - std::f64::consts::PI * 4.0 / 144.0)).abs() < 1e-12
     );
     let (staggered, ..) = case("array = [4, 2]\nlattice = 'staggered'");
-    // Half a cell to the right, and a row of cells up.
+    // Half a cell to the right, and one row of cells up.
     for b in 0..staggered.len() {
         let (i, j) = (b % 48, b / 48);
         assert_eq!(staggered[b], staggered[(j + 12) % 24 * 48 + (i + 6) % 48]);
@@ -356,7 +356,7 @@ fn patterns_can_be_said_in_several_ways() {
     assert!(!warnings("array = [2, 2]\npitch = '5 um'").contains("periodic edges"));
 }
 
-/// Coverage counts all copies together, for every shape that has one.
+/// Coverage is that of all copies together, for every shape that has a coverage.
 #[test]
 fn copies_share_the_coverage() {
     for (texture, blocks) in [
@@ -389,7 +389,7 @@ fn copies_share_the_coverage() {
     }
 }
 
-/// A mask in every cell is the mask of all cells.
+/// A mask in every cell is the same as one mask of all cells.
 #[test]
 fn masks_fill_every_cell() {
     let folder = tempfile::tempdir().unwrap();
@@ -417,7 +417,7 @@ fn masks_fill_every_cell() {
     ] {
         for (b, textured) in case(pattern).unwrap().model.surface.textured.iter().enumerate() {
             let (i, j) = (b % 32, b / 32);
-            // Even rows of cells are a quarter of a cell to the left, odd ones to the right.
+            // Even rows of cells are shifted by a quarter of a cell to the left, odd rows to the right.
             let column = if j / 6 % 2 == 0 {
                 i + shift
             } else {

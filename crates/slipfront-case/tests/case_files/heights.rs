@@ -1,4 +1,4 @@
-//! Height maps that public tools have written (`heights/make.py`), against what numpy computes of them.
+//! Height maps written by public tools (`heights/make.py`), compared with results of numpy.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Write};
@@ -35,15 +35,15 @@ fn reference() -> Value {
 
 const PIXEL: f64 = 0.5e-6;
 const SIZE: Option<[f64; 2]> = Some([PIXEL; 2]);
-/// Units of a file that states its own.
+/// Units for a file that states its own.
 const OWN: HeightMapUnits = HeightMapUnits {
     height: None,
     pixel: None,
 };
 
-/// The map has no symmetry, and lies on the blocks as SurfaceTopography and Gwyddion show it, for every
-/// format. Heights stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in
-/// decimals to rounding, as integers to half a step: their range, less than 6 um, over 2^32 or 2^16.
+/// The map has no symmetry. For every format, it lies on the blocks as SurfaceTopography and Gwyddion show
+/// it. Heights stored as 32-bit numbers are accurate to 2^-24 of 6 um; as 64-bit numbers, grey levels and
+/// decimals, to rounding; as integers, to half a step: their range, less than 6 um, over 2^32 or 2^16.
 #[test_case("map.npy", HeightMapUnits { height: Some(1.0), pixel: SIZE }, 1e-15)]
 #[test_case("map_f4_fortran.npy", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 4e-13)]
 #[test_case("map.csv", HeightMapUnits { height: Some(1e-6), pixel: SIZE }, 1e-15)]
@@ -63,7 +63,7 @@ fn every_format_gives_what_numpy_computes(name: &str, units: HeightMapUnits, err
         let blocks = [nx.parse().unwrap(), ny.parse().unwrap()];
         let map = read(&folder().join(name), units, blocks).unwrap();
         assert_eq!(map.points, [30, 20]);
-        // The products of pixels are rounded once.
+        // The products with the pixel size are rounded once.
         assert!((map.size[0] - 15e-6).abs() < 1e-20 && (map.size[1] - 10e-6).abs() < 1e-20);
         let means = means.as_array().unwrap();
         assert_eq!(map.blocks.len(), means.len());
@@ -71,8 +71,8 @@ fn every_format_gives_what_numpy_computes(name: &str, units: HeightMapUnits, err
             let mean = mean.as_f64().unwrap();
             assert!((found - mean).abs() < error, "{name} {grid}: {found} and {mean}");
         }
-        // Parameters change by no more than the heights, over a roughness of some 0.5 um; the fourth moment
-        // by four times that.
+        // Parameters change by no more than the heights, over a roughness of about 0.5 um; the fourth moment
+        // by four times as much.
         let near = |key: &str, found: f64, unit: f64| {
             let wanted = reference[key].as_f64().unwrap();
             let bound = 20.0 * error / 0.5e-6 * unit;
@@ -88,7 +88,8 @@ fn every_format_gives_what_numpy_computes(name: &str, units: HeightMapUnits, err
     }
 }
 
-/// Blocks that cover unequal shares of points of equal height have equal means: rounding tears no plateau.
+/// Blocks that cover unequal shares of points with equal height have equal means: rounding does not break a
+/// plateau.
 #[test]
 fn blocks_over_a_plateau_have_its_height() {
     let folder = tempfile::tempdir().unwrap();
@@ -111,7 +112,7 @@ fn blocks_over_a_plateau_have_its_height() {
     );
 }
 
-/// A height map that is not fully known is refused with the error and the remedy.
+/// An incompletely described height map is refused with the error and the remedy.
 #[test_case("map.npy", OWN, "gives no pixel size: add `pixel_size`")]
 #[test_case(
     "map.png", HeightMapUnits { pixel: SIZE, ..OWN },
@@ -136,7 +137,7 @@ fn what_cannot_be_known_is_refused(name: &str, units: HeightMapUnits, sentence: 
 fn the_aspect_is_kept() {
     let path = folder().join("map.x3p");
     for blocks in [[15, 10], [16, 11], [15, 11], [14, 9]] {
-        // 11 rows ask for 16.5 columns, 9 for 13.5, and 10 for 15: half a block is rounding.
+        // 11 rows require 16.5 columns, 9 require 13.5, and 10 require 15: half a block is rounding.
         assert_eq!(read(&path, OWN, blocks).is_ok(), blocks != [15, 11], "{blocks:?}");
     }
     let said = read(&path, OWN, [25, 25]).unwrap_err().to_string();
@@ -149,7 +150,7 @@ fn the_aspect_is_kept() {
 const TILE_WIDTH: u16 = 322;
 
 /// A TIFF file of grey levels 1, 2 and, in the row below, 3, 4, with changes to its tags, each a number of 16
-/// bits or of 32.
+/// or 32 bits.
 fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
     let pixels = [1_u16, 2, 3, 4].map(u16::to_le_bytes);
     let (header, length) = (8, 8);
@@ -165,7 +166,7 @@ fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
         (279, length),
     ]);
     tags.extend(changes.iter().copied());
-    // Of tiles there are no strips.
+    // A file with tiles has no strips.
     if tags.contains_key(&TILE_WIDTH) {
         tags.retain(|tag, _| ![273, 278, 279].contains(tag));
     }
@@ -184,7 +185,7 @@ fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
     bytes
 }
 
-/// The rows of a strip are at least those of the picture where it is the only one.
+/// A single strip may have more rows than its picture.
 #[test]
 fn tiff_files_have_one_strip_and_one_orientation() {
     const ROWS_PER_STRIP: u16 = 278;
@@ -196,7 +197,7 @@ fn tiff_files_have_one_strip_and_one_orientation() {
     ] {
         let map = read_bytes("a.tif", &tiff(changes)).unwrap();
         for (found, wanted) in map.blocks.iter().zip([3.0, 4.0, 1.0, 2.0]) {
-            // The rounding of numbers of 4 um.
+            // Rounding of numbers of 4 um.
             assert!((found - 1e-6 * wanted).abs() < 1e-21, "{changes:?}: {found}");
         }
     }
@@ -207,7 +208,7 @@ fn tiff_files_have_one_strip_and_one_orientation() {
     }
 }
 
-/// All columns of a tile are decoded, those too that the picture does not have.
+/// All columns of a tile are decoded, including those outside the picture.
 #[test]
 fn tiles_far_wider_than_their_picture_are_refused() {
     let tiles = |width| {
@@ -221,7 +222,7 @@ fn tiles_far_wider_than_their_picture_are_refused() {
     assert!(!tiles(1024).contains("pixels wide"), "{}", tiles(1024));
 }
 
-/// Pictures of grey levels and opacity are no colours.
+/// Pictures of grey levels and opacity do not count as colour pictures.
 #[test]
 fn what_stands_beside_grey_levels_is_told() {
     const SAMPLES_PER_PIXEL: u16 = 277;
@@ -244,7 +245,7 @@ fn what_stands_beside_grey_levels_is_told() {
 
 const MASKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink><ValidPointsLink>valid.bin</ValidPointsLink></DataLink>";
 
-/// A zip archive of files that are stored as they are.
+/// A zip archive of uncompressed files.
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
@@ -271,7 +272,7 @@ fn description(z_axis: &str, record3: &str) -> String {
 
 const LINKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
 
-/// Reads a file for four blocks, with units for an array, which has none.
+/// Reads a file for four blocks, with given units for an array, which states none.
 fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
@@ -286,7 +287,7 @@ fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
     read(&path, units, [2, 2])
 }
 
-/// Integers have a step and an offset. The first row is the upper one.
+/// Integers have a step and an offset. The first row is at the top.
 #[test]
 fn x3p_files_have_heights_of_four_types() {
     let read = |z: &str, heights: &[u8]| {
@@ -297,12 +298,12 @@ fn x3p_files_have_heights_of_four_types() {
     let z = "<DataType>I</DataType><Increment>1e-9</Increment><Offset>1e-6</Offset>";
     let map = read(z, [-1000i16, 0, 1, 2000].map(i16::to_le_bytes).as_flattened());
     for (found, wanted) in map.blocks.iter().zip([1.001e-6, 3e-6, 0.0, 1e-6]) {
-        // The rounding of numbers of 1e-6.
+        // Rounding of numbers of 1e-6.
         assert!((found - wanted).abs() < 1e-21, "{found} {wanted}");
     }
     let z = "<DataType>L</DataType><Increment>1e-9</Increment>";
     let map = read(z, [-1i32, 0, 70_000, 2].map(i32::to_le_bytes).as_flattened());
-    // That of a number of 1e-4.
+    // Rounding of a number of 1e-4.
     assert!((map.blocks[0] - 70e-6).abs() < 1e-19);
 }
 
@@ -389,8 +390,8 @@ fn damaged_x3p_files_are_refused() {
     assert!(said.contains("it is no zip archive"), "{said}");
 }
 
-/// The parser would compare all of them with each other: 10 000 elements within 5000 namespaces take it
-/// minutes.
+/// The parser would compare all names with each other, which takes minutes for 10 000 elements within 5000
+/// namespaces.
 #[test]
 fn descriptions_with_thousands_of_names_are_refused_before_they_are_parsed() {
     let names = |count: usize, name: &dyn Fn(usize) -> String| (0..count).map(name).collect::<String>();
@@ -428,7 +429,7 @@ fn comments_and_texts_are_no_names_of_a_description() {
     assert_eq!(read_bytes("a.x3p", &bytes).unwrap().blocks, [0.0; 4]);
 }
 
-/// Neither within a table nor at its end, and neither of heights nor of numbers of blocks.
+/// Tests lines within a table and at its end, of height maps and of arrays.
 #[test]
 fn no_line_of_a_table_is_skipped() {
     let field = |text: &str| {
@@ -489,7 +490,7 @@ fn damaged_fields_and_tables_are_refused() {
             4,
             "has `ZUnits` = V, which is no unit of length: export a map of heights",
         ),
-        // Without a unit a size says nothing.
+        // Without a unit, a size has no meaning.
         (
             "XRes = 2\nYRes = 2\nXReal = 1\nYReal = 1\nZUnits = m\n",
             4,
@@ -551,7 +552,7 @@ fn heights() -> Vec<f64> {
     means.map(|mean| mean.as_f64().unwrap()).collect()
 }
 
-/// 40 % of 150 blocks are the 60 highest; a depth is counted from the highest block or from a height.
+/// 40 % of 150 blocks are the 60 highest; a depth is measured from the highest block or from a given height.
 #[test]
 fn the_highest_blocks_touch() {
     let heights = heights();
@@ -567,7 +568,7 @@ fn the_highest_blocks_touch() {
             .collect()
     };
     let above = |least: f64| -> Vec<bool> { heights.iter().map(|height| *height >= least).collect() };
-    // Between two blocks: the heights that are read are rounded.
+    // Between two blocks, because heights are rounded when read.
     let between = |rank: usize| 0.5 * (sorted[rank] + sorted[rank + 1]);
     let highest = touching("bearing_percent = 40");
     assert_eq!(highest.iter().filter(|&&touches| touches).count(), 60);
@@ -609,7 +610,7 @@ fn maps_fill_every_place_of_a_pattern() {
     assert!(said.contains(sentence), "{said}");
 }
 
-/// A disc of 20 x 20 blocks over a map that rises from its middle, with no two equal heights.
+/// A disc of 20 x 20 blocks over a map that rises from its middle, without equal heights.
 fn on_a_disc(texture: &str, ranks: usize) -> Vec<Case> {
     let folder = tempfile::tempdir().unwrap();
     let height =
@@ -635,8 +636,8 @@ fn on_a_disc(texture: &str, ranks: usize) -> Vec<Case> {
     })
 }
 
-/// Blocks that do not exist have no share: half of the lattice's blocks would be all blocks of the disc and
-/// more.
+/// Blocks that do not exist do not count: half of the lattice's blocks would be more than all blocks of the
+/// disc.
 #[test]
 fn blocks_that_do_not_exist_have_no_share() {
     for ranks in [1, 3] {
@@ -655,19 +656,19 @@ fn blocks_that_do_not_exist_have_no_share() {
         assert_eq!(touching(&half), 158, "{ranks} ranks");
         assert_eq!(half[0].texture.asked_percent, Some(50.0));
         assert_eq!(half[0].texture.meshed_percent, 50.0);
-        // From the highest block of the disc, of a distance 2 r of 20 at most, and none as high as a corner.
+        // From the highest block of the disc, at a distance 2 r of at most 20 and lower than the corners.
         let depth = on_a_disc("depth = '100 nm'", ranks);
         let contact_height = depth[0].texture.topographies[0].contact_height;
         assert!((250e-9..300.4e-9).contains(&contact_height), "{contact_height}");
         // A quarter of each of four copies lies in the middle; two of their outer corners are cut off.
         let four = on_a_disc("bearing_percent = 50\narray = [2, 2]", ranks);
         assert_eq!(four[0].texture.asked_percent, Some(50.0));
-        // Copies have heights in common, which touch together.
+        // Copies have equal heights, which touch together.
         assert!((158..162).contains(&touching(&four)), "{}", touching(&four));
     }
 }
 
-/// One block touches even for a share of less than half a block.
+/// At least one block touches, even for a share of less than half a block.
 #[test]
 fn one_block_touches_at_the_least() {
     let case = case("bearing_percent = 0.1").unwrap();
@@ -693,7 +694,7 @@ fn a_map_of_another_size_is_told() {
         said.contains("has 30 x 20 points for 60 x 40 blocks: several blocks share a height"),
         "{said}"
     );
-    // Where the places have a length of their own, blocks of another size would not change it.
+    // If a length is given for the places, other block sizes do not change it.
     let slider = "slider = { blocks = [60, 40], block_size = '1 um' }";
     for (pitch, own) in [
         ("pitch = ['30 um', '20 um']", "`pitch` = [\"15 um\", \"10 um\"]"),
@@ -711,7 +712,8 @@ fn warnings_of(text: &str, texture: &str) -> String {
     case.warnings().join("\n")
 }
 
-/// The difference from the asked texture is stated in words of heights, not as clipped or off the slider.
+/// A difference from the requested texture is described in terms of heights, not as clipped or off the
+/// slider.
 #[test]
 fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
     let folder = tempfile::tempdir().unwrap();
@@ -750,7 +752,7 @@ fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
     }
 }
 
-/// The run folder's case names a copy of the map, and is the same case.
+/// The case in the run folder names a copy of the map, and is the same case.
 #[test]
 fn a_map_is_an_input_like_any_other() {
     let case = case("bearing_percent = 40").unwrap();
@@ -771,7 +773,7 @@ fn a_map_is_an_input_like_any_other() {
     assert_eq!(again.inputs[0].hash, input.hash);
 }
 
-/// A file with more pixels per block than arrays have is an error for a mask, not for a height map.
+/// A file with more pixels per block than arrays have is an error for a mask, but not for a height map.
 #[test]
 fn a_height_map_may_be_finer_than_blocks() {
     let folder = tempfile::tempdir().unwrap();
@@ -802,7 +804,7 @@ fn a_height_map_may_be_finer_than_blocks() {
     assert!(said.contains("grey levels of 1 bits"), "{said}");
 }
 
-/// Units of a file that states none.
+/// Units for a file that states none.
 const OF_CASE: HeightMapUnits = HeightMapUnits {
     height: Some(1e-6),
     pixel: SIZE,
@@ -812,8 +814,8 @@ fn read_here(name: &str, units: HeightMapUnits, blocks: [usize; 2]) -> HeightMap
     read(&folder().join(name), units, blocks).unwrap()
 }
 
-/// The text export of Gwyddion states its size and its unit in comments, and begins with the top row: it is
-/// the surface of the simple field of the same data, whose numbers are rounded to 2^-24, and these to five
+/// The text export of Gwyddion states its size and its unit in comments, and begins with the top row. It is
+/// the surface of the simple field of the same data. That one is rounded to 2^-24, and this one to five
 /// digits: heights of 2e-7 m to 5e-12 m.
 #[test]
 fn the_text_export_of_gwyddion_is_its_simple_field() {
@@ -825,7 +827,7 @@ fn the_text_export_of_gwyddion_is_its_simple_field() {
     assert!((text.size[0] - 1e-5).abs() < 1e-18);
 }
 
-/// The table has decimal commas between semicolons in one file, and is UTF-16 in the other.
+/// One file has decimal commas and semicolons, the other is in UTF-16.
 #[test]
 fn tables_of_any_encoding_and_decimal_sign_are_one_map() {
     let [commas, utf_16] = ["decimal_comma.csv", "utf16.csv"].map(|name| read_here(name, OF_CASE, [20, 20]));
@@ -842,7 +844,7 @@ fn tables_of_any_encoding_and_decimal_sign_are_one_map() {
 fn a_list_of_points_on_a_grid_is_a_map() {
     let map = read_here("points.csv", OF_CASE, [4, 4]);
     assert_eq!(map.points, [4, 4]);
-    // The first points of the list are those of the smallest y.
+    // The first points of the list are at the smallest y.
     for (height, wanted) in map
         .blocks
         .iter()
@@ -869,7 +871,8 @@ fn files_of_an_x3p_archive_may_lie_in_a_folder() {
     assert_eq!(plain.blocks, in_folder.blocks);
 }
 
-/// A map of text, whose values are micrometres half a micrometre apart, over as many blocks as it has points.
+/// A text map with values in micrometres and a pixel of half a micrometre, over as many blocks as it has
+/// points.
 fn prepared(text: &str, preparation: Preparation) -> Result<HeightMap, String> {
     let lines = text
         .lines()
@@ -884,8 +887,8 @@ fn prepared(text: &str, preparation: Preparation) -> Result<HeightMap, String> {
         .map_err(|error| error.to_string())
 }
 
-/// Heights 2 x + 3 y and a checkerboard of 0 and 1 on it: four rows of four, over which a checkerboard has
-/// neither a mean slope along x nor along y but for its parity, which cancels.
+/// Heights 2 x + 3 y plus a checkerboard of 0 and 1, of four rows of four. A checkerboard of this size has no
+/// mean slope along x or y, because the contributions cancel.
 #[test]
 fn a_map_is_levelled_by_its_plane() {
     let board = |x: usize, y: usize| ((x / 2 + y / 2) % 2) as f64;
@@ -902,7 +905,7 @@ fn a_map_is_levelled_by_its_plane() {
     let mean = map.blocks.iter().sum::<f64>() / 16.0;
     for (at, height) in map.blocks.iter().enumerate() {
         let wanted = 1e-6 * (board(at % 4, at / 4) - 0.5);
-        // Sixteen numbers below 20 um are added with rounding errors of 2^-53 each.
+        // Rounding: sixteen numbers below 20 um are added, with errors of 2^-53 each.
         assert!((height - mean - wanted).abs() < 1e-19, "{at}: {height}");
     }
     assert!((map.roughness.sa - 0.5e-6).abs() < 1e-19);
@@ -962,7 +965,7 @@ fn points_that_an_x3p_leaves_out_may_be_missing() {
         &room,
     )
     .unwrap();
-    // The third point is none; the sum is divided once more than 7/3 is.
+    // The third point is NaN; the sum has one more division than 7/3.
     assert!((map.blocks[0] - 7.0 / 3.0).abs() < 1e-15);
 }
 

@@ -22,7 +22,7 @@ fn deep_nesting_is_refused_without_overflow() {
         assert!(refused("", &[&format!("a={nested}")]).contains(REFUSAL));
         assert!(refused("", &[&format!("a={}", open.repeat(DEPTH))]).contains(REFUSAL));
     }
-    // Brackets that close nothing must not count against those that open.
+    // Brackets that close nothing must not count as the end of open ones.
     for piece in ["{ [], a = ", "{ b = 1 [x], a = ", "[ }, ", "{ a = ], b = "] {
         let nested = piece.repeat(DEPTH);
         assert!(refused(&format!("a = {nested}"), &[]).contains(REFUSAL));
@@ -37,7 +37,7 @@ fn deep_nesting_is_refused_without_overflow() {
         assert!(refused(&text, &[]).contains(REFUSAL));
     }
     refused("", &[&format!("{dotted}=1")]);
-    // Neither the keys nor the brackets alone are what the parser of TOML calls deep.
+    // Neither the keys nor the brackets alone are too deep for the TOML parser.
     let key = ["a"; 79].join(".");
     let nested = format!("{}1{}", format!("{{ {key} = ").repeat(75), "}".repeat(75));
     assert!(refused(&format!("[drive]\nv_star = {nested}"), &[]).contains(REFUSAL));
@@ -67,7 +67,7 @@ fn long_lines_and_odd_characters_make_short_messages() {
     refused("[time]\nstep = 1979-05-27", &[]);
 }
 
-/// Long names of tables are not repeated for each of their keys: megabytes must not become terabytes.
+/// Long table names are not stored again for each of their keys: megabytes must not become terabytes.
 #[test]
 fn long_names_of_tables_are_not_repeated_for_every_key() {
     let keys: String = (0..100_000).map(|key| format!("k{key}=1\n")).collect();
@@ -105,7 +105,7 @@ fn files_that_cannot_be_read_say_why() {
     );
 }
 
-/// A misspelt name is answered with the file that was meant: in the folder, or in its folder `cases`.
+/// The error about a misspelt name suggests the intended file: in the same folder, or in its folder `cases`.
 #[test]
 fn a_misspelt_file_is_named() {
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use slipfront_case::case_file::{CaseFile, KeyKind, SECTIONS, Section};
 
-/// A case that has a texture of the shape, and the prefix of its keys.
+/// A case with a texture of this shape, and the prefix of its keys.
 fn base(section: &Section) -> (String, String) {
     if !section.is_shape {
         return (String::new(), section.name.to_owned());
@@ -23,7 +23,7 @@ fn with(section: &Section, key: &str, value: &str) -> Result<CaseFile, String> {
     CaseFile::parse(&text, "case.toml", &[set]).map_err(|error| error.to_string())
 }
 
-/// The default of the table is the value of a file without the key.
+/// The default in the table is the value for a file without the key.
 #[test]
 fn defaults_are_those_of_an_empty_file() {
     for section in &SECTIONS {
@@ -35,7 +35,7 @@ fn defaults_are_those_of_an_empty_file() {
     }
 }
 
-/// No key has bounds that its struct forgets to check.
+/// Every struct checks all bounds of its keys.
 #[test]
 fn every_bound_of_the_table_is_checked() {
     for section in &SECTIONS {
@@ -60,7 +60,7 @@ fn every_bound_of_the_table_is_checked() {
     }
 }
 
-/// Partners are mutual: the partners of a key have it and each other as theirs.
+/// Partners are mutual: each partner of a key lists the key and all its other partners.
 #[test]
 fn partners_are_mutual() {
     for section in &SECTIONS {

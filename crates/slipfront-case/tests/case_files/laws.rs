@@ -1,4 +1,4 @@
-//! Laws of friction that a case file asks for.
+//! Laws of friction in a case file.
 
 use slipfront::{
     AfterBreak, Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, Kernel, RateAndState, Weakening,
@@ -11,7 +11,7 @@ fn case(text: &str) -> Case {
 
 const RATE_AND_STATE: &str = "friction = { law = 'rate_and_state', mu_static = 0.5, a = 0.01, b = 0.02, d_c_star = 0.5, v_0_star = 0.02 }";
 
-/// Coefficients count over `mu_static`; missing ones follow from the rest.
+/// Coefficients are relative to `mu_static`; missing ones follow from the others.
 #[test]
 fn keys_become_the_law_in_units_of_the_model() {
     let velocity = "velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.4 }";
@@ -32,7 +32,7 @@ fn keys_become_the_law_in_units_of_the_model() {
     };
     assert_eq!(varying.model.friction, Friction::Coulomb(coulomb));
 
-    // The unit of displacement is 1 pm, and 40 times that on a sheet of 10 um under blocks of 20 um.
+    // The unit of displacement is 1 pm. It is 40 times as large on a sheet of 10 um under blocks of 20 um.
     let slips = |slider: &str| {
         let text = "friction = { slip_weakening = { length = '20 pm' }, healing_time_star = 7 }";
         match case(&format!("{slider}{text}")).model.friction {
@@ -90,7 +90,8 @@ fn keys_become_the_law_in_units_of_the_model() {
     }
 }
 
-/// The stiffness below which sliding is unstable is 0.038 at D_c = 0.5 and 2.6 at 0.02; the drive has 0.375.
+/// The stiffness below which sliding is unstable is 0.038 at D_c = 0.5 and 2.6 at 0.02; that of the drive is
+/// 0.375.
 #[test]
 fn a_drive_that_is_too_soft_is_told() {
     let warns = |d_c: f64| {
@@ -102,9 +103,9 @@ fn a_drive_that_is_too_soft_is_told() {
     assert!(warns(0.02));
 }
 
-/// A steel slider on a machine of 0.5 N/um: as slow as the paper's by V* N_x, and pulled faster than its
-/// blocks can slide. The drag is Omega V* with Omega = sqrt(0.75) Omega*, so that the sentences begin where
-/// it is a hundredth of R* and where both together are 1.
+/// A steel slider on a machine of 0.5 N/um: as slow as the paper's slider in terms of V* N_x, but pulled
+/// faster than its blocks can slide. The drag is Omega V* with Omega = sqrt(0.75) Omega*, so the warnings
+/// begin where it is a hundredth of R*, and where both together are 1.
 #[test]
 fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     let warnings = |changes: &[&str]| {
@@ -137,19 +138,20 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
         "{said}"
     );
     assert!(said.contains("adds 0.9 to the kinetic friction of 0.5"), "{said}");
-    // The speed below which the drag is small has no drag to speak of, and adhesion holds more.
+    // Drag is small up to the reported speed. Adhesion raises the static strength, so that a transition
+    // remains possible.
     assert!(said.contains("up to V* = 0.02887"), "{said}");
     let held = warnings(&[&speed(0.6), soft, "friction.adhesion='20 kPa'"]);
     assert!(held.contains(drag) && !held.contains(no_transition), "{held}");
-    // Of blocks without kinetic friction, a thousandth of what they hold at rest.
+    // For blocks without kinetic friction, the limit is a thousandth of their static strength.
     for (size, has_drag) in [(0.00099, false), (0.00101, true)] {
         let said = warnings(&[&speed(size), soft, "friction.r_star=0"]);
         assert_eq!(said.contains(drag), has_drag, "{size}: {said}");
     }
-    // A turning slider is slow inside.
+    // A rotating slider is slow near its centre.
     let turning = warnings(&[&speed(0.00501), soft, "drive.motion='rotation'"]);
     assert!(!turning.contains(drag), "{turning}");
-    // Blocks that lose nothing when they slip are told of by another sentence.
+    // Blocks that lose no friction when they slip have another warning.
     let equal = warnings(&["friction.r_star=1"]);
     assert!(
         equal.contains("friction does not drop when blocks slip") && !equal.contains(no_transition),
@@ -157,7 +159,8 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     );
 }
 
-/// A surface in metres: blocks of a half and a third, a texture and another spread leave the field as it is.
+/// Tests a surface in metres: blocks of a half and a third of the size, a texture, and another spread do not
+/// change the field.
 #[test]
 fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
     let made = |parts: usize, edges: &str, rest: &str| {
@@ -179,8 +182,8 @@ fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
                     let [i, j] = [parts * (b % 12), parts * (b / 12)];
                     let rows = (j..j + parts).map(|j| &other[12 * parts * j + i..][..parts]);
                     let mean = rows.flatten().sum::<f64>() / (parts * parts) as f64;
-                    // Some 700 differences of error functions, rounded to 1e-16 of 1, are added, times a
-                    // spread of 0.025.
+                    // Rounding: about 700 differences of error functions, each to 1e-16 of 1, are added and
+                    // multiplied by a spread of 0.025.
                     assert!(
                         (mean - parent).abs() < 1e-14,
                         "{edges} {parts} {b}: {mean} {parent}"
@@ -193,11 +196,11 @@ fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
     let [plain, textured] = ["", texture].map(|rest| made(1, "free", rest).model);
     for b in (0..plain.n_blocks()).filter(|&b| !textured.surface.textured[b]) {
         let doubled = 0.5 + 2.0 * (plain.surface.mu_static[b] - 0.5);
-        // One rounding of 0.5 in each.
+        // Each has one rounding of 0.5.
         assert!((textured.surface.mu_static[b] - doubled).abs() < 1e-15);
         assert_eq!(textured.surface.mu_kinetic[b], plain.surface.mu_kinetic[b]);
     }
-    // Without the key every block draws its own.
+    // Without the key, every block draws its own coefficient.
     let by_block = case("slider.blocks = [3, 2]\nfriction.seed = 9").model;
     let gauss = |mean: f64| slipfront::surface::Distribution {
         mean,
@@ -207,7 +210,7 @@ fn coefficients_that_are_alike_over_a_length_are_those_of_the_place() {
     assert_eq!(by_block.surface.mu_static, drawn.mu_static);
 }
 
-/// A field that is nearly uniform over the surface differs from seed to seed, and a warning says so.
+/// A field that is nearly uniform over the surface differs between seeds, and a warning says so.
 #[test]
 fn a_field_that_is_longer_than_the_slider_is_warned_of() {
     let said = |rest: &str| {
@@ -215,7 +218,7 @@ fn a_field_that_is_longer_than_the_slider_is_warned_of() {
         let mut warnings = case.warnings().into_iter();
         warnings.find(|warning| warning.contains("correlated over much of the slider"))
     };
-    // I = 0.8615 at xi = L, and more than half of the spread from 0.47 L on.
+    // I = 0.8615 at xi = L, and more than half of the spread for xi above 0.47 L.
     let warned = said("friction.correlation_length = '25 um'").unwrap();
     assert!(
         warned.contains("between seeds by 0.8615 of the spread"),
@@ -226,7 +229,8 @@ fn a_field_that_is_longer_than_the_slider_is_warned_of() {
     assert_eq!(said(even), None);
 }
 
-/// The lowest row of an upright sheet touches with the thickness of the sheet, and bears the whole load.
+/// The contact of the lowest row of an upright sheet is as wide as the sheet is thick, and bears the whole
+/// load.
 #[test]
 fn an_upright_sheet_stands_on_its_lowest_row() {
     let text = "slider = { blocks = [20, 8], block_size = '2.5 mm', thickness = '6 mm', young_modulus = '3 GPa' }\n\
@@ -234,7 +238,7 @@ fn an_upright_sheet_stands_on_its_lowest_row() {
         friction = { along = 'x', mu_static = 0.5 }\n";
     let upright = case(text);
     let (scales, surface) = (&upright.scales, &upright.model.surface);
-    // A block touches with 2.5 mm x 6 mm: 3 N, and the foundation has 1.5e6 N/m there.
+    // A block has a contact of 2.5 mm x 6 mm: 3 N, and a foundation of 1.5e6 N/m.
     assert!((scales.force() - 0.5 * 3.0).abs() < 1e-12, "{scales:?}");
     let Friction::Coulomb(Coulomb {
         interface: Some(interface),
@@ -257,12 +261,12 @@ fn an_upright_sheet_stands_on_its_lowest_row() {
         (0.0, 20.0)
     );
 
-    // A shear load acts along the interface alone.
+    // A shear load acts only along the interface.
     let sheared = case(&text.replace("load = {", "load = { shear = '50 kPa',"));
     assert!((sheared.model.mean_dead_load()[0] - 0.5).abs() < 1e-15);
     assert!((0..160).all(|b| sheared.model.dead_load().relative(b) == f64::from(u8::from(b < 20))));
 
-    // A groove across the row leaves its load to the other blocks of it.
+    // A groove across the row transfers its load to the other blocks of the row.
     let grooved = case(&format!(
         "{text}[[texture]]\nshape = 'groove'\norientation = 'across'\nwidth = '12.5 mm'\n"
     ));

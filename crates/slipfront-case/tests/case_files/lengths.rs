@@ -14,7 +14,7 @@ fn case(text: &str) -> Case {
     Case::parse(text, "case", "", &[]).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
-/// Name of each length, its blocks and the number that is enough.
+/// Name of each length, its number of blocks, and the sufficient number.
 fn lengths(case: &Case) -> Vec<(String, f64, Option<f64>)> {
     let lengths = case.lengths().into_iter();
     lengths
@@ -32,15 +32,15 @@ fn assert_lengths(case: &Case, expected: &[(&str, f64, Option<f64>)]) {
     let expected_names: Vec<&str> = expected.iter().map(|(name, ..)| *name).collect();
     assert_eq!(names, expected_names);
     for ((name, blocks, enough), (_, exact, expected_enough)) in found.iter().zip(expected) {
-        // Of some products and roots.
+        // Rounding of some products and roots.
         let is_close = blocks == exact || (blocks / exact - 1.0).abs() < 1e-12;
         assert!(is_close, "{name}: {blocks} blocks, exact {exact}");
         assert_eq!(enough, expected_enough, "{name}");
     }
 }
 
-/// The critical size of a bulk body in blocks, `2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E, on blocks
-/// that are cubes: w is W times E over the edge of a block.
+/// Critical size of a bulk body in blocks, `2.316 G/((1 - nu) w)` with G/(1 - nu) = 9/16 E, on cubic blocks:
+/// w is W times E over the edge of a block.
 fn of_bulk(weakening: f64) -> (&'static str, f64, Option<f64>) {
     ("critical size, bulk body", 2.316 * 0.5625 / weakening, None)
 }
@@ -51,8 +51,8 @@ fn note_on(case: &Case, name: &str) -> Option<String> {
     case.warnings().into_iter().find(|note| note.starts_with(&begins))
 }
 
-/// The critical size is `L_c = pi sqrt(9/(8 (W - k_s)))`, the screening length `sqrt(9/(8 k_s))`, with k_s =
-/// 3/8.
+/// The critical size is `L_c = pi sqrt(9/(8 (W - k_s)))`, and the screening length is `sqrt(9/(8 k_s))`, with
+/// k_s = 3/8.
 #[test]
 fn the_critical_size_decides_of_a_sheet() {
     let sheet = case(&format!("{SHEET}slip_weakening = {{ length_star = 0.8 }}"));
@@ -82,9 +82,9 @@ fn the_critical_size_decides_of_a_sheet() {
     );
 }
 
-/// Where some blocks do not touch, the critical size lies between two bounds. The sizes in between are exact
-/// on the lattice: the width of the strip of blocks in contact whose stiffness, with all blocks that do not
-/// touch free, has the least eigenvalue W, and one block more for the neighbours that are held.
+/// Where some blocks do not touch, the critical size lies between two bounds. The exact sizes are from the
+/// lattice: the width of the strip of blocks in contact for which the stiffness, with all blocks without
+/// contact free, has the least eigenvalue W, plus one block for the neighbours that are held.
 #[test]
 fn blocks_without_contact_raise_the_critical_size() {
     let bounds = |blocks: [usize; 2], friction: &str, texture: &str| {
@@ -118,20 +118,20 @@ fn blocks_without_contact_raise_the_critical_size() {
             (least - plain).abs() < 1e-6 && (most - spread).abs() < 1e-6,
             "{least} {most}, {spread}"
         );
-        // The strip of a lattice has a whole number of blocks.
+        // A strip of the lattice has a whole number of blocks.
         assert!(
             least - 0.02 < exact && exact < most,
             "{exact} from {least} to {most}"
         );
     }
-    // One line in a sheet of 201 x 121, 25.5 blocks by the lattice; 26.06 by the continuum.
+    // One line in a sheet of 201 x 121: 25.5 blocks on the lattice, 26.06 in the continuum.
     let [least, most] = bounds([48, 48], "", &groove(0.0, "along", 47.0, 0.0, 1));
     assert!(
         (least - plain).abs() < 1e-6 && (most - 26.055).abs() < 1e-3,
         "{least} {most}"
     );
-    // At the edge of an upright sheet: exact on a lattice of 201 x 121 whose springs along the edge are
-    // halved 12.18 blocks, and 14.45 where they are whole. The formula leaves out 5 %.
+    // At the edge of an upright sheet, exact on a lattice of 201 x 121: 12.18 blocks with halved springs
+    // along the edge, 14.45 with whole ones. The formula neglects 5 %.
     let upright = |edge: &str| {
         let text = format!(
             "slider = {{ blocks = [60, 40], block_size = '1 um', edge_springs = '{edge}' }}\n[friction]\nalong = 'x'\n\
@@ -148,8 +148,8 @@ fn blocks_without_contact_raise_the_critical_size() {
     }
 }
 
-/// A drive at an edge leaves most blocks without a spring: however stiff it is, it does not hold a patch far
-/// from it, and `L_c = pi sqrt(9/(8 W))`.
+/// A drive at an edge leaves most blocks without a spring. However stiff it is, it does not hold a patch far
+/// away, and `L_c = pi sqrt(9/(8 W))`.
 #[test]
 fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
     for (stiffness, edge) in [(0.375, "left"), (1000.0, "right")] {
@@ -175,8 +175,8 @@ fn a_stiff_drive_at_an_edge_does_not_make_slip_stable() {
     }
 }
 
-/// Where slip of any size is stable, or nearly so, stress is screened over a shorter length than slip needs
-/// to run away.
+/// Where slip of any size is stable, or nearly so, the screening length of stress is shorter than the
+/// critical size.
 #[test]
 fn the_screening_length_decides_where_slip_is_stable() {
     for (length, size) in [(2.0, f64::INFINITY), (1.0, std::f64::consts::PI * 3.0)] {
@@ -240,7 +240,7 @@ fn features_gaps_and_correlated_coefficients_are_lengths() {
             .unwrap()
             .ends_with("at most 18 um")
     );
-    // The note on the outline of a texture is one of its own, with the blocks to set.
+    // The note on the outline of a texture is separate, with the blocks to set.
     assert_eq!(
         grooved
             .warnings()
@@ -251,7 +251,7 @@ fn features_gaps_and_correlated_coefficients_are_lengths() {
     );
 }
 
-/// A length that no key gives equals that of a block, which then decides.
+/// A length that no key gives equals the block length, which then determines the error.
 #[test]
 fn the_block_decides_where_no_key_gives_a_length() {
     for (text, expected) in [

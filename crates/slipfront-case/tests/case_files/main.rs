@@ -1,7 +1,7 @@
-//! Case files that are read, and case files that are refused with the sentence that they contain; height
-//! maps; and cases that ranks make together.
+//! Case files that are read, case files that are refused with the sentence that they contain, height maps,
+//! and cases that ranks make together.
 
-// Helpers of tests are not tests by themselves to clippy.
+// For clippy, helpers of tests are not tests themselves.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../support/reference_page.rs"]
@@ -27,7 +27,7 @@ mod texture_files;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The `.toml` files of a folder beside this file, in order.
+/// The `.toml` files of a folder next to this file, in order.
 fn files(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder);
     let mut files: Vec<PathBuf> = fs::read_dir(folder)

@@ -1,4 +1,4 @@
-//! A case that several ranks make equals the case that one process makes.
+//! A case made by several ranks equals the case made by one process.
 
 use std::fs::File;
 use std::io::{Read, Write};
@@ -14,7 +14,7 @@ use test_case::{test_case, test_matrix};
 const NX: usize = 11;
 const NY: usize = 9;
 
-/// Arrays of `NX` x `NY` blocks.
+/// Writes arrays of `NX` x `NY` blocks.
 fn write_inputs(folder: &Path) {
     let blocks = || (0..NY).flat_map(|j| (0..NX).map(move |i| (i, j)));
     let mu = |(i, j): (usize, usize)| 0.8 + 0.01 * i as f64 + 0.003 * j as f64;
@@ -145,7 +145,7 @@ fn ranks_make_the_case_that_one_process_makes(text: &str) {
     }
 }
 
-/// Results of `size` ranks that make a case from the files of a folder, which each of them has in memory.
+/// Results of `size` ranks that make a case from the files of a folder, each with a copy of them in memory.
 fn make_in_memory(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, CaseError>> {
     let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
     let contents = |entry: std::fs::DirEntry| {
@@ -223,7 +223,7 @@ fn files_in_memory_are_refused_in_the_same_sentences(text: &str, wanted: &str) {
     }
 }
 
-/// All ranks report the error that a process alone reports, whichever rank finds it.
+/// All ranks report the same error as a single process, whichever rank finds it.
 #[test_case("friction.mu_static_field = 'negative.csv'", "has -0.8"; "value")]
 #[test_case("friction.mu_static_field = 'short.csv'", "has 7 lines of numbers"; "lines")]
 #[test_case("friction.mu_static_field = 'missing.npy'", "cannot read"; "missing")]
@@ -269,7 +269,7 @@ fn more_ranks_than_rows_are_refused() {
     }
 }
 
-/// Case files are read by every rank.
+/// Every rank reads the case file.
 #[test]
 fn a_case_file_is_loaded_by_all_ranks() {
     let folder = tempfile::tempdir().unwrap();
@@ -297,7 +297,7 @@ fn a_case_file_is_loaded_by_all_ranks() {
     );
 }
 
-/// Ranks of which the last was given another case all report the difference and its place.
+/// If the last rank has a different case, all ranks report the difference and its place.
 #[test_case("friction.seed = 1",
     "friction.seed = 2",
     "`friction.seed` is 2 on rank 2 and 1 on rank 0"; "seed")]
@@ -328,7 +328,7 @@ fn another_case_is_refused_by_all(text: &str, other: &str, sentence: &str) {
     assert!(made.iter().all(|said| *said == made[0]), "{made:?}");
 }
 
-/// Ranks must have the same contents of files, not the same places.
+/// Files must have the same contents on all ranks, but not the same paths.
 #[test]
 fn another_file_is_refused_by_all() {
     let folders = [(); 3].map(|()| tempfile::tempdir().unwrap());
@@ -370,8 +370,8 @@ fn another_file_is_refused_by_all() {
     }
 }
 
-/// A file that changes while the case is made is refused, because its contents may differ from the hashed
-/// ones, on whichever rank it happens.
+/// A file that changes while the case is made is refused, whichever rank finds this: its contents may differ
+/// from the hashed ones.
 #[test_matrix([1, 3])]
 fn a_file_that_changes_while_the_case_is_made_is_refused(size: usize) {
     let folder = tempfile::tempdir().unwrap();
@@ -411,7 +411,7 @@ fn bytes_read() -> u64 {
     line.unwrap().parse().unwrap()
 }
 
-/// The first of the ranks on one machine reads a file as a whole, and the others the rows that they hold.
+/// The first of the ranks on a machine reads the whole file, and the others read only their own rows.
 #[cfg(target_os = "linux")]
 #[test]
 fn one_rank_of_a_machine_hashes_a_file() {
@@ -437,7 +437,7 @@ fn one_rank_of_a_machine_hashes_a_file() {
         Case::new(file, "case", folder.path(), &mut |_| true, ranks).unwrap();
         (bytes_read() - before) as f64 / bytes.len() as f64
     });
-    // A quarter of the rows, and buffers that are filled beyond what is needed.
+    // A quarter of the rows, and buffers that read more than is needed.
     let rows = 0.25..0.35;
     assert!(rows.contains(&(read[0] - 1.0)), "{read:?}");
     assert!(read[1..].iter().all(|read| rows.contains(read)), "{read:?}");

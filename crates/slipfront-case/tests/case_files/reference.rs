@@ -5,8 +5,7 @@ use slipfront_case::case_file::{CaseFile, SECTIONS};
 
 use crate::reference_page::{expect_page, with_keys};
 
-/// The TOML blocks of the reference are cases that can be read, and every key of the default is explained
-/// there.
+/// The TOML blocks of the reference are readable cases, and it explains every key of the default case.
 #[test]
 fn the_reference_is_true() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/case-file.md");

@@ -15,7 +15,7 @@ use slipfront_case::case_file::{
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
 
-/// Quantities of many sizes, some as a user writes them and some printed from their value.
+/// Quantities of many sizes, some in a user's notation and some printed from their value.
 fn quantity<K: Kind + 'static>(
     low: i32,
     high: i32,
@@ -103,7 +103,7 @@ fn slider() -> impl Strategy<Value = Slider> {
                 } else {
                     [Edges::Free; 2]
                 },
-                // A chain has no halved springs, nor has an outline.
+                // Halved springs need a rectangle with more than one row and column.
                 edge_springs: if outline == Outline::Rectangle && nx.min(ny) > 1 && nx % 2 == 0 {
                     EdgeSprings::Halved
                 } else {
@@ -120,13 +120,13 @@ fn slider() -> impl Strategy<Value = Slider> {
         )
 }
 
-/// A bulk body, by its height and Poisson's ratio or by its sheets.
+/// A bulk body, given by its height and Poisson's ratio or by its sheets.
 fn bulk() -> impl Strategy<Value = Slider> {
     let sheet = (length(), quantity(0, 20, &["N/m^3"]));
     let sheet = sheet.prop_map(|(thickness, coupling)| SheetOfStack { thickness, coupling });
     let sheets = (prop::collection::vec(sheet, 2..=4), prop::option::of(1.1..10.0))
         .prop_map(|(sheets, ratio)| (None, None, None, Some((sheets, ratio))));
-    // As high as the largest block at the least.
+    // At least as high as the largest block.
     let height = quantity(2, 6, &["km"]);
     let by_height = (
         prop::option::of(height),
@@ -194,7 +194,7 @@ fn load() -> impl Strategy<Value = Load> {
 }
 
 fn drive() -> impl Strategy<Value = Drive> {
-    // Times are sums, so that they rise, and the first speed is forwards.
+    // Times are cumulative sums, so that they increase, and the first speed is positive.
     let program =
         prop::collection::vec((-10.0..10.0, 0.01..100.0), 1..6).prop_map(|parts: Vec<(f64, f64)>| {
             let mut until = 0.0;
@@ -216,7 +216,7 @@ fn drive() -> impl Strategy<Value = Drive> {
         quantity(-18, 5, &["mm/s", "m s^-1"]).prop_map(DriveSpeed::Speed),
         program
     ];
-    // Edges and rotation exclude periodic sliders and directions; files of `good` have them.
+    // Edges and rotation exclude periodic sliders and directions; files in `good` test them.
     let attached = prop_oneof![
         Just(Attached::At(AttachedEdge::All)),
         file(&["npy", "png"]).prop_map(Attached::File)
@@ -314,7 +314,7 @@ fn friction() -> impl Strategy<Value = Friction> {
     ]
 }
 
-/// A correlation length for coefficients that are not all given.
+/// A correlation length, unless all coefficients are given.
 fn drawn(plain: &Friction, draws_kinetic: bool) -> Option<Length> {
     let is_drawn = draws_kinetic || plain.mu_static_field.is_none();
     plain.correlation_length.clone().filter(|_| is_drawn)
@@ -632,18 +632,18 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
         .prop_map(
             |(slider, mut load, (mut drive, loading), friction, texture, mut initial, time, mut output)| {
                 let source = Source::default();
-                // Blocks of other laws do not stop, or grow stronger in time.
+                // Blocks under other laws do not come to rest, or strengthen with time.
                 let stops = friction.law == Law::Projection && friction.contact == ContactModel::Rigid;
                 if stops && friction.ageing.is_none() && friction.healing_time_star.is_none() {
                     drive.loading = loading;
                 }
-                // A bulk body is driven by its whole upper face.
+                // A bulk body is driven over its whole upper face.
                 if slider.body == Body::Bulk {
                     drive.stiffness = DriveStiffness::Each(AutoOrStiffness::Auto);
                     drive.attached = Attached::At(AttachedEdge::All);
                     drive.motion = Motion::Translation;
                 }
-                // No shear load and no state at the start are derived for these.
+                // The shear load and the initial state are not derived for these.
                 if slider.body == Body::Bulk {
                     (load.shear, load.shear_star, load.shear_field) = (None, None, None);
                 }
@@ -651,7 +651,7 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
                     initial = Initial::default();
                     output.final_state = false;
                 }
-                // A spring that forms again breaks at an instant.
+                // A spring that re-forms breaks in an instant.
                 output.events &=
                     friction.contact == ContactModel::Rigid || friction.after_break == AfterBreak::Slide;
                 CaseFile {

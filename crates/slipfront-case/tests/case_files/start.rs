@@ -9,7 +9,7 @@ use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile};
 use test_case::{test_case, test_matrix};
 
-/// A case with tables of numbers in memory, each row of the lattice a line.
+/// A case with tables of numbers in memory, one line per row of the lattice.
 fn case(text: &str, tables: &[(&str, &[Vec<f64>])]) -> Result<Case, CaseError> {
     let in_memory: FilesInMemory = tables
         .iter()
@@ -43,10 +43,10 @@ fn begin(case: &Case, kernel: Kernel) -> Simulation {
     )
 }
 
-/// Blocks that are alike, with R* = 0.5.
+/// Equal blocks with R* = 0.5.
 const EQUAL: &str = "friction = { sigma_static_star = 0, sigma_kinetic_star = 0, mu_static = 0.4 }\n";
 
-/// 0.3 of P mu_s, as a stress and as a ratio, leaves 0.7 to the drive.
+/// A load of 0.3 P mu_s, given as a stress or as a ratio, leaves 0.7 to the drive.
 #[test_case("load.shear = '12 kPa'"; "stress")]
 #[test_case("load.shear_star = 0.3"; "ratio")]
 #[test_case("load = { shear_star = 0.15, shear_field = 'two.csv' }"; "field")]
@@ -68,7 +68,7 @@ fn a_shear_load_leaves_the_rest_to_the_drive(load: &str) {
         .run(Stop::at_step(case.time_plan.last_step), &mut [])
         .unwrap();
     let found = simulation.snapshot().earliest_first_slip().unwrap();
-    // At the first instant after it.
+    // The first slip is at the first instant after the exact time.
     assert!(found > exact * (1.0 - 1e-12) && found <= exact + case.time_plan.dt_star);
 }
 
@@ -96,7 +96,7 @@ fn blocks_that_slip_at_once_are_counted_and_the_first_is_named() {
     assert_eq!(slips, [127, 272]);
 }
 
-/// A chain of blocks without friction between ends of one that holds, periodic: 20 free ones.
+/// A periodic chain of 20 frictionless blocks between the two sides of one block that holds.
 const FREE: usize = 20;
 
 fn chain(initial: &str, rows: &[Vec<f64>]) -> Case {
@@ -126,9 +126,10 @@ fn chain(initial: &str, rows: &[Vec<f64>]) -> Case {
     Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap()
 }
 
-/// A mode of the chain swings at the frequency of the scheme, sin(w dt/2) = w_0 dt/2, with w_0 of the
-/// springs. From rest half a step before t = 0 it is u_0 cos(w (n + 1/2) dt)/cos(w dt/2), from a velocity at
-/// the rest sites dt v sin(w n dt)/sin(w dt). In metres and metres per second as in units of the model.
+/// A mode of the chain oscillates at the frequency of the scheme, sin(w dt/2) = w_0 dt/2, with w_0 of the
+/// springs. From rest half a step before t = 0 it is u_0 cos(w (n + 1/2) dt)/cos(w dt/2); from a velocity at
+/// the rest sites it is dt v sin(w n dt)/sin(w dt). The initial state is in SI units or in units of the
+/// model.
 #[test_matrix([1, 3, 20], [Kernel::Fused, Kernel::General], [false, true], [false, true])]
 fn a_mode_swings_at_the_frequency_of_the_scheme(mode: usize, kernel: Kernel, moves: bool, has_unit: bool) {
     let angle = std::f64::consts::PI * mode as f64 / (FREE + 1) as f64;
@@ -161,7 +162,7 @@ fn a_mode_swings_at_the_frequency_of_the_scheme(mode: usize, kernel: Kernel, mov
         };
         let u = simulation.state().displacement;
         for (i, shape) in shape.iter().enumerate() {
-            // Roundings of 400 steps, of displacements up to 8.
+            // Rounding over 400 steps, for displacements up to 8.
             assert!(
                 (u.x[i] - factor * shape).abs() < 1e-9,
                 "{step} {i}: {} {}",
@@ -174,8 +175,8 @@ fn a_mode_swings_at_the_frequency_of_the_scheme(mode: usize, kernel: Kernel, mov
 }
 
 /// A front in a chain under the prestress tau = (F - mu_k)/(mu_s - mu_k) runs at c/sqrt(1 - tau^2), once
-/// blocks at one end are set in motion: here by a case alone. It takes a whole number of steps from block to
-/// block, half a step of which is 1 % at the highest speed; the drive springs take less.
+/// blocks at one end are set in motion. Here the case alone does this. The front takes a whole number of
+/// steps per block, and half a step is 1 % at the highest speed; the effect of the drive springs is smaller.
 #[test_case(0.6)]
 #[test_case(0.8)]
 fn a_case_of_a_prestressed_chain_has_the_speed_of_its_front(tau: f64) {
@@ -226,13 +227,13 @@ fn wrong_arrays_are_refused(text: &str, expected: &str) {
     assert!(said.contains(expected), "{said}");
 }
 
-/// A held drive may begin over blocks that are displaced.
+/// A held drive may begin with displaced blocks.
 #[test]
 fn a_held_drive_begins_over_displaced_blocks() {
     let one = vec![vec![0.1; 6]; 6];
     let text = "slider.blocks = [6, 6]\ndrive.loading = 'held'\ninitial.displacement_x = 'one.csv'";
     let case = case(text, &[("one.csv", &one)]).unwrap();
     let found = begin(&case, Kernel::Fused).snapshot().point.mu_star;
-    // The pull of the drive springs, back to the rest sites.
+    // Pull of the drive springs, back to the rest sites.
     assert!((found + 0.1 * K_DRIVE).abs() < 1e-15);
 }

@@ -1,4 +1,4 @@
-//! The note on a time step that is too long for periods of stick-slip under rate and state, held against
+//! The note on a time step that is too long for periods of stick-slip under rate and state, compared with
 //! runs.
 
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use slipfront::{Execution, Simulation};
 use slipfront_case::case::Case;
 
-/// Steps of the table.
+/// Time steps in the table.
 const STEPS: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 
 /// A block on a spring.
@@ -19,7 +19,7 @@ struct Block {
     omega: f64,
 }
 
-/// Blocks of the table of `docs/model.md`: a, b, D_c*, V*, k* and Omega*.
+/// Blocks in the table of `docs/model.md`: a, b, D_c*, V*, k* and Omega*.
 const BLOCKS: [[f64; 6]; 7] = [
     [0.0157, 0.0358, 0.0117, 0.0041, 0.375, 0.0],
     [0.0094, 0.0232, 0.0107, 0.0287, 0.033, 0.0],
@@ -47,7 +47,7 @@ impl Block {
         Case::parse(&text, "case", "", &[]).unwrap_or_else(|error| panic!("{text}\n{error}"))
     }
 
-    /// Mean of four periods, the first slips left out.
+    /// Mean of four periods, without the first slips.
     fn period(&self, step: f64) -> f64 {
         let model = &self.case(step).model;
         let mut simulation = Simulation::new(model.clone(), step, None, Execution::default());
@@ -69,7 +69,7 @@ impl Block {
     }
 }
 
-/// The share of a period by which it is told to be too long, and the step that is told to be good.
+/// Relative error of the period from the note, and the step that the note suggests.
 fn told(case: &Case) -> Option<[f64; 2]> {
     let note = case.coarse_for_stick_slip();
     let is_warned = case
@@ -91,9 +91,9 @@ fn told(case: &Case) -> Option<[f64; 2]> {
     Some([percent / 100.0, step])
 }
 
-/// In the step that is told to be good a period is off by less than 0.1 %, in nine times this step by more,
-/// since what is told is right but for a factor of 3. The error is of first order: the period in an eighth of
-/// the good step is off by an eighth as much.
+/// With the suggested step, a period differs by less than 0.1 %, and with nine times this step by more,
+/// because the note is accurate to a factor of 3. The error is of first order: with an eighth of the
+/// suggested step, it is an eighth.
 #[test]
 fn the_step_that_is_told_makes_periods_good_to_a_thousandth() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/model.md");
@@ -126,7 +126,7 @@ fn the_step_that_is_told_makes_periods_good_to_a_thousandth() {
         let errors = STEPS.map(error);
         let ratio = errors[1] / share;
         assert!((1.0 / 3.0..3.0).contains(&ratio), "{values:?}: {ratio}");
-        // The row of the table.
+        // The row in the table.
         let numbers = values
             .iter()
             .copied()

@@ -1,4 +1,4 @@
-//! Files of textures for other programs: their outlines fill the textured blocks of the case.
+//! Files of textures for other programs: their outlines must fill the textured blocks of the case.
 
 use std::f64::consts::{PI, TAU};
 use std::fs;
@@ -8,15 +8,15 @@ use slipfront_case::case::Case;
 use slipfront_case::texture_file::{smallest, textured_blocks, write};
 use test_case::test_case;
 
-/// A piece of a closed line, in blocks.
+/// A part of a closed line, in blocks.
 #[derive(Clone, Copy, Debug)]
 enum Part {
     Line([[f64; 2]; 2]),
-    /// Centre, semi-axes, direction of the first, and parameters.
+    /// Centre, semi-axes, direction of the first axis, and parameters of the ends.
     Arc([f64; 2], [f64; 2], f64, [f64; 2]),
 }
 
-/// Parts that are filled together by the even-odd rule.
+/// Parts that are filled together, by the even-odd rule.
 type Element = Vec<Part>;
 
 fn on_arc(center: [f64; 2], [a, b]: [f64; 2], angle: f64, t: f64) -> [f64; 2] {
@@ -35,7 +35,7 @@ impl Part {
         }
     }
 
-    /// Number of times that a ray from a point to the right meets the part.
+    /// Number of intersections of the part with a ray from a point to the right.
     fn crossings(&self, [x, y]: [f64; 2]) -> usize {
         let meets = |from: [f64; 2], to: [f64; 2]| (from[1] <= y) != (to[1] <= y);
         match *self {
@@ -43,7 +43,7 @@ impl Part {
                 usize::from(meets(p, q) && p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]) > x)
             }
             Part::Arc(center, [a, b], angle, [from, to]) => {
-                // y = center + reach cos(t - middle), which rises or falls between multiples of pi.
+                // y = center + reach cos(t - middle), which is monotonic between multiples of pi.
                 let (cosine, sine) = (a * angle.sin(), b * angle.cos());
                 let (reach, middle) = (cosine.hypot(sine), sine.atan2(cosine));
                 let mut ends = vec![from, to];
@@ -59,7 +59,7 @@ impl Part {
                     if !meets(at(pair[0]), at(pair[1])) {
                         return false;
                     }
-                    // The one of the two solutions, in any turn, that is nearest to the part.
+                    // Of the two solutions, in any turn, the one that is nearest to the part.
                     let mid = 0.5 * (pair[0] + pair[1]);
                     let near = [middle - half, middle + half].map(|t| t + ((mid - t) / TAU).round() * TAU);
                     let t = if (near[0] - mid).abs() < (near[1] - mid).abs() {
@@ -74,7 +74,7 @@ impl Part {
         }
     }
 
-    /// Largest distance of a point from the part.
+    /// Distance of a point from the part; for an arc, an upper bound of the distance from its ellipse.
     fn distance(&self, [x, y]: [f64; 2]) -> f64 {
         match *self {
             Part::Line([p, q]) => {
@@ -98,14 +98,14 @@ fn number_of(line: &str, name: &str) -> Option<f64> {
     rest.split_once('"')?.0.trim_end_matches("mm").parse().ok()
 }
 
-/// The elements of an SVG, in blocks with y upwards.
+/// Elements of an SVG, in blocks, with y upwards.
 fn svg(text: &str, [nx, ny]: [usize; 2]) -> Vec<Element> {
     let head = text.lines().next().unwrap();
     let block = number_of(head, "width").unwrap() / nx as f64;
     assert!((number_of(head, "height").unwrap() / block - ny as f64).abs() < 1e-9);
     let point = |x: f64, y: f64| [x / block, ny as f64 - y / block];
     let mut elements = Vec::new();
-    // All but the edge of the slider.
+    // All elements but the edge of the slider.
     let (textures, _) = text.split_once("<g id=\"SLIDER\"").unwrap();
     for line in textures.lines() {
         let number = |name: &str| number_of(line, name);
@@ -137,7 +137,7 @@ fn svg_path(path: &str, point: &dyn Fn(f64, f64) -> [f64; 2], block: f64) -> Ele
     let (mut start, mut here) = ([0.0; 2], [0.0; 2]);
     let mut rest = path.trim();
     while let Some(letter) = rest.chars().next() {
-        // An exponent is no command.
+        // The `e` of an exponent is not a command.
         let end = rest[1..]
             .find(|c: char| "MLAZ".contains(c))
             .map_or(rest.len(), |at| at + 1);
@@ -169,8 +169,8 @@ fn svg_path(path: &str, point: &dyn Fn(f64, f64) -> [f64; 2], block: f64) -> Ele
     parts
 }
 
-/// The arc of less than half a turn, counterclockwise, found in coordinates in which the ellipse is the unit
-/// circle.
+/// The counterclockwise arc of less than half a turn, computed in coordinates in which the ellipse is the
+/// unit circle.
 fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     let (s, c) = angle.sin_cos();
     let turned = |p: [f64; 2]| [(p[0] * c + p[1] * s) / a, (p[1] * c - p[0] * s) / b];
@@ -194,7 +194,7 @@ fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     Part::Arc(center, [a, b], angle, [t, u])
 }
 
-/// The entities of a layer of a DXF: each the kind, and the codes with their values.
+/// Entities of a layer of a DXF: the kind of each, and its codes with their values.
 fn entities(text: &str, has_layer: impl Fn(&str) -> bool) -> Vec<(&str, Vec<(u16, &str)>)> {
     let (_, text) = text.split_once("\nENTITIES\n").unwrap();
     let (text, _) = text.split_once("0\nENDSEC\n").unwrap();
@@ -210,7 +210,7 @@ fn entities(text: &str, has_layer: impl Fn(&str) -> bool) -> Vec<(&str, Vec<(u16
     entities
 }
 
-/// The closed line of an entity of a DXF, in blocks.
+/// Closed line of an entity of a DXF, in blocks.
 fn closed_line(kind: &str, pairs: &[(u16, &str)], block: f64) -> Element {
     let value = |code: u16| pairs.iter().find(|pair| pair.0 == code).unwrap().1.parse::<f64>();
     let number = |code: u16| value(code).unwrap();
@@ -253,7 +253,7 @@ fn closed_line(kind: &str, pairs: &[(u16, &str)], block: f64) -> Element {
     }
 }
 
-/// The line from one corner to the next one, or the arc of a circle of the angle `4 atan(bulge)`.
+/// The line from one corner to the next, or the circular arc with the angle `4 atan(bulge)`.
 fn bulged(p: [f64; 2], q: [f64; 2], bulge: f64) -> Part {
     let radius = (q[0] - p[0]).hypot(q[1] - p[1]) * (1.0 + bulge * bulge) / (4.0 * bulge.abs());
     if bulge == 0.0 {
@@ -265,7 +265,7 @@ fn bulged(p: [f64; 2], q: [f64; 2], bulge: f64) -> Part {
     }
 }
 
-/// The elements of a DXF, in blocks: each closed line, or all of a layer that is filled by the even-odd rule.
+/// Elements of a DXF, in blocks: each closed line, or all lines of a layer with the even-odd rule.
 fn dxf(text: &str, block: f64) -> Vec<Element> {
     let mut elements: Vec<Element> = Vec::new();
     let mut even_odd: Vec<(&str, usize)> = Vec::new();
@@ -285,11 +285,11 @@ fn dxf(text: &str, block: f64) -> Vec<Element> {
     elements
 }
 
-/// Every block is textured as the elements say, but for centres within 1e-9 block of an outline.
+/// Every block is textured according to the elements, except for centres within 1e-9 block of an outline.
 fn expect_filled(elements: &[Element], textured: &[bool], nx: usize, what: &str) {
     for (b, textured) in textured.iter().enumerate() {
         let center = [(b % nx) as f64 + 0.5, (b / nx) as f64 + 0.5];
-        // Not at the height of the ends of arcs, which are rounded.
+        // Not exactly at the height of the ends of arcs, which are rounded.
         let ray = [center[0], center[1] + 1e-10];
         let odd = |element: &Element| element.iter().map(|part| part.crossings(ray)).sum::<usize>() % 2 == 1;
         if elements.iter().any(odd) != *textured {
@@ -310,7 +310,7 @@ fn expect_filled(elements: &[Element], textured: &[bool], nx: usize, what: &str)
 
 const SHAPES: &[&str] = &[
     "[[texture]]\nshape = 'cavity'\ncoverage = 10",
-    // Over two free edges, and over the corner.
+    // Across two free edges, and across the corner.
     "[[texture]]\nshape = 'cavity'\nlambda = '9 um'\ncenter = ['3 um', '4.2 um']",
     "[[texture]]\nshape = 'cavity'\nlambda = '9 um'\nw = 0.4\nrotate = 30\ncenter = ['36 um', '15 um']",
     "[[texture]]\nshape = 'cavity'\nlambda = '12 um'\nw = -0.5\nacross = true\nrotate = -20",
@@ -398,17 +398,17 @@ fn circles_and_ellipses_are_written_as_such_and_cavities_as_4096_corners() {
     let svg = written(square, "a.svg");
     let path = svg.lines().find(|line| line.starts_with("<path")).unwrap();
     assert_eq!(count(path, "L"), 4095);
-    // The edge of the slider, for registration.
+    // The edge of the slider, for alignment.
     let edge = "<g id=\"SLIDER\" fill=\"none\" stroke=\"black\" stroke-width=\"0.00005\">\n\
                 <path d=\"M0 0.03L0.04 0.03L0.04 0L0 0Z\"/>\n</g>\n</svg>\n";
     assert!(svg.ends_with(edge), "{svg}");
     assert!(written(square, "a.dxf").contains("\n90\n4096\n70\n1\n"));
-    // In true size: 40 blocks of 1 um.
+    // True size: 40 blocks of 1 um.
     assert!(written(square, "a.svg").contains("width=\"0.04mm\" height=\"0.03mm\""));
 }
 
-/// The area within a closed line, in square blocks: the polygon of its corners and the segments beyond its
-/// chords.
+/// Area within a closed line, in square blocks: the polygon of its corners plus the segments between chords
+/// and arcs.
 fn area(line: &Element) -> f64 {
     let part = |part: &Part| {
         let [[x_0, y_0], [x, y]] = part.ends();
@@ -421,7 +421,7 @@ fn area(line: &Element) -> f64 {
     line.iter().map(part).sum()
 }
 
-/// The texture of a case, and its edge, as closed lines of DXF in blocks.
+/// The texture of a case, and its edge, as closed lines of a DXF, in blocks.
 fn drawn(text: &str) -> [Vec<(String, Element)>; 2] {
     let case = Case::parse(text, "case", "", &[]).unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -437,14 +437,14 @@ fn drawn(text: &str) -> [Vec<(String, Element)>; 2] {
     })
 }
 
-/// The area of a circle around the origin that lies right of `x` and above `y`, a point inside of it.
+/// Area of the part of a circle around the origin to the right of `x` and above `y`, a point inside it.
 fn right_of_and_above(radius: f64, x: f64, y: f64) -> f64 {
     let [beside, above] = [x, y].map(|length| (radius * radius - length * length).sqrt());
     let angle = (x / radius).acos() - (y / radius).asin();
     0.5 * (radius * radius * angle - x * (beside - y) - y * (above - x))
 }
 
-/// The area that two circles of these radii have in common, their centres this far apart.
+/// Common area of two circles with these radii and this distance of their centres.
 fn lens(a: f64, b: f64, apart: f64) -> f64 {
     let half = |a: f64, b: f64| {
         let chord = (apart * apart + a * a - b * b) / (2.0 * apart);
@@ -453,7 +453,7 @@ fn lens(a: f64, b: f64, apart: f64) -> f64 {
     half(a, b) + half(b, a)
 }
 
-/// Circles of 9 blocks on a slider of 40 blocks by 30, or on a disc of 40.
+/// Circles with a radius of 9 blocks on a slider of 40 blocks by 30, or on a disc of 40.
 #[test_case("blocks = [40, 30]", [3.0, 15.0], &[right_of_and_above(9.0, -3.0, 0.0) * 2.0]; "cut by an edge")]
 #[test_case("blocks = [40, 30]", [0.0, 38.0 / 3.0], &[81.0 * PI / 2.0]; "around an edge")]
 #[test_case("blocks = [40, 30]", [3.0, 4.0], &[right_of_and_above(9.0, -3.0, -4.0)]; "cut by a corner")]
@@ -469,7 +469,7 @@ fn circles_are_cut_exactly(slider: &str, center: [f64; 2], areas: &[f64]) {
     assert_eq!(shapes.len(), areas.len());
     for ((kind, line), wanted) in shapes.iter().zip(areas) {
         assert_eq!(kind, "LWPOLYLINE");
-        // Some twenty roundings of numbers up to four times as large.
+        // Rounding: about twenty operations on numbers up to four times as large.
         assert!(
             (area(line) / wanted - 1.0).abs() < 1e-12,
             "{} {wanted}",
@@ -485,8 +485,8 @@ fn circles_are_cut_exactly(slider: &str, center: [f64; 2], areas: &[f64]) {
     assert!(edge.len() == 1 && (area(&edge[0].1) / size - 1.0).abs() < 1e-12);
 }
 
-/// No line without an inside is written: neither of a polygon that has none, nor of a groove or a copy that
-/// touches the edge from outside.
+/// No line without an inside is written: neither for a polygon without an area, nor for a groove or a copy
+/// that touches the edge from outside.
 #[test_case(
     "edges = 'free'",
     "shape = 'polygon'\npoints = [['1 um', '1 um'], ['9 um', '9 um'], ['5 um', '5 um']]"
@@ -512,10 +512,10 @@ fn dimples_over_periodic_edges_are_closed_lines() {
     let text = fs::read_to_string(folder.join("hexagonal_dimples.toml")).unwrap();
     let [shapes, _] = drawn(&text);
     let count = |kind: &str| shapes.iter().filter(|(other, _)| other == kind).count();
-    // A dimple of each of the four rows is cut, and goes on at the opposite edge.
+    // A dimple of each of the four rows is cut, and continues at the opposite edge.
     assert_eq!((shapes.len(), count("CIRCLE"), count("LWPOLYLINE")), (20, 12, 8));
     let all: f64 = shapes.iter().map(|(_, line)| area(line)).sum();
-    // Sixteen dimples, in all.
+    // The total is that of sixteen dimples.
     assert!((all / (256.0 * PI) - 1.0).abs() < 1e-12, "{all}");
 }
 
@@ -603,7 +603,7 @@ fn the_smallest_lengths_are_told_of_every_shape() {
         )
         .unwrap();
         let found = smallest(&case).unwrap();
-        // Rounding of places up to 40, a hundred times over.
+        // Rounding of positions up to 40, a hundred times.
         let near = |found: Option<f64>, wanted: Option<f64>| match (found, wanted) {
             (Some(found), Some(wanted)) => (found - wanted).abs() < 1e-12,
             (found, wanted) => found == wanted,
@@ -615,7 +615,7 @@ fn the_smallest_lengths_are_told_of_every_shape() {
     }
 }
 
-/// Only the lowest row of an upright sheet can be textured; the blocks above it are no texture.
+/// Only the lowest row of an upright sheet can be textured; the blocks above it do not count as texture.
 #[test]
 fn an_upright_sheet_has_its_texture_in_the_lowest_row() {
     let text = "slider.blocks = [12, 5]\nfriction.along = 'x'\n\

@@ -7,7 +7,7 @@ use std::path::Path;
 use slipfront_base::number_format::exact;
 use slipfront_case::case_file::{Bounds, Key, KeyKind};
 
-/// Compares a page of `docs/reference/` with what it is to be, or writes it anew if `UPDATE` is set.
+/// Compares a page of `docs/reference/` with its expected text, or writes the page again if `UPDATE` is set.
 pub(crate) fn expect_page(name: &str, made: impl FnOnce(&str) -> String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../docs/reference")
@@ -24,7 +24,8 @@ pub(crate) fn expect_page(name: &str, made: impl FnOnce(&str) -> String) {
     }
 }
 
-/// The page with these keys in place of the first table of keys below a heading that begins with these words.
+/// The page with these keys in place of the first table of keys below the heading that begins with these
+/// words.
 pub(crate) fn with_keys(page: &str, heading: &str, keys: &[Key]) -> String {
     let lines: Vec<&str> = page.lines().collect();
     let is_heading = |line: &&str| {
@@ -53,7 +54,7 @@ pub(crate) fn with_keys(page: &str, heading: &str, keys: &[Key]) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-/// The rows of some keys, without the columns in which no key has anything.
+/// The rows of some keys, without columns that are empty for all keys.
 fn table(keys: &[Key]) -> String {
     let titles = ["key", "paper", "default", "bounds", "meaning"].map(str::to_owned);
     let rows: Vec<[String; 5]> = keys.iter().map(row).collect();
@@ -93,7 +94,7 @@ fn row(key: &Key) -> [String; 5] {
     ]
 }
 
-/// The values that a key takes.
+/// The values that a key accepts.
 fn bounds(kind: &KeyKind) -> String {
     let quoted = |words: &[&str]| {
         words
@@ -126,7 +127,7 @@ fn bounds(kind: &KeyKind) -> String {
             };
             format!("a {others}{last} file")
         }
-        // Its keys have a table of their own.
+        // Its keys have their own table.
         KeyKind::Table("", _) => String::new(),
         KeyKind::Table(example, keys) => {
             let of_keys = keys.iter().map(|key| (key.name, bounds(&key.kind)));
@@ -147,7 +148,7 @@ fn in_groups(number: u64) -> String {
     let digits = number.to_string();
     let groups: Vec<&[u8]> = digits.as_bytes().rchunks(3).rev().collect();
     match groups.as_slice() {
-        // Four digits are read at a glance.
+        // Four digits need no grouping.
         [[_], _] => digits,
         groups => String::from_utf8(groups.join(&b' ')).unwrap(),
     }

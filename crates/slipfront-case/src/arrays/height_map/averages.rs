@@ -1,27 +1,27 @@
-//! The mean height of every block: over the points that it covers, each weighted with the area that lies in
-//! it.
+//! Mean height of every block: the average over the points that it covers, each weighted with its area in the
+//! block.
 
 use std::ops::Range;
 
 use super::grid::Line;
 use super::quantum::Quantum;
 
-/// Heights that are averaged over blocks, point after point.
+/// Heights that are averaged over blocks, point by point.
 ///
-/// Both grids are stretched over the same rectangle, so that along an axis with `p` points and `b` blocks,
-/// point k lies between k b and (k + 1) b, and block i between i p and (i + 1) p of the same whole units, so
-/// that the area they share is exact. Sums of whole quanta are exact, too: blocks over equal heights have
-/// equal means, wherever they lie.
+/// Both grids cover the same rectangle. Along an axis with `p` points and `b` blocks, in common integer
+/// units, point k lies between k b and (k + 1) b, and block i between i p and (i + 1) p, so that their shared
+/// area is exact. Sums of whole quanta are exact too: blocks over equal heights have equal means, wherever
+/// they lie.
 pub(super) struct Averages {
     points: [usize; 2],
     blocks: [usize; 2],
     quantum: Quantum,
-    /// Sums of quanta times areas, row after row of blocks in rising y: sums of numbers below 2^53 times at
-    /// most 2^28 points.
+    /// Sums of quanta times areas, row by row of blocks in rising y: sums of numbers below 2^53 times at most
+    /// 2^28 points.
     sums: Vec<i128>,
-    /// Sums of the present line, over its blocks along x.
+    /// Sums of the current line, over its blocks along x.
     of_line: Vec<i128>,
-    /// Areas of points in every block that were not measured; empty as long as there are none.
+    /// Areas of unmeasured points in every block; empty while there are none.
     gaps: Vec<i128>,
 }
 
@@ -37,7 +37,7 @@ impl Averages {
         }
     }
 
-    /// Adds the heights of a line whose row is counted from the smallest y.
+    /// Adds the heights of a line. Rows are counted from the smallest y.
     pub(super) fn add(&mut self, line: &Line) {
         let [points, blocks] = [self.points, self.blocks];
         let touched = |axis: usize, points_of_it: Range<usize>| {
@@ -76,7 +76,7 @@ impl Averages {
         }
     }
 
-    /// The means, in rising y; no number for a block without a measured point.
+    /// The means, in rising y; NaN for a block without a measured point.
     pub(super) fn means(self) -> impl Iterator<Item = f64> {
         let area = self.points[0] as i128 * self.points[1] as i128;
         let gaps = self.gaps.into_iter().chain(std::iter::repeat(0));
@@ -85,7 +85,8 @@ impl Averages {
             if area == 0 {
                 return f64::NAN;
             }
-            // Apart, so that the mean of equal heights is their own.
+            // Quotient and remainder are converted separately, so that the mean of equal heights is exactly
+            // this height.
             let (whole, rest) = (sum / area, sum % area);
             self.quantum.height(whole as f64 + rest as f64 / area as f64)
         })

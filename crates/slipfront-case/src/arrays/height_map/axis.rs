@@ -1,10 +1,10 @@
-//! First rows and columns that are coordinates, and no heights.
+//! Detection of first rows and columns that are coordinates, not heights.
 
 use slipfront_base::number_format::four_digits;
 
 use super::grid::Line;
 
-/// Least number of points of an axis: fewer heights may rise evenly by chance.
+/// Least number of points of an axis: fewer heights may be evenly spaced by chance.
 const LEAST_POINTS: usize = 8;
 
 /// The first two rows and columns of a map.
@@ -25,10 +25,10 @@ impl FirstLines {
         }
     }
 
-    /// A sentence on a first row or column that rises evenly, where the second does not.
+    /// A sentence on a first row or column that is evenly spaced, if the second is not.
     pub(super) fn doubt(&self) -> Option<String> {
         let [rows, columns] = [&self.rows, &self.columns].map(|[first, second]| {
-            // Where both meet there is a corner, which is neither.
+            // The corner, which the row and the column share, belongs to neither.
             let (first, second) = (first.get(1..)?, second.get(1..)?);
             let is_axis = first.len() >= LEAST_POINTS && is_even(first) && !is_even(second);
             is_axis.then(|| [first[0], first[first.len() - 1]])

@@ -6,9 +6,9 @@ use std::path::Path;
 use crate::arrays::error::{ArrayError, broken};
 use crate::arrays::pixels::limit_pixels;
 
-/// Points that stand one after the other in a row.
+/// Consecutive points of a row.
 pub(super) struct Line<'a> {
-    /// The row, counted as the file has them.
+    /// The row, counted in the order of the file.
     pub(super) row: usize,
     /// The column of the first point.
     pub(super) column: usize,
@@ -16,25 +16,25 @@ pub(super) struct Line<'a> {
     pub(super) heights: &'a [f64],
 }
 
-/// Takes the points of a file, in any order.
+/// Receives the points of a file, in any order.
 pub(super) type Take<'a> = dyn FnMut(&Line) -> Result<(), ArrayError> + 'a;
 
-/// Properties of the points that a file states.
+/// Properties of the points, as the file states them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct HeightGrid {
     /// Points along x and along y.
     pub(super) points: [usize; 2],
     /// Whether the first row lies at the largest y.
     pub(super) top_first: bool,
-    /// Distance of neighbours along x and along y, m, if the file states it.
+    /// Point spacing along x and along y, m, if the file states it.
     pub(super) pixel: Option<[f64; 2]>,
     /// Height in m of the value 1, if the file states it.
     pub(super) height_unit: Option<f64>,
-    /// Sentences on how the file was read, and what makes it doubtful.
+    /// Sentences on how the file was read, and on doubtful features.
     pub(super) notes: Vec<String>,
 }
 
-/// Number of points along x and along y from a header, unless there are too many.
+/// Number of points along x and along y from a header; an error if there are too many.
 pub(super) fn points(path: &Path, format: &str, width: u64, height: u64) -> Result<[usize; 2], ArrayError> {
     if width == 0 || height == 0 {
         let detail = format!("it has {width} x {height} points");

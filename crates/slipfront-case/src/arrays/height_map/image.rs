@@ -51,20 +51,20 @@ pub(super) fn read(
     })
 }
 
-/// An error about a picture in colours, whose order of heights is unknown.
+/// An error about a colour picture: its colours have no known order of heights.
 pub(super) fn in_colours(path: &Path) -> ArrayError {
     let problem = "is a colour picture, which has no heights: export the heights as 16-bit grey levels, or as a .gsf, .x3p or \
                    .npy file";
     contents_error(path, problem.to_owned())
 }
 
-/// An error about a picture that has more than grey levels.
+/// An error about a picture with channels other than grey levels.
 pub(super) fn beside_grey(path: &Path) -> ArrayError {
     let problem = "has grey levels with a second channel, such as opacity (alpha): save only the grey levels, without transparency";
     contents_error(path, problem.to_owned())
 }
 
-/// An error about a picture of fewer bits than heights need.
+/// An error about a picture with fewer bits than heights need.
 pub(super) fn too_coarse(path: &Path, bits: u8) -> ArrayError {
     let problem = format!(
         "has grey levels of {bits} bits, too coarse for heights: export it with 16 bits, or as a .gsf, .x3p or .npy file"

@@ -1,7 +1,7 @@
-//! Measured topography: height maps of many formats, as the mean height of every block, and their roughness.
+//! Measured topography: height maps of many formats, with the mean height of every block and their roughness.
 //!
-//! A file is read twice, for its mean and for the deviations from it, so that only a line of it, a strip or
-//! tile, or a MiB of numbers is in memory.
+//! A file is read several times, for its mean and for the deviations from it. Only a line, a strip or tile,
+//! or a MiB of numbers is in memory at a time.
 
 mod averages;
 mod axis;
@@ -34,18 +34,18 @@ use slipfront_base::number_format::{four_digits, with_si_prefix};
 pub struct HeightMapUnits {
     /// Height in m of the value 1 in the file.
     pub height: Option<f64>,
-    /// Distance of neighbouring points along x and along y.
+    /// Point spacing along x and along y.
     pub pixel: Option<[f64; 2]>,
 }
 
 /// Treatment of heights before they are averaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preparation {
-    /// The value of points that were not measured, which count for nothing; it may be no number (NaN).
+    /// Value of unmeasured points, which are ignored; it may be NaN.
     pub missing: Option<f64>,
-    /// Whether the plane of least squares is subtracted.
+    /// Whether the least-squares plane is subtracted.
     pub is_levelled: bool,
-    /// How a table of text is written, where it should not be found.
+    /// Format of a text table, where it is not to be detected.
     pub table: TableOptions,
 }
 
@@ -56,12 +56,12 @@ impl Preparation {
     }
 }
 
-/// The blocks over which a height map is laid.
+/// Blocks that a height map covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
     /// Blocks along x and along y.
     pub blocks: [usize; 2],
-    /// Whether the blocks are a place of a pattern, and not the slider.
+    /// Whether the blocks are one place of a pattern, rather than the slider.
     pub is_place: bool,
 }
 
@@ -72,23 +72,24 @@ pub struct HeightMap {
     pub points: [usize; 2],
     /// True size of the map along x and along y, m.
     pub size: [f64; 2],
-    /// Roughness of all points that were measured, of levelled heights if they are.
+    /// Roughness of all measured points, after levelling if the map is levelled.
     pub roughness: Roughness,
-    /// Sentences on what makes the map doubtful.
+    /// Sentences on doubtful features of the map.
     pub notes: Vec<String>,
-    /// The mean height of every block, m, row after row in rising y.
+    /// Mean height of every block, m, row by row in rising y.
     pub blocks: Vec<f64>,
 }
 
-/// Reads the height map called `path`, and averages it over the blocks of a room.
+/// Reads the height map called `path`, and averages it over the given blocks.
 ///
-/// An array, `.npy` or a table of text, begins with the row of the smallest y, every other file with the top
-/// row, which lies at the largest y; so does the text export of Gwyddion.
+/// The first row of an array, `.npy` or a text table, has the smallest y. The first row of every other file,
+/// and of the text export of Gwyddion, is the top row, at the largest y.
 ///
 /// # Errors
-/// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a
-/// height is missing, a unit stands neither in the file nor in `units` or stands in both, or the map has not
-/// the shape of the blocks.
+/// [`ArrayError`] if the file has another format, more than 2^28 points or more than 2^20 along a side; if a
+/// point has no height and is not marked as missing; if a block has no measured point; if a unit is given
+/// neither in the file nor in `units`, or in both; or if the map does not have the aspect ratio of the
+/// blocks.
 pub fn height_map(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -200,7 +201,7 @@ pub fn height_map(
     })
 }
 
-/// Sentences on what makes a map doubtful: a tilt, heights that cannot be, and values that are none.
+/// Sentences on doubtful features of a map: a tilt, impossible heights, and values that are not heights.
 fn doubts(
     roughness: &Roughness,
     share_of_plane: f64,
@@ -233,14 +234,14 @@ fn doubts(
     doubts
 }
 
-/// Share of the variance above which a map is taken for tilted: a plane takes three quarters of that of a
-/// single step in the middle.
+/// Share of the variance above which a map counts as tilted: for a single step in the middle, a plane takes
+/// three quarters of the variance.
 const LARGE_TILT: f64 = 0.9;
-/// Range of heights over their root mean square above which some are taken for no heights: that of normal
-/// heights is 12 where there are a thousand million points.
+/// Ratio of the range of heights to their root mean square above which the extremes may be no heights: for a
+/// normal distribution and a thousand million points it is 12.
 const FAR_OFF: f64 = 50.0;
 
-/// Reads all points of a file. Those that are missing are taken as no numbers; all others are finite.
+/// Reads all points of a file. Missing points become NaN; all others are finite.
 fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -264,7 +265,7 @@ fn read(
     })
 }
 
-/// Reads all points of a file as they stand there.
+/// Reads all points of a file without any treatment.
 fn read_file(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -307,7 +308,7 @@ fn not_measured(path: &Path, height: f64, [row, column]: [usize; 2]) -> ArrayErr
     contents_error(path, problem)
 }
 
-/// The distance of neighbouring points, m, from the file or from the case.
+/// Point spacing, m, from the file or from the case.
 fn pixel(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<[f64; 2], ArrayError> {
     match (grid.pixel, units.pixel) {
         (Some(pixel), None) | (None, Some(pixel)) => Ok(pixel),
@@ -339,8 +340,8 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
     }
 }
 
-/// Refuses a map whose sides have another ratio than those of the blocks, by more than half a block of the
-/// longer side.
+/// Refuses a map if its aspect ratio differs from that of the blocks by more than half a block of the longer
+/// side.
 fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];

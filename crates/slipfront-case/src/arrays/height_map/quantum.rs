@@ -2,9 +2,9 @@
 
 use super::roughness::HeightRange;
 
-/// The quantum of which all heights, counted from the lowest, are whole multiples: a power of two, between
-/// 2^-53 and 2^-52 of their range, so that grey levels and integers are not rounded, and other numbers by no
-/// more than they were when they were written.
+/// Quantum of heights. All heights, counted from the lowest, are rounded to whole multiples of a power of two
+/// between 2^-53 and 2^-52 of their range: grey levels and integers stay exact, and other numbers lose no
+/// more than when they were written.
 #[derive(Clone, Copy)]
 pub(super) struct Quantum {
     lowest: f64,

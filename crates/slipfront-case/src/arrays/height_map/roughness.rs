@@ -1,20 +1,20 @@
-//! Parameters of ISO 25178-2 of heights that are not filtered, and the plane of least squares through them.
-//! Points that are no numbers were not measured, and count for nothing.
+//! Parameters of ISO 25178-2 of unfiltered heights, and their least-squares plane. Points with NaN were not
+//! measured, and are ignored.
 
 use super::grid::Line;
 
-/// The lowest and the highest of some heights.
+/// Lowest and highest of some heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HeightRange {
     pub(super) lowest: f64,
     pub(super) highest: f64,
 }
 
-/// The mean height and the range of points that come one after the other.
+/// Mean height and range of points, added one by one.
 #[derive(Default)]
 pub(super) struct Mean {
-    /// The first height, from which the others are counted so that a map far above its zero loses no digits,
-    /// and the range of all heights.
+    /// The first height, and the range of all heights. Other heights are summed relative to the first, so
+    /// that a map far above its zero loses no digits.
     first: Option<(f64, HeightRange)>,
     sum: f64,
     count: usize,
@@ -55,7 +55,7 @@ impl Mean {
     }
 }
 
-/// Height parameters of a surface (ISO 25178-2), of the deviations z from the mean height:
+/// Height parameters of a surface (ISO 25178-2), from the deviations z from the mean height:
 ///
 /// ```text
 /// Sa = mean |z|,   Sq = sqrt(mean z^2),   Ssk = mean z^3/Sq^3,   Sku = mean z^4/Sq^4
@@ -72,17 +72,17 @@ pub struct Roughness {
     pub sku: Option<f64>,
 }
 
-/// A plane through a map, in heights per column and per row from its middle, and a height there.
+/// A plane through zero in the middle of a map, with its slopes per column and per row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Plane {
     middle: [f64; 2],
     slopes: [f64; 2],
-    /// The share of the variance of the heights that the plane takes.
+    /// The share of the variance of the heights that the plane explains.
     pub(super) share: f64,
 }
 
 impl Plane {
-    /// The heights of a line above the plane, which goes through zero in the middle of the map.
+    /// Heights of a line minus the plane, which passes through zero in the middle of the map.
     pub(super) fn subtract(&self, line: &Line, heights: &mut Vec<f64>) {
         heights.clear();
         let across = self.slopes[1] * (line.row as f64 - self.middle[1]);
@@ -92,8 +92,8 @@ impl Plane {
     }
 }
 
-/// Sums over the points of a map, of products of their column x and row y, from the middle, and their height
-/// z.
+/// Sums over the points of a map, and of products of their column x and row y, both from the middle, and
+/// their height z.
 pub(super) struct PlaneSums {
     middle: [f64; 2],
     count: f64,
@@ -104,7 +104,7 @@ pub(super) struct PlaneSums {
 }
 
 impl PlaneSums {
-    /// The sums of a map of so many points.
+    /// The sums for a map with this number of points.
     pub(super) fn new(points: [usize; 2]) -> Self {
         Self {
             middle: points.map(|count| (count as f64 - 1.0) / 2.0),
@@ -114,7 +114,7 @@ impl PlaneSums {
         }
     }
 
-    /// Adds the points of a line, with their heights from `mean`.
+    /// Adds the points of a line, with their heights above `mean`.
     pub(super) fn add(&mut self, line: &Line, mean: f64) {
         let y = line.row as f64 - self.middle[1];
         for (column, height) in (line.column..).zip(line.heights) {
@@ -136,7 +136,7 @@ impl PlaneSums {
         }
     }
 
-    /// The plane of least squares: with S the sums of products of deviations from the means,
+    /// The least-squares plane. With S the sums of products of deviations from the means:
     ///
     /// ```text
     /// Sxx a + Sxy b = Sxz,   Sxy a + Syy b = Syz,   share = (a Sxz + b Syz)/Szz
@@ -148,7 +148,7 @@ impl PlaneSums {
         let [xz, yz, zz] = [about(3, x, z), about(4, y, z), about(5, z, z)];
         let ratio = |sum: f64, of: f64| if of > 0.0 { sum / of } else { 0.0 };
         let determinant = xx * yy - xy * xy;
-        // Points on one line have no plane, and may have a slope along it.
+        // Points on one line define no plane, but may have a slope along it.
         let slopes = match determinant > 1e-12 * xx * yy {
             true => [
                 (xz * yy - yz * xy) / determinant,
@@ -165,7 +165,8 @@ impl PlaneSums {
     }
 }
 
-/// Sums over the deviations from the mean: of their size, and of their second, third and fourth power.
+/// Sums over the deviations from the mean: of their absolute values, and of their second, third and fourth
+/// powers.
 #[derive(Default)]
 pub(super) struct Moments {
     sums: [f64; 4],

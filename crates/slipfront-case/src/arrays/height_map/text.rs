@@ -1,5 +1,5 @@
-//! Height maps as text: a matrix of heights, with or without statements of its program on units above, or a
-//! list of points x, y, z on a regular grid.
+//! Height maps as text: a matrix of heights, with or without a header that states units, or a list of points
+//! x, y, z on a regular grid.
 
 use std::io::{BufRead, Seek};
 use std::path::Path;
@@ -51,7 +51,7 @@ pub(super) fn read(
                 heights: &point[2..],
             })
         })?;
-        // Lists leave out what was not measured.
+        // Lists leave out unmeasured points.
         for (at, _) in is_seen.iter().enumerate().filter(|(_, seen)| !**seen) {
             take(&Line {
                 row: at / nx,
@@ -82,14 +82,14 @@ pub(super) fn read(
     })
 }
 
-/// Statements of a program above the heights that it wrote.
+/// Statements in the header that a program writes above its heights.
 #[derive(Default)]
 struct Stated {
     /// Whether the first row is the top one.
     top_first: bool,
     /// Size of the map along x and along y, m.
     size: Option<[f64; 2]>,
-    /// Distance of neighbouring points, m.
+    /// Point spacing, m.
     pixel: Option<f64>,
     /// Height of the value 1, m.
     height_unit: Option<f64>,
@@ -105,8 +105,8 @@ impl Stated {
     /// # Value units: nm              height conversion factor (-> m)=6.3e-008
     /// ```
     ///
-    /// The comments on the left are those of Gwyddion, whose names but the last are in the language of its
-    /// user; the lines on the right are those of a microscope.
+    /// The comments on the left are from Gwyddion, which writes all names but the last in the language of its
+    /// user; the lines on the right are from a microscope.
     fn of(path: &Path, head: &[u8]) -> Result<Self, ArrayError> {
         let text = Encoding::of(head).text(head);
         let length = |name: &str, text: &str| {
@@ -157,7 +157,7 @@ impl Stated {
     }
 }
 
-/// Number of lines in which statements are looked for.
+/// Number of lines that are searched for statements.
 const STATEMENTS_MAX: usize = 64;
 
 /// The coordinates of a list of points that form a regular grid.
@@ -167,8 +167,8 @@ struct PointList {
 }
 
 impl PointList {
-    /// The coordinates of a table of three columns, if the first two are those of a regular grid: a map that
-    /// is three points wide has other numbers there.
+    /// The coordinates of a table of three columns, if the first two form a regular grid: those of a map that
+    /// is three points wide do not.
     fn of(
         path: &Path,
         source: &mut (impl BufRead + Seek),
@@ -180,7 +180,7 @@ impl PointList {
             n_points += 1;
             for (axis, &coordinate) in axes.iter_mut().zip(point) {
                 let place = axis.partition_point(|other: &f64| *other < coordinate);
-                // Coordinates of a grid are far fewer than its points.
+                // A grid has far fewer coordinates than points.
                 if axis.get(place) != Some(&coordinate) && axis.len() < MOST_COORDINATES {
                     axis.insert(place, coordinate);
                 }
@@ -192,7 +192,8 @@ impl PointList {
         let [nx, ny] = list.points();
         let is_grid = nx > 1
             && ny > 1
-            // Some points may be left out: fewer than a quarter, such that two rows of any map are no list.
+            // At most a quarter of the points may be left out, so that two rows of a map are never taken for
+            // a list.
             && n_points <= nx.saturating_mul(ny)
             && 3 * nx.saturating_mul(ny) <= 4 * n_points
             && list.axes.iter().all(|axis| is_even(axis));
@@ -203,7 +204,7 @@ impl PointList {
         [0, 1].map(|axis| self.axes[axis].len())
     }
 
-    /// The number of a coordinate along an axis.
+    /// Index of a coordinate along an axis.
     fn place(&self, axis: usize, coordinate: f64) -> usize {
         self.axes[axis].partition_point(|other| *other < coordinate)
     }

@@ -1,4 +1,4 @@
-//! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row lies at
+//! Heights as the grey levels of a TIFF picture with 16 bits or more, in strips or tiles. The top row lies at
 //! the largest y.
 
 use std::io::{BufRead, Seek};
@@ -15,8 +15,8 @@ use crate::arrays::error::{ArrayError, broken, contents_error};
 
 /// The largest strip or tile, in bytes.
 const PIECE_MAX_BYTES: usize = 1 << 26;
-/// Largest width of a tile that is wider than its picture: all of its columns are decoded, however few of
-/// them the picture has.
+/// Largest width of a tile that is wider than its picture: the decoder decodes all of its columns, however
+/// few the picture has.
 const TILE_MAX_WIDTH: u32 = 1 << 10;
 /// Value of the tag for grey levels that rise towards black.
 const WHITE_IS_ZERO: u32 = 0;
@@ -49,7 +49,7 @@ pub(super) fn read(
     let color = decoder.colortype().map_err(unreadable)?;
     match color {
         ColorType::Gray(_) => {}
-        // Several numbers for a pixel, none of them a colour.
+        // Several numbers per pixel that are not a colour.
         ColorType::GrayA(_) | ColorType::Multiband { .. } => return Err(beside_grey(path)),
         _ => return Err(in_colours(path)),
     }
@@ -76,7 +76,8 @@ pub(super) fn read(
     }
     let (width, height) = decoder.dimensions().map_err(unreadable)?;
     let points = points(path, ".tif", width.into(), height.into())?;
-    // Of strips the last is shorter, and may say that it is as long as can be.
+    // The height of a chunk is not checked: the last strip is shorter, and the stated height of a strip may
+    // be the largest number.
     let (chunk_width, chunk_height) = decoder.chunk_dimensions();
     if chunk_width > width.max(TILE_MAX_WIDTH) {
         let problem = format!(

@@ -1,9 +1,9 @@
 //! X3P files (ISO 25178-72): a zip archive of `main.xml`, which describes the points, and of a file with
 //! their heights in metres, row by row.
 //!
-//! ISO 25178-72 counts y along with the rows and says nothing of how a surface is shown. Programs show the
-//! first row on top, and write it so into other formats. The first row therefore lies at the largest y, so
-//! that no file is the mirror image of another.
+//! ISO 25178-72 counts y in the order of the rows and does not define how to show a surface. Programs show
+//! the first row at the top, and export it so to other formats. The first row therefore lies at the largest
+//! y, so that no file is the mirror image of another.
 
 use std::io::{BufRead, Read, Seek};
 use std::path::Path;
@@ -23,7 +23,7 @@ const XML_MAX_BYTES: u64 = 1 << 20;
 /// Most nodes of `main.xml`: a description takes a few hundred.
 const NODES_MAX: u32 = 1 << 16;
 
-/// Reads the points of a file. Where a map may have gaps, points that were not measured are no numbers.
+/// Reads the points of a file. If a map may have gaps, unmeasured points become NaN.
 pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -59,7 +59,7 @@ pub(super) fn read(
             }
         };
         read(&mut stored)?;
-        // Checksums are compared where a file ends.
+        // The reader compares checksums at the end of a file.
         match stored.read(&mut [0]) {
             Ok(0) => Ok(()),
             Ok(_) => Err(refuse(&format!("`{name}` is longer than it should be"))),
@@ -132,8 +132,8 @@ fn is_called(file: &[u8], name: &str) -> bool {
     is_name(file) || below_folder.is_some_and(is_name)
 }
 
-/// Which points were measured: one bit for every point says so, the lowest of a byte first. A map with gaps
-/// is refused, unless it may have some.
+/// Whether each point was measured: one bit per point, the lowest of a byte first. A map with gaps is
+/// refused, unless it may have gaps.
 fn valid_points(
     path: &Path,
     stored: &mut dyn Read,
@@ -197,14 +197,14 @@ struct Description {
     offset: f64,
     /// The file with the heights.
     data: String,
-    /// The file with a bit for every point that tells whether it was measured, if there is one.
+    /// The file with one bit per point for whether it was measured, if there is one.
     valid: Option<String>,
     /// MD5 of the file with the heights, in hexadecimal digits, if the description has it.
     checksum: Option<String>,
 }
 
 impl Description {
-    /// A sentence on a checksum of the heights that is not the one of the description.
+    /// A sentence if the checksum of the heights differs from that of the description.
     fn other_checksum(&self, found: &[u8]) -> Option<String> {
         let stated = self.checksum.as_ref()?;
         let found: String = found.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -256,7 +256,7 @@ impl Description {
             let size = wanted(&place)?.parse::<u64>();
             size.map_err(|_| refuse(&format!("{place} of `main.xml` is no whole number")))
         };
-        // A file of real numbers need not have them.
+        // These elements are optional.
         let step = "Record1/Axes/CZ/Increment";
         let offset = "Record1/Axes/CZ/Offset";
         let Some(data) = text("Record3/DataLink/PointDataLink") else {

@@ -1,26 +1,26 @@
-//! The two sheets that answer as a bulk body does.
+//! Fit of two sheets with the response of a bulk body.
 
 /// Ratio of the largest to the smallest wave number of the fit.
 pub(super) const RANGE: f64 = 8.0;
 /// Number of wave numbers of the fit, at equal ratios.
 const WAVES: usize = 41;
-/// The first guess of a fit, in units of the body's mean stiffness at the shortest wave over its wave number:
+/// Initial guess of a fit, in units of the body's mean stiffness at the shortest wave over its wave number:
 /// the sheets of a deep body.
 const DEEP: [f64; 4] = [0.064, 0.6, 4.2, 0.58];
-/// Number of times that the waves are weighted anew, and of steps to the least squares with each weighting.
+/// Number of updates of the weights, and of least-squares steps with each set of weights.
 const WEIGHTINGS: usize = 30;
 const STEPS: usize = 5;
-/// Weight of the first guess against that of a wave: a thin layer, which needs fewer than four numbers, has
-/// the sheets nearest to it.
+/// Weight of the initial guess relative to that of a wave. It makes the fit unique for a thin layer, which
+/// needs fewer than four numbers.
 const GUESS: f64 = 1e-4;
-/// Wave number times height below which a glued layer yields by shear alone, with G/H, within a thousandth:
-/// the fit to longer waves would be one to rounding.
+/// Product of wave number and height below which a bonded layer deforms only by shear, with stiffness G/H,
+/// within a thousandth: a fit to longer waves would be a fit to rounding errors.
 pub(super) const THIN: f64 = 0.05;
 
-/// Traction over displacement along and across a wave of wave number q, over G q, for `x = q H`.
+/// Ratio of traction to displacement along and across a wave of wave number q, over G q, for `x = q H`.
 pub(super) fn response(x: f64, poisson: f64) -> [f64; 2] {
     let kappa = 3.0 - 4.0 * poisson;
-    // Both times exp(-2 x), which keeps large numbers away.
+    // Numerator and denominator are multiplied by exp(-2 x) to avoid overflow.
     let decay = libm::exp(-2.0 * x);
     let decay_of_x = |power: f64| {
         if decay > 0.0 {
@@ -44,19 +44,19 @@ pub(super) fn directions(along_to_across: f64) -> [f64; 2] {
 /// A body, in units of G q_a and q_a.
 struct Body {
     waves: [f64; WAVES],
-    /// Logarithms of the geometric mean of the stiffness along and across these waves.
+    /// Logarithms of the geometric mean of the stiffness along and across, for these waves.
     stiffness: [f64; WAVES],
-    /// Logarithms of the [first guess](DEEP).
+    /// Logarithms of the [initial guess](DEEP).
     guess: [f64; 4],
 }
 
 /// Two sheets, in units of G q_a and q_a.
 #[derive(Clone, Copy)]
 pub(super) struct Fit {
-    /// Logarithms of the stiffness over q^2 of the lower and the upper sheet, in the mean of both directions,
+    /// Logarithms of the stiffness over q^2 of the lower and the upper sheet, averaged over both directions,
     /// of the coupling and of the mount.
     logarithms: [f64; 4],
-    /// Stiffness of a sheet along and across over the mean of both.
+    /// Stiffness of a sheet along and across, over the mean of both.
     directions: [f64; 2],
     /// Largest relative difference from the body.
     pub(super) error: f64,
@@ -71,7 +71,7 @@ impl Body {
         });
         let unit = stiffness[WAVES - 1] / RANGE;
         let mut guess = DEEP.map(|of_deep| of_deep * unit);
-        // Long waves find a layer as stiff as a mount.
+        // To long waves, a layer is as stiff as a mount.
         guess[3] += (stiffness[0] - unit).max(0.0);
         Self {
             waves,
@@ -82,8 +82,8 @@ impl Body {
 }
 
 impl Fit {
-    /// The fit to a body of the height `q_a H` whose largest relative difference is least, found by least
-    /// squares: weights that are multiplied by the differences lead from these to that (C. L. Lawson, 1961).
+    /// The fit to a body of height `q_a H` with the least maximum of the relative difference. Least squares
+    /// find it by iteration: each weight is multiplied by the size of its difference (C. L. Lawson, 1961).
     pub(super) fn of(height: f64, poisson: f64, along_to_across: f64) -> Self {
         let body = Body::new(height, poisson);
         let mut fit = Self {
@@ -114,8 +114,8 @@ impl Fit {
         self.logarithms.map(libm::exp)
     }
 
-    /// For every wave the logarithm of the geometric mean of the stiffness along and across over the body's,
-    /// and its slopes with the logarithms of the four numbers.
+    /// For every wave, the logarithm of the geometric mean of the stiffness along and across over the body's,
+    /// and its derivatives with respect to the logarithms of the four numbers.
     fn differences(&self, body: &Body) -> [(f64, [f64; 4]); WAVES] {
         let [lower, upper, coupling, mount] = self.stiffness();
         std::array::from_fn(|k| {
@@ -141,7 +141,7 @@ impl Fit {
         })
     }
 
-    /// Takes [`STEPS`] steps towards the least sum of weighted squares (K. Levenberg, 1944).
+    /// Takes [`STEPS`] Levenberg-Marquardt steps to reduce the sum of weighted squares (K. Levenberg, 1944).
     fn approach(&mut self, body: &Body, weights: &[f64; WAVES]) {
         let mut damping = 1e-3;
         let mut square = self.weighted_square(body, weights);
@@ -159,7 +159,7 @@ impl Fit {
         }
     }
 
-    /// Sum of the weighted squares of differences from the body, and from the first guess.
+    /// Sum of the weighted squares of the differences from the body and from the initial guess.
     fn weighted_square(&self, body: &Body, weights: &[f64; WAVES]) -> f64 {
         let differences = self.differences(body);
         let of_waves = weights.iter().zip(differences);
@@ -172,7 +172,7 @@ impl Fit {
                 .sum::<f64>()
     }
 
-    /// A step of the logarithms towards the least square.
+    /// A damped step of the logarithms to reduce the sum of squares.
     fn step(&self, body: &Body, weights: &[f64; WAVES], damping: f64) -> [f64; 4] {
         let (mut matrix, mut right) = ([[0.0; 4]; 4], [0.0; 4]);
         for (weight, (difference, slopes)) in weights.iter().zip(self.differences(body)) {

@@ -1,25 +1,26 @@
-//! The stack of two sheets that stands for a bulk body.
+//! The stack of two sheets that models a bulk body.
 //!
-//! A sinusoidal displacement of amplitude u and wave number q on the surface of a body that is glued to a
-//! rigid base at the height H, under a prescribed pressure, takes a traction `Z u`, along the wave and across
-//! it (with `x = q H` and `kappa = 3 - 4 nu`):
+//! A body of height H is bonded to a rigid base. A sinusoidal displacement of amplitude u and wave number q
+//! on its surface, under a prescribed pressure, takes a traction `Z u`, along the wave and across it (with `x
+//! = q H` and `kappa = 3 - 4 nu`):
 //!
 //! ```text
 //! Z_along = G q/(1 - nu) (2 kappa cosh 2x + 1 + kappa^2 + 4 x^2)/(2 kappa sinh 2x + 4 x)     Z_across = G q coth x
 //! ```
 //!
-//! which are `G q/(1 - nu)` and `G q` of a deep body. Two sheets with the springs of the lattice, of
-//! thickness h_1 and h_2, a coupling g and a mount K, answer with
+//! For a deep body these are `G q/(1 - nu)` and `G q`. Two sheets with the springs of the lattice, of
+//! thickness h_1 and h_2, with a coupling g and a mount K, have the response
 //!
 //! ```text
 //! Z = c E h_1 q^2 + g (K + c E h_2 q^2)/(g + K + c E h_2 q^2),   c = sqrt(27/64 r) along, c/r across
 //! ```
 //!
-//! The springs of the sheets are [`SpringStiffness::with_ratio`] of `r = 1/(1 - nu)^2 + 1/2`. Without the 1/2
-//! both directions were as those of the body; with it reductions of friction are, since central springs
-//! couple motion along x and along y as if r were 3. The geometric mean of both directions is fitted to that
-//! of the body, from the wave number q_a of the longest wave length of the texture to 8 q_a, so that the
-//! largest relative difference is least. `docs/validation/bulk.md` has what that means for answers.
+//! The springs of the sheets are [`SpringStiffness::with_ratio`] of `r = 1/(1 - nu)^2 + 1/2`. Without the
+//! 1/2, the stiffness in both directions would equal that of the body. With it, reductions of friction do,
+//! because central springs couple motion along x and along y as if r were 3. The geometric mean of both
+//! directions is fitted to that of the body, from the wave number q_a of the longest wavelength of the
+//! texture to 8 q_a, so that the largest relative difference is least. `docs/validation/bulk.md` has the
+//! consequences for results.
 
 mod fit;
 
@@ -34,49 +35,50 @@ use super::textures::regular_pitch;
 use crate::case_file::{Body, CaseFile};
 use crate::quantity::Length;
 
-/// Geometric mean of the stiffness of a sheet along and across, over `E h q^2`.
+/// Geometric mean of the stiffness of a sheet along and across a wave, over `E h q^2`.
 const OF_SHEET: f64 = 0.649_519_052_838_329;
-/// Stiffness of the paper's springs along a wave over that across it.
+/// Ratio of the stiffness of the paper's springs along a wave to that across it.
 const OF_PAPER: f64 = 3.0;
-/// Difference between the ratio of a sheet and the square of the ratio of a deep body, with which reductions
-/// of friction by arrays of dimples, bands and patches agree best.
+/// Difference between the ratio of a sheet and the square of the ratio of a deep body. With this value,
+/// reductions of friction by arrays of dimples, bands and patches agree best.
 const MORE_ALONG: f64 = 0.5;
-/// A stack of sheets in SI units, from the lowest on.
+/// A stack of sheets in SI units, from the lowest up.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stack {
     /// Thickness of every sheet, m.
     pub thickness: Vec<f64>,
-    /// Stiffness per area of the springs from every sheet to the one above, of the last to the drive, N/m^3.
+    /// Stiffness per area of the springs from every sheet to the one above, for the last one to the drive,
+    /// N/m^3.
     pub couplings: Vec<f64>,
-    /// Stiffness of every sheet along a wave over that across it.
+    /// Ratio of the stiffness of every sheet along a wave to that across it.
     pub along_to_across: f64,
 }
 
-/// A bulk body, with the stack of two sheets that stands for it.
+/// A bulk body, with the stack of two sheets that models it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BulkBody {
-    /// Longest wave length of the fit, m: the one that the case gives, else the pitch of its texture if one
-    /// array fills the slider, else the longer side of the slider.
+    /// Longest wavelength of the fit, m: the one that the case gives, otherwise the pitch of its texture if
+    /// one array fills the slider, otherwise the longer side of the slider.
     pub longest_wave: f64,
     /// Height of the body, m; infinite for a deep one.
     pub height: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// Stiffness of both sheets along a wave over that across it.
+    /// Ratio of the stiffness of both sheets along a wave to that across it.
     pub along_to_across: f64,
     /// Thickness of the lower and the upper sheet, m.
     pub thickness: [f64; 2],
-    /// Stiffness per area of the springs between both sheets, N/m^3.
+    /// Stiffness per area of the springs between the sheets, N/m^3.
     pub coupling: f64,
     /// Stiffness per area of the mount of the upper sheet, N/m^3.
     pub mount: f64,
     /// Largest relative difference between the stack and the body in the geometric mean of both directions,
-    /// for wave lengths from the longest to an eighth of it.
+    /// for wavelengths from the longest to an eighth of it.
     pub error: f64,
 }
 
 impl Stack {
-    /// The stack of a case; none if its slider is one sheet. The thickness of `scales` is not read.
+    /// The stack of a case; none if its slider is one sheet. The thickness of `scales` is not used.
     pub(super) fn of(file: &CaseFile, scales: &Scales) -> Option<Self> {
         if let Some(given) = &file.slider.sheets {
             return Some(Self {
@@ -98,19 +100,19 @@ impl Stack {
         above.map(sheet).collect()
     }
 
-    /// Traction over displacement along and across a wave of wave number q, Pa/m.
+    /// Ratio of traction to displacement along and across a wave of wave number q, Pa/m.
     fn response(&self, young_modulus: f64, q: f64) -> [f64; 2] {
         directions(self.along_to_across).map(|direction| {
             let per_thickness = direction * OF_SHEET * young_modulus * q * q;
             let sheets = self.thickness.iter().zip(&self.couplings).rev();
-            // What is above the highest sheet does not move.
+            // The support above the highest sheet does not move.
             sheets.fold(f64::INFINITY, |above, (thickness, coupling)| {
                 per_thickness * thickness + 1.0 / (1.0 / coupling + 1.0 / above)
             })
         })
     }
 
-    /// Traction over displacement along a wave of wave number q, Pa/m.
+    /// Ratio of traction to displacement along a wave of wave number q, Pa/m.
     pub(super) fn along(&self, young_modulus: f64, q: f64) -> f64 {
         self.response(young_modulus, q)[0]
     }
@@ -127,8 +129,8 @@ impl Stack {
 }
 
 impl BulkBody {
-    /// The body of a case whose stack follows from it; none of a sheet, or where `slider.sheets` gives the
-    /// stack. The thickness of `scales` is not read.
+    /// The body of a case with a stack derived from it; none for a sheet, or where `slider.sheets` gives the
+    /// stack. The thickness of `scales` is not used.
     pub(super) fn of(file: &CaseFile, scales: &Scales) -> Option<Self> {
         let slider = &file.slider;
         Some(Self::new(
@@ -160,7 +162,7 @@ impl BulkBody {
         }
     }
 
-    /// The stack that stands for the body.
+    /// The stack that models the body.
     pub(super) fn stack(&self) -> Stack {
         Stack {
             thickness: self.thickness.into(),
@@ -169,7 +171,7 @@ impl BulkBody {
         }
     }
 
-    /// Traction over displacement along a wave of wave number q in the body, Pa/m.
+    /// Ratio of traction to displacement along a wave of wave number q in the body, Pa/m.
     pub(super) fn along(&self, young_modulus: f64, q: f64) -> f64 {
         let shear_modulus = shear_modulus(young_modulus, self.poisson);
         if q == 0.0 {
@@ -178,8 +180,8 @@ impl BulkBody {
         shear_modulus * q * response(q * self.height, self.poisson)[0]
     }
 
-    /// Stiffness of the stack over that of the body at a wave length in m, less 1, in the geometric mean of
-    /// both directions.
+    /// Ratio of the stiffness of the stack to that of the body at a wavelength in m, less 1, in the geometric
+    /// mean of both directions.
     pub(super) fn excess(&self, young_modulus: f64, wave_length: f64) -> f64 {
         let q = TAU / wave_length;
         let [along, across] = response(q * self.height, self.poisson);
@@ -188,14 +190,14 @@ impl BulkBody {
         (along * across).sqrt() / of_body - 1.0
     }
 
-    /// The longest and the shortest wave length of the fit, m.
+    /// The longest and the shortest wavelength of the fit, m.
     pub fn waves(&self) -> [f64; 2] {
         [self.longest_wave, self.longest_wave / RANGE]
     }
 }
 
-/// Longest wave length for which the stack of a case stands for its body, m; none of a sheet, or where
-/// `slider.sheets` gives the stack. The thickness of `scales` is not read.
+/// Longest wavelength for which the stack of a case is fitted to its body, m; none for a sheet, or where
+/// `slider.sheets` gives the stack. The thickness of `scales` is not used.
 pub(super) fn longest_wave(file: &CaseFile, scales: &Scales) -> Option<f64> {
     let slider = &file.slider;
     if slider.body == Body::Sheet || slider.sheets.is_some() {
@@ -219,7 +221,7 @@ pub(super) fn shear_modulus(young_modulus: f64, poisson: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Within 1.35 % of every body, glued or deep, from the longest wave to an eighth of it.
+    /// Error within 1.35 % for every body, bonded or deep, from the longest wave to an eighth of it.
     #[test]
     fn two_sheets_answer_as_the_body_does() {
         let mut largest = 0.0_f64;
@@ -237,8 +239,8 @@ mod tests {
                     let wave_length = TAU / q_a / 8.0_f64.powf(f64::from(k) / 200.0);
                     error = error.max(body.excess(young_modulus, wave_length).abs());
                 }
-                // Between the wave numbers of the fit, 5 % apart, it is larger by 1.2e-4 at the most.
-                // A thin layer is fitted to shorter waves than these.
+                // Between the wave numbers of the fit, which are 5 % apart, the error is larger by at most
+                // 1.2e-4. A thin layer is fitted to shorter waves than these.
                 let fits_these = height >= THIN;
                 assert!(error < body.error + 3e-4, "{error} {body:?}");
                 assert!(!fits_these || error > body.error - 3e-4, "{error} {body:?}");
@@ -248,7 +250,7 @@ mod tests {
         assert!(largest < 0.0135, "{largest}");
     }
 
-    /// The sheets of a deep body as a plain search over all four numbers found them, to 1 %: the fit ends
+    /// The sheets of a deep body agree within 1 % with a direct search over all four numbers: the fit ends
     /// where its error changes by less than a thousandth.
     #[test]
     fn a_deep_body_has_known_sheets() {
@@ -271,7 +273,7 @@ mod tests {
         }
     }
 
-    /// A thin layer yields by shear alone, and slow loading of the stack does as well: `g K/(g + K) = G/H`.
+    /// A thin layer deforms only by shear, and so does the stack under slow loading: `g K/(g + K) = G/H`.
     #[test]
     fn thin_layers_shear() {
         for poisson in [0.0, 0.3, 0.49] {

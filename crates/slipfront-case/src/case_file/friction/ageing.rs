@@ -1,4 +1,4 @@
-//! `ageing`: static friction that grows while a block is stuck.
+//! `ageing`: static friction that grows while a block sticks.
 
 use serde::{Deserialize, Serialize};
 use slipfront::Ageing as Law;
@@ -60,7 +60,7 @@ impl Ageing {
     }
 }
 
-/// The law in words, for the end of a sentence about static and kinetic friction.
+/// The law in words, to end a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &Law) -> String {
     let (beta, time) = (four_digits(law.beta), four_digits(law.time));
     format!(", ageing by {beta} ln(1 + t*/{time})")

@@ -1,4 +1,4 @@
-//! `contact` = "springs": springs to the substrate that break and form again.
+//! `contact` = "springs": springs to the substrate that break and re-form.
 
 use slipfront::{AfterBreak, ContactSprings};
 
@@ -15,19 +15,19 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const ADVICE: &str = "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`, or \
      `friction.contact_stiffness_per_area` with its unit";
 
-/// Reason for which laws of thresholds that vary have no meaning beside springs.
+/// Reason why laws with varying thresholds do not apply to springs in contact.
 pub(super) const ALONE: &str = "with `contact` = \"springs\" a spring holds the block and breaks at a constant threshold; leave \
                                 it out, or use `contact` = \"rigid\"";
 
-/// Reason for which keys of kinetic friction have no meaning beside springs that form again.
+/// Reason why keys of kinetic friction do not apply to springs that re-form.
 pub(super) const NO_KINETIC: &str = "with `contact` = \"springs\" a broken spring re-forms at once, so there is no kinetic \
                                      friction; leave it out, or use `after_break` = \"slide\"";
 
-/// Reason for which coefficients are not drawn anew where blocks slide.
+/// Reason why coefficients are not drawn again where blocks slide.
 pub(super) const SLIDES: &str = "with `after_break` = \"slide\" a contact keeps its coefficients; leave it out, or use \
                                  `after_break` = \"form_again\"";
 
-/// Reason for which the keys of springs have no meaning beside another contact.
+/// Reason why the keys of springs do not apply to another contact.
 pub(super) const ELSEWHERE: &str = "it belongs to `contact` = \"springs\"; set that, or leave it out";
 
 /// Error of springs without a stiffness, at the key of this path.
@@ -37,11 +37,11 @@ pub(super) fn without_stiffness(path: &str) -> String {
     )
 }
 
-/// Reason for which springs that are drawn anew take one rank.
+/// Reason why springs that are drawn again require a single rank.
 pub(super) const ONE_RANK: &str = "a spring that re-forms takes the coefficient of any block of the slider, but a rank knows \
                                    only its own rows: use one rank, or redraw = false";
 
-/// The law in words, for the end of a sentence about static friction.
+/// The law in words, to end a sentence about static friction.
 pub(super) fn in_words(law: &ContactSprings) -> String {
     let again = match law.after_break {
         AfterBreak::FormsAgain { redraw: Some(_) } => " and re-form, with new thresholds",

@@ -1,4 +1,4 @@
-//! `correlation_length`: random coefficients that are alike over a length.
+//! `correlation_length`: random coefficients that are correlated over a length.
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("correlation", ADVICE),
@@ -9,10 +9,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 ];
 const ADVICE: &str = "the correlation length of coefficients is `friction.correlation_length` = \"5 um\"";
 
-/// Reason for which a correlation length has no meaning where no coefficient is drawn.
+/// Reason why a correlation length does not apply where no coefficient is drawn.
 pub(super) const GIVEN: &str =
     "all coefficients are given by files, so none is random; leave it out, or one of the files";
 
-/// Reason for which springs are not drawn anew from a field.
+/// Reason why springs do not draw new coefficients from a correlated field.
 pub(super) const REDRAW: &str = "a spring that re-forms takes the coefficient of any block, so neighbours would lose their \
                                  correlation over `correlation_length`; leave one of them out";

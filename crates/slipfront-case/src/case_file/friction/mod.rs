@@ -1,7 +1,7 @@
 //! The table `[friction]`: the law, the local coefficients and their dependences.
 //!
-//! Each law is a file, with its keys, the words that people try for them, the law of the model that they
-//! make, and the sentences about it. This file holds the common part, and a row for each law.
+//! Each law has a file with its keys, the words that people try for them, the law of the model that they
+//! define, and the sentences about it. This file has the common part, and one row per law.
 
 mod ageing;
 mod contact_springs;
@@ -39,10 +39,10 @@ const SIGMA: KeyKind = number(
 const SHEAR_STRENGTH: KeyKind = quantity("Pa", within(0.0, 1e15));
 /// TOML's largest integer.
 const MAX_SEED: u64 = i64::MAX.unsigned_abs();
-/// Largest mean kinetic over mean static coefficient.
+/// Largest ratio of the mean kinetic to the mean static coefficient.
 const MAX_R_STAR: f64 = 10.0;
 
-/// Words that people try first, each with the advice on it, by law.
+/// Words that people try first, with the advice on each, by law.
 pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
     correlation::SYNONYMS,
     weakening::SYNONYMS,
@@ -62,25 +62,25 @@ pub enum Law {
     Reversal,
     /// Eq. 4 as printed, for comparison.
     Literal,
-    /// Coefficients that follow speed and state.
+    /// Coefficients that depend on speed and state.
     RateAndState,
 }
 
-/// Connection that holds a block until its threshold.
+/// Connection that holds a block up to its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactModel {
     /// Contact that does not yield.
     Rigid,
-    /// Spring between block and substrate, which breaks.
+    /// Breakable spring between block and substrate.
     Springs,
 }
 
-/// Friction of a block whose spring in contact has broken.
+/// Friction of a block with a broken contact spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AfterBreak {
-    /// A spring that forms again without stress.
+    /// A spring that re-forms without stress.
     #[default]
     FormAgain,
     /// Kinetic friction, until the spring relaxes.
@@ -88,7 +88,7 @@ pub enum AfterBreak {
 }
 
 impl AfterBreak {
-    /// Whether a printed case need not have the key.
+    /// Whether a printed case may omit the key.
     fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -208,7 +208,7 @@ key_rows! {
 }
 
 impl Friction {
-    /// Keys with defaults that a printed case does not have where there is no kinetic coefficient.
+    /// Keys with defaults that a printed case omits where there is no kinetic coefficient.
     pub(super) const KINETIC: [&str; 2] = ["r_star", "sigma_kinetic_star"];
 
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
@@ -250,7 +250,7 @@ impl Friction {
         self.law != Law::RateAndState
     }
 
-    /// Whether friction has a kinetic coefficient beside the static one.
+    /// Whether friction has a kinetic coefficient as well as a static one.
     pub fn has_kinetic_coefficient(&self) -> bool {
         self.has_static_coefficient()
             && (self.contact == ContactModel::Rigid || self.after_break == AfterBreak::Slide)
@@ -265,8 +265,8 @@ impl Friction {
         }
     }
 
-    /// Spreads with which coefficients are drawn, and which coefficients these are; none of coefficients that
-    /// a file gives, or that the law does not have.
+    /// Spreads of the coefficients that are drawn, with their names; none for coefficients that a file gives,
+    /// or that the law does not have.
     fn spreads(&self) -> Vec<(&'static str, f64)> {
         let of_static = self.has_static_coefficient() && self.mu_static_field.is_none();
         let of_kinetic = self.has_kinetic_coefficient() && self.mu_kinetic_field.is_none();
@@ -275,15 +275,15 @@ impl Friction {
         of_static.into_iter().chain(of_kinetic).collect()
     }
 
-    /// The [spreads](Self::spreads) that have their default, where no correlation length is given. A printed
-    /// case has all keys: whether one was given is not known.
+    /// The [spreads](Self::spreads) that equal their default, if there is no correlation length. Whether the
+    /// user gave a spread is not known, because a printed case has all keys.
     pub(crate) fn default_spreads(&self) -> Vec<(&'static str, f64)> {
         let mut spreads = self.spreads();
         spreads.retain(|(_, sigma_star)| self.correlation_length.is_none() && *sigma_star == DEFAULT_SIGMA);
         spreads
     }
 
-    /// Lengths of friction that equal the length of a block because no key gives them.
+    /// Lengths of friction that equal the block length because no key gives them.
     pub(crate) fn lengths_of_a_block(&self) -> impl Iterator<Item = LengthOfABlock> {
         let is_rigid = self.has_static_coefficient() && self.contact == ContactModel::Rigid;
         let falls_at_once = is_rigid && self.slip_weakening.is_none() && self.mean_ratio() < 1.0;
@@ -300,8 +300,8 @@ impl Friction {
         slip.into_iter().chain(coefficients)
     }
 
-    /// The law of the model that the keys, which fit each other, define at this V*.
-    /// `foundation`: stiffness of the foundation under a block of an upright sheet.
+    /// The law of the model for this V*, from keys that are consistent with each other. `foundation`:
+    /// stiffness of the foundation under a block of an upright sheet.
     pub fn in_model(&self, v_star: f64, scales: &Scales, foundation: f64) -> slipfront::Friction {
         let per_area = self.contact_stiffness_per_area.as_ref();
         let of_area = per_area.map(|per_area| scales.stiffness_of_area(per_area.si()));
@@ -390,13 +390,13 @@ impl Friction {
         }
     }
 
-    /// A key that takes one rank, and the reason.
+    /// A key that requires a single rank, and the reason.
     pub fn takes_one_rank(&self) -> Option<(&'static str, &'static str)> {
         self.redraw
             .then_some(("friction.redraw", contact_springs::ONE_RANK))
     }
 
-    /// The keys of rate and state and their values. Those that the law needs stand first.
+    /// The keys of rate and state and their values. The required ones are first.
     fn rate_and_state(&self) -> [(&'static str, Option<f64>); 7] {
         [
             ("a", self.a),
@@ -409,7 +409,7 @@ impl Friction {
         ]
     }
 
-    /// Refuses keys that have no meaning beside each other.
+    /// Refuses combinations of keys without a meaning.
     fn check_together(&self, check: &Check) -> Result<(), CaseError> {
         self.check_law(check)?;
         self.check_correlation(check)?;
@@ -446,34 +446,34 @@ impl Friction {
         }
     }
 
-    /// Whether the friction of a block depends on time or speed, and not on its slip alone.
+    /// Whether the friction of a block depends on time or speed, and not only on its slip.
     pub fn depends_on_time(&self) -> bool {
         let [velocity, ageing, _, healing] = self.options();
         self.law == Law::RateAndState || velocity.1 || ageing.1 || healing.1
     }
 
-    /// Whether these keys have a meaning under a drive that stands while a block slides.
+    /// Whether these keys apply to a held drive, which stops while a block slides.
     pub fn can_be_held(&self) -> bool {
         let keys = self.not_held();
         keys.iter().flatten().all(|(_, is_set)| !is_set)
     }
 
-    /// Refuses keys that have no meaning under a drive that stands while a block slides.
+    /// Refuses keys that do not apply to a held drive, which stops while a block slides.
     pub(super) fn check_held(&self, check: &Check) -> Result<(), CaseError> {
         let [in_time, others] = self.not_held();
         refuse_set(check, &in_time, HELD_IN_TIME)?;
         refuse_set(check, &others, HELD)
     }
 
-    /// Keys that have no meaning under a held drive, and whether they are set: first those under which
-    /// contacts grow stronger in time.
+    /// Keys that do not apply to a held drive, and whether they are set. The first are those with which
+    /// contacts strengthen with time.
     fn not_held(&self) -> [[(&'static str, bool); 2]; 2] {
         let [_, ageing, _, healing] = self.options();
         let springs = ("contact", self.contact == ContactModel::Springs);
         [[ageing, healing], [("law", self.law != Law::Projection), springs]]
     }
 
-    /// Refuses a catalogue of events where slip takes no time.
+    /// Refuses a catalogue of events if slip takes no time.
     pub(super) fn check_events(&self, check: &Check) -> Result<(), CaseError> {
         let springs = self.contact == ContactModel::Springs && self.after_break == AfterBreak::FormAgain;
         refuse_set(check, &[("contact", springs)], EVENTS)
@@ -496,7 +496,7 @@ impl Friction {
         )
     }
 
-    /// Refuses keys that have no meaning under the law.
+    /// Refuses keys that do not apply to the law.
     fn check_law(&self, check: &Check) -> Result<(), CaseError> {
         let springs = ("contact", self.contact == ContactModel::Springs);
         let values = self.rate_and_state().into_iter();
@@ -540,7 +540,7 @@ impl Friction {
         ]
     }
 
-    /// The keys of kinetic friction, and whether they are set, by the user or in code.
+    /// The keys of kinetic friction, and whether they are set by the user or in code.
     fn of_kinetic(&self, check: &Check) -> [(&'static str, bool); 5] {
         [
             (
@@ -571,7 +571,7 @@ pub(crate) fn friction_warning(model: &Model) -> Option<String> {
     }
 }
 
-/// Refuses the first of some keys that are set and must not be.
+/// Refuses the first of these keys that is set.
 fn refuse_set(check: &Check, keys: &[(&str, bool)], why: &str) -> Result<(), CaseError> {
     let set = keys.iter().find(|(_, is_set)| *is_set);
     set.map_or(Ok(()), |(key, _)| {
@@ -579,24 +579,23 @@ fn refuse_set(check: &Check, keys: &[(&str, bool)], why: &str) -> Result<(), Cas
     })
 }
 
-/// Reason for which laws that depend on time have no meaning under a held drive.
+/// Reason why laws that depend on time do not apply to a held drive.
 const HELD_IN_TIME: &str = "with `drive.loading` = \"held\" loading is arbitrarily slow, so there is no time scale for contacts \
                             to strengthen; leave one of them out";
 
-/// Reason for which other laws have no meaning under a held drive.
+/// Reason why other laws do not apply to a held drive.
 const HELD: &str = "with `drive.loading` = \"held\" the drive moves while all blocks in contact stick, which needs `law` = \
                     \"projection\" and `contact` = \"rigid\"; use these, or `drive.loading` = \"constant\"";
 
-/// Reason for which there are no events of slip of springs in contact.
+/// Reason why springs in contact have no slip events.
 const EVENTS: &str = "`output.events` needs blocks that slide during an event, but a contact spring breaks and re-forms in an \
                       instant; use `after_break` = \"slide\" or `contact` = \"rigid\", or leave `output.events` out";
 
-/// Whether a spread is set; 0 and the default are no contradiction where there are no coefficients that it
-/// spreads.
+/// Whether a spread is set. The values 0 and the default are accepted even without coefficients to spread.
 fn is_spread(sigma: f64) -> bool {
     sigma != 0.0 && sigma != DEFAULT_SIGMA
 }
 
-/// Default spread, which a printed case has even where it has no meaning.
+/// Default spread. A printed case contains it even where it has no effect.
 const DEFAULT_SIGMA: f64 = 0.05;
 const DEFAULT_R_STAR: f64 = 0.5;

@@ -1,10 +1,10 @@
-//! `law` = "rate_and_state": friction that follows speed and the state of the contact.
+//! `law` = "rate_and_state": friction that depends on speed and on the state of the contact.
 
 use slipfront::{Model, RateAndState};
 
 use slipfront_base::number_format::four_digits;
 
-/// Number of the keys of the law that have no default and must be given, which stand first.
+/// Number of required keys of the law, which have no default and are first.
 pub(super) const NEEDED: usize = 4;
 
 pub(super) const SYNONYMS: &[(&str, &str)] = &[
@@ -27,20 +27,20 @@ const ADVICE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
 const SLIP: &str = "the slip of rate and state is `friction.d_c_star`";
 const REFERENCE_SPEED: &str = "the reference speed of rate and state is `friction.v_0_star`";
 
-/// Reason for which other keys have no meaning beside this law.
+/// Reason why other keys do not apply to this law.
 pub(super) const ALONE: &str = "`law` = \"rate_and_state\" has no static and kinetic coefficients, and already depends on speed \
                                 and age; leave it out, or use `law` = \"projection\"";
 
-/// Reason for which the keys of this law have no meaning beside another law.
+/// Reason why the keys of this law do not apply to another law.
 pub(super) const ELSEWHERE: &str = "it belongs to `law` = \"rate_and_state\"; set that, or leave it out";
 
-/// Error of a missing key that the law needs, at this path.
+/// Error of a missing key that the law at this path needs.
 pub(super) fn without_key(path: &str, key: &str) -> String {
     format!("`{path}` = \"rate_and_state\" needs `{key}`: it needs `a`, `b`, `d_c_star` and `v_0_star`")
 }
 
-/// The law of the model, with coefficients over `mu_static`, from the values of its keys and the speed of the
-/// drive. A file that was read has the keys without a default.
+/// The law of the model, with coefficients relative to `mu_static`, from the values of its keys and the speed
+/// of the drive. The reader of a file ensures that the required keys are given.
 pub(super) fn law(values: [Option<f64>; 7], mu_static: f64, v_star: f64) -> RateAndState {
     let [a, b, d_c, v_0, mu_0, theta_0, slip_speed] = values;
     let given = |key: Option<f64>| key.unwrap_or(f64::NAN);
@@ -70,7 +70,7 @@ pub(super) fn in_words(law: &RateAndState, mu_static: f64) -> String {
     )
 }
 
-/// A warning where steady sliding of the slider as a whole, which has the least stiffness, is unstable.
+/// A warning if steady sliding of the whole slider, which has the least stiffness, is unstable.
 pub(super) fn warning(law: &RateAndState, model: &Model) -> Option<String> {
     let (k_drive, v_star) = (model.mount_stiffness(), model.drive.v_star);
     let critical = law.critical_stiffness(model.surface.mean_normal_force(), model.damping, v_star);

@@ -21,10 +21,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 ];
 const ADVICE: &str = "slip weakening is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S - K) length/2 of a block";
 
-/// Reason for which other laws have no meaning beside slip weakening.
+/// Reason why other laws cannot be combined with slip weakening.
 pub(super) const ALONE: &str = "it cannot be combined with `slip_weakening`; leave one of them out";
 
-/// Reason for which healing has no meaning without slip weakening.
+/// Reason why healing needs slip weakening.
 pub(super) const ELSEWHERE: &str = "it belongs to `slip_weakening`; set that, or leave it out";
 
 key_rows! {
@@ -61,14 +61,14 @@ impl SlipWeakeningLength {
             .as_ref()
             .map(|length| length.si() / scales.displacement());
         SlipWeakening {
-            // One of both is given.
+            // One of the two is given.
             length: in_units.or(self.length_star).unwrap_or(f64::INFINITY),
             healing_time,
         }
     }
 }
 
-/// The law in words, for the end of a sentence about static and kinetic friction.
+/// The law in words, to end a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &SlipWeakening) -> String {
     let healing = law.healing_time.map_or(String::new(), |time| {
         format!(", full strength again after t* = {} at rest", four_digits(time))

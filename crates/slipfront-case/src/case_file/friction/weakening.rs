@@ -66,7 +66,7 @@ impl Velocity {
     }
 }
 
-/// The law in words, for the end of a sentence about static and kinetic friction.
+/// The law in words, to end a sentence about static and kinetic friction.
 pub(super) fn in_words(law: &Weakening) -> String {
     let (ratio, speed) = (four_digits(law.ratio), four_digits(law.critical_speed));
     format!(", falling to {ratio} mu_k above about V* = {speed}")

@@ -78,7 +78,7 @@ key_rows! {
     }
 }
 
-/// Place of a cavity.
+/// Position of a cavity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CenterKey", into = "CenterKey")]
 pub enum Center {
@@ -150,7 +150,7 @@ impl Outlined for Cavity {
     }
 }
 
-/// The key `center` as it stands in the file.
+/// The key `center` as in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,

@@ -28,7 +28,8 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
 
 key_rows! {
-    /// A straight groove through the whole slider, half-open: its lower edge in, its upper edge out.
+    /// A straight groove through the whole slider, half-open: it includes its lower edge, but not its upper
+    /// edge.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(try_from = "GrooveKeys", into = "GrooveKeys")]
     pub struct Groove from GrooveKeys {
@@ -78,7 +79,7 @@ impl Outlined for Groove {
             })
         };
         let count = of_width(0.0).n_copies(on.arrays) as f64;
-        // A groove is as long as the lattice: the share of it that the slider fills is that of its area.
+        // A groove is as long as the lattice. The slider fills the same share of it as of the area.
         let share = on.n_blocks as f64 / on.lattice.n_blocks() as f64;
         let breadth = match self.orientation {
             Orientation::Across => on.lattice.nx as f64 * share,

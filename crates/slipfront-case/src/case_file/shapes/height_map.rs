@@ -1,4 +1,4 @@
-//! Key `shape = "height_map"` of a `[[texture]]`: measured topography whose highest parts touch.
+//! Key `shape = "height_map"` of a `[[texture]]`: measured topography with its highest parts in contact.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ const HEIGHT_MAP: &str =
     "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
 
 key_rows! {
-    /// A measured surface stretched over the slider: parts below the height of contact are textured.
+    /// A measured surface stretched over the slider: parts below the contact height are textured.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(try_from = "HeightMapKeys", into = "HeightMapKeys")]
     pub struct HeightMap from HeightMapKeys {
@@ -65,22 +65,22 @@ key_rows! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
-    /// The plane of least squares.
+    /// The least-squares plane.
     Plane,
 }
 
-/// The key `missing`: the value of points that were not measured.
+/// The key `missing`: the value of unmeasured points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
 pub enum Missing {
     /// A number.
     Value(f64),
-    /// The word `"nan"`: whatever is no number.
+    /// The word `"nan"`: any value that is not a number.
     Nan,
 }
 
 impl Missing {
-    /// The value itself; NaN for what is no number.
+    /// The value itself; NaN for the word `"nan"`.
     pub(crate) fn value(self) -> f64 {
         match self {
             Self::Value(value) => value,
@@ -111,7 +111,7 @@ impl From<Missing> for WordOrNumber {
 }
 
 impl HeightMap {
-    /// Reason for which a height map covers no block.
+    /// Reason why a height map covers no block.
     pub(super) fn why_empty(&self) -> &'static str {
         match self.bearing {
             Bearing::Percent(_) => "none is lower than the lowest that touch; lower `bearing_percent`",

@@ -38,7 +38,7 @@ impl Mask {
         check.value("threshold", &self.threshold)
     }
 
-    /// Reason for which a mask covers no block.
+    /// Reason why a mask covers no block.
     pub(super) const EMPTY: &str =
         "no pixel at the centre of a block is dark, and no number of an array is 1; look at its file";
 }

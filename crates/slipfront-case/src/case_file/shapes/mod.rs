@@ -1,7 +1,7 @@
 //! The shapes of `[[texture]]`.
 //!
-//! Each shape is a file, with its keys, the words that people try for them, its name for a user, and the
-//! shape in blocks that they make. This file has a row for each shape.
+//! Each shape has a file with its keys, the words that people try for them, its name for a user, and the
+//! shape in blocks that they define. This file has one row per shape.
 
 mod cavity;
 mod groove;
@@ -23,7 +23,7 @@ use super::error::CaseError;
 use super::key::{Key, joined};
 use super::pattern::Pattern;
 
-/// Joins the keys of a shape and the keys that all shapes have.
+/// Joins the keys of a shape and the keys common to all shapes.
 macro_rules! keys {
     ($shape:ident) => {
         &joined::<{ $shape::KEYS.len() + Pattern::KEYS.len() }>($shape::KEYS, Pattern::KEYS)
@@ -39,7 +39,7 @@ pub(super) const ALL: [(&str, &[Key]); 5] = [
     ("height_map", keys!(HeightMap)),
 ];
 
-/// Words that people try first, each with the advice on it, by shape.
+/// Words that people try first, with the advice on each, by shape.
 pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
     cavity::SYNONYMS,
     groove::SYNONYMS,
@@ -64,7 +64,7 @@ pub enum Shape {
     HeightMap(HeightMap),
 }
 
-/// Origin of the inside of a shape.
+/// Definition of the inside of a shape.
 pub(crate) enum Inside<'a> {
     /// The inside of an outline.
     Outline(&'a dyn Outlined),
@@ -86,7 +86,7 @@ impl Shape {
         }
     }
 
-    /// Origin of the shape's inside.
+    /// Definition of the inside of the shape.
     pub(crate) fn form(&self) -> Inside<'_> {
         match self {
             Self::Cavity(cavity) => Inside::Outline(cavity),
@@ -110,7 +110,7 @@ impl Shape {
         self.outline().is_some()
     }
 
-    /// Reason for which the shape covers no block, with the keys to check.
+    /// Reason why the shape covers no block, with the keys to check.
     pub(crate) fn why_empty(&self) -> &'static str {
         match self.form() {
             Inside::Outline(_) => {

@@ -1,11 +1,11 @@
-//! Shapes whose outlines are known before any file is read.
+//! Shapes with outlines that are known before any file is read.
 
 use slipfront::surface::{self, Array};
 use slipfront::{Lattice, Scales};
 
 use crate::quantity::Length;
 
-/// Blocks over which shapes are laid.
+/// Blocks that are covered by shapes.
 pub(crate) struct Blocks<'a> {
     pub(crate) scales: &'a Scales,
     pub(crate) lattice: &'a Lattice,
@@ -24,13 +24,13 @@ impl Blocks<'_> {
 
 /// A shape with an outline.
 pub(crate) trait Outlined {
-    /// Name of one copy of the shape, in the words of a user.
+    /// Name of one copy of the shape, in user terms.
     fn noun(&self) -> &'static str;
 
-    /// The value of the key `coverage`, % of the whole area, if the size of the shape is given by it.
+    /// The value of the key `coverage`, % of the whole area, if it gives the size of the shape.
     fn coverage(&self) -> Option<f64>;
 
-    /// The shape in blocks, and the area of all copies as asked for, % of the area of the blocks that exist,
-    /// if it is known before the shape is meshed.
+    /// The shape in blocks, and the requested area of all copies, % of the area of the blocks that exist, if
+    /// it is known before the shape is meshed.
     fn in_blocks(&self, on: &Blocks) -> (surface::Shape, Option<f64>);
 }

@@ -1,4 +1,4 @@
-//! `shape` = "polygon": any closed line of corners.
+//! `shape` = "polygon": any closed polyline.
 
 use serde::{Deserialize, Serialize};
 use slipfront::surface;
