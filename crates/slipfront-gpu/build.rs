@@ -1,11 +1,12 @@
-//! Compiles the kernels for the CPU, for the feature `emulated`, and finds those for a GPU, for `cuda`.
+//! Compiles the kernels for the CPU (feature `emulated`), and includes the PTX of the kernels for a GPU
+//! (feature `cuda`).
 
 fn main() {
     println!("cargo::rerun-if-changed=kernels");
     #[cfg(feature = "cuda")]
     {
         let out = std::env::var("OUT_DIR").expect("cargo sets OUT_DIR");
-        // Where the script has not made it, the program asks NVRTC.
+        // If `ptx.py` has not written this file, the program compiles the kernels with NVRTC at run time.
         let ptx = std::fs::read("kernels/kernels.ptx").unwrap_or_default();
         std::fs::write(format!("{out}/kernels.ptx"), ptx).expect("OUT_DIR can be written");
     }
@@ -14,9 +15,10 @@ fn main() {
         .cpp(true)
         .std("c++20")
         .file("kernels/emulated.cpp")
-        // A product and a sum are two operations with two roundings, as everywhere in slipfront.
+        // No contraction: a product and a sum are two operations with two roundings, as everywhere in
+        // slipfront.
         .flag("-ffp-contract=off")
-        // A behaviour that the standard leaves open ends the test.
+        // Undefined behaviour ends the test.
         .flag("-fsanitize=undefined")
         .flag("-fsanitize-undefined-trap-on-error")
         .flag("-Wno-unknown-pragmas")

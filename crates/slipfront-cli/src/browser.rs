@@ -1,5 +1,5 @@
-//! The browser of the user, as far as the desktop tells, and whether it can show a file that only the user
-//! can read.
+//! The browser of the user, according to the desktop, and whether it can show a file that only the user can
+//! read.
 
 use std::env;
 use std::fs::{self, File};
@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Reason for which the browser would not show a private temporary file, as a clause; none if none is known.
+/// Reason why the browser would not show a private temporary file, as a clause; none if no reason is known.
 pub(crate) fn hindrance() -> Option<String> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -31,7 +31,7 @@ pub(crate) fn hindrance() -> Option<String> {
     })
 }
 
-/// The name of the desktop entry of the program for a kind of files or addresses.
+/// Name of the desktop entry of the default program for a MIME type.
 fn default_program(kind: &str) -> Option<String> {
     let mut query = Command::new("xdg-mime");
     query.args(["query", "default", kind]);
@@ -51,8 +51,8 @@ fn command_of(name: &str) -> Option<String> {
     Some(line.to_owned())
 }
 
-/// Whether a command line starts a program in a sandbox: by its words, by the targets of links, or by a
-/// script.
+/// Whether a command line starts a program in a sandbox, judged by its words, by the targets of links, or by
+/// the text of a script.
 fn is_sandboxed(line: &str) -> bool {
     let tells = |text: &str| {
         ["/snap/", "/bin/snap", "flatpak"]
@@ -68,15 +68,15 @@ fn is_sandboxed(line: &str) -> bool {
     tells(line) || line.split_whitespace().any(program_tells)
 }
 
-/// The file of a program.
+/// Path of a program.
 fn find(program: &str) -> Option<PathBuf> {
     let path = env::var_os("PATH").unwrap_or_default();
-    // A path that begins at the root stays as it is.
+    // `join` keeps an absolute path unchanged.
     let mut candidates = env::split_paths(&path).map(|folder| folder.join(program));
     candidates.find(|candidate| candidate.is_file())
 }
 
-/// Beginning of a script; nothing for a program that is none.
+/// Beginning of a script; empty if the file is not a script.
 fn script(path: &Path) -> String {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(4096).read_to_end(&mut start));

@@ -14,7 +14,7 @@ use crate::make_case::make_case;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// Name of the case that is run where none is named.
+/// Name of the case that is run if none is named.
 const BASELINE: &str = "baseline";
 /// Name of standard input in messages.
 const STDIN: &str = "standard input";
@@ -39,12 +39,12 @@ impl CaseArgs {
         self.case.as_deref()
     }
 
-    /// Reads the case, or takes the baseline that is embedded in the program.
+    /// Reads the case, or uses the baseline embedded in the program.
     pub(crate) fn load(self, ranks: &CommandRanks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
-        // Without a file every key is at its default: errors name keys and `--set`, and no line that the user
-        // has not written.
+        // Without a file every key has its default. Errors then refer to keys and `--set`, not to lines of a
+        // file that the user has not written.
         let (text, file, name) = match &self.case {
             None => (String::new(), BASELINE, BASELINE),
             Some(path) if path == Path::new("-") => (read_stdin(ranks)?, STDIN, "stdin"),
@@ -63,7 +63,7 @@ impl CaseArgs {
     }
 }
 
-/// Name of the results folder that keeps this case: each of them calls its copy `case.toml`.
+/// Name of the results folder that contains this case: all such folders call their copy `case.toml`.
 fn name_in_results(case: &Path) -> Option<String> {
     let folder = folder_of(case);
     let is_results = || {
@@ -73,7 +73,7 @@ fn name_in_results(case: &Path) -> Option<String> {
     (case.ends_with(CASE) && is_results()).then(|| folder_name(folder))?
 }
 
-/// Reads the text of a case from standard input, which the processes that share a lattice do not share.
+/// Reads the text of a case from standard input, which several ranks cannot share.
 fn read_stdin(ranks: &CommandRanks) -> Result<String, Failure> {
     if ranks.size() > 1 {
         return Err(Failure::input(anyhow::anyhow!(

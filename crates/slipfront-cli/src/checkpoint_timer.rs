@@ -1,5 +1,4 @@
-//! Times at which the checkpoints of a run are saved: by the clock, on request, and when the run is told to
-//! stop.
+//! Times at which checkpoints of a run are saved: by the clock, on request, and when a signal stops the run.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,7 +13,7 @@ use crate::progress::run::RunProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// Wall time from one checkpoint to the next; none if no checkpoints are saved.
+/// Wall time between checkpoints; none if no checkpoints are saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval(Option<Duration>);
 
@@ -50,8 +49,8 @@ impl FromStr for Interval {
     }
 }
 
-/// Ratio of the time until the next checkpoint to the time that a checkpoint took, at least: in the long run
-/// they take 1 % at most.
+/// Smallest ratio of the time until the next checkpoint to the time that the last one took: in the long run
+/// checkpoints take at most 1 % of the time.
 const RUN_PER_SAVE: u32 = 99;
 
 /// Wall time to the next checkpoint after one that took `cost`.
@@ -69,7 +68,7 @@ pub(crate) struct CheckpointTimer {
 }
 
 impl CheckpointTimer {
-    /// The first checkpoint is due an interval from now.
+    /// Makes the first checkpoint due one interval from now.
     pub(crate) fn new(
         checkpoints: Checkpoints,
         interval: Interval,
@@ -85,10 +84,10 @@ impl CheckpointTimer {
         }
     }
 
-    /// Saves a checkpoint if it is time, or if one was asked for: on all ranks if on any of them.
+    /// Saves a checkpoint on all ranks if it is due or was requested on any of them.
     ///
     /// # Errors
-    /// If the run is to end here. A checkpoint that could not be saved does not end it.
+    /// If a signal stops the run. A checkpoint that could not be saved does not end it.
     pub(crate) fn save_if_due(
         &mut self,
         running: &Running,
@@ -133,7 +132,7 @@ impl CheckpointTimer {
         Ok(())
     }
 
-    /// Saves a checkpoint; one that is not saved on any of the ranks is not saved.
+    /// Saves a checkpoint; it counts as saved only if all ranks have saved it.
     fn save(&mut self, running: &Running) -> Result<(), RankFailure> {
         let saved = self.checkpoints.save(running, &*self.ranks.communicator());
         self.ranks.agree(saved.map_err(Failure::running))
@@ -155,7 +154,7 @@ impl CheckpointTimer {
                 );
                 Failure::Stopped(signal, anyhow::anyhow!(sentence))
             }
-            // Not stopped as a signal should: a job script must not take it for one that has lost nothing.
+            // Not status 128 + signal: a job script would conclude that nothing was lost.
             Err(error) => {
                 let (folder, remedy) = (self.checkpoints.folder().display(), self.remedy());
                 Failure::running(anyhow::anyhow!(
@@ -165,7 +164,7 @@ impl CheckpointTimer {
         }
     }
 
-    /// The remedy when the disk has refused a checkpoint.
+    /// The remedy when a checkpoint cannot be written.
     pub(crate) fn remedy(&self) -> String {
         let command = self.ranks.resume_command(self.checkpoints.folder());
         let from = self

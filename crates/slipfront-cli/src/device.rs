@@ -21,8 +21,8 @@ pub(crate) enum DeviceChoice {
 }
 
 impl DeviceChoice {
-    /// Opens the device, unless `refused` says why there is nothing for it; none for the cores of this
-    /// machine.
+    /// Opens the device; returns none for the cores of this machine. `refused` says why the device cannot be
+    /// used for this work, if it cannot.
     pub(crate) fn open(self, refused: Option<&str>, quiet: bool) -> Result<Option<Arc<dyn Device>>, Failure> {
         if self == Self::Cpu {
             return Ok(None);

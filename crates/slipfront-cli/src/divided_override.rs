@@ -1,13 +1,12 @@
-//! A `--set` whose key and value a shell has divided into several words.
+//! Detects a `--set` with a key and value that the shell has split into several words.
 
 use std::ffi::OsString;
 use std::path::Path;
 
 use slipfront_base::text::{shell_quoted, truncated};
 
-/// The sentence about the first `--set` among the arguments whose key and value are several words, with the
-/// one word that was meant: `--set drive.v_star 0.05`, or `--set slider.blocks=[50, 50]` without quotes
-/// around it.
+/// Error message for the first `--set` with a key and value that are several words, with the single word that
+/// was meant: `--set drive.v_star 0.05`, or `--set slider.blocks=[50, 50]` without quotes around it.
 pub(crate) fn divided_override(args: &[OsString]) -> Option<String> {
     let words: Vec<&str> = args
         .iter()
@@ -43,7 +42,7 @@ fn sentence(first: &str, meant: &str) -> String {
     )
 }
 
-/// A key with the word behind it that is its value.
+/// A key joined with the next word, if that is its value.
 fn joined(key: &str, rest: &[&str]) -> Option<String> {
     let value = match rest {
         ["=", value, ..] => value,
@@ -55,8 +54,8 @@ fn joined(key: &str, rest: &[&str]) -> Option<String> {
     (!value.is_empty() && !is_option && !is_file).then(|| format!("{key}={value}"))
 }
 
-/// An override with the words behind it up to the last bracket that it opens; none where it opens none, or
-/// none closes it.
+/// An override joined with the following words up to its last closing bracket; none if it opens no bracket,
+/// or none is closed.
 fn whole_value(first: &str, rest: &[&str]) -> Option<String> {
     let is_open = |text: &str| text.matches(['[', '{']).count() > text.matches([']', '}']).count();
     let mut whole = first.to_owned();
@@ -67,7 +66,7 @@ fn whole_value(first: &str, rest: &[&str]) -> Option<String> {
     (whole.len() > first.len()).then_some(whole)
 }
 
-/// An override in quotes where a shell needs them, which `=` does not.
+/// An override, in quotes if the shell needs them; `=` does not.
 fn quoted(text: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "=._-+".contains(c);
     truncated(&if text.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! Reasons for which a command fails, and its exit status.
+//! Reasons why a command fails, and its exit status.
 
 use slipfront_run::agree::RankFailure;
 use slipfront_study::StudyError;
@@ -16,11 +16,11 @@ pub(crate) const STATUSES: &str = "Exit status:
   2        wrong input or command line: the message says what to change
   128 + N  stopped by signal N: 129, 130, 143 for SIGHUP, SIGINT, SIGTERM";
 
-/// Reason for which a command failed.
+/// Reason why a command failed.
 pub(crate) enum Failure {
     /// Bad input or usage: status 2.
     Input(anyhow::Error),
-    /// An error while running, or an answer that is no: status 1.
+    /// An error while running, or a negative result: status 1.
     Running(anyhow::Error),
     /// Stopped by the signal with this number: status 128 + number.
     Stopped(i32, anyhow::Error),
@@ -35,12 +35,12 @@ impl Failure {
         Self::Running(error.into())
     }
 
-    /// A command that one of `signals` has stopped.
+    /// The failure of a command that a signal has stopped.
     pub(crate) fn stopped(signals: &Signals, error: impl Into<anyhow::Error>) -> Self {
         Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
     }
 
-    /// A results folder that could not be opened.
+    /// The failure of a results folder that could not be opened.
     pub(crate) fn of_folder(error: StudyError) -> Self {
         match error {
             StudyError::Write { .. } | StudyError::Journal { .. } => Self::running(error),
@@ -48,7 +48,7 @@ impl Failure {
         }
     }
 
-    /// A command that could not make or keep results.
+    /// The failure of a command that could not make or keep results.
     pub(crate) fn of_results(signals: &Signals, error: StudyError) -> Self {
         match error {
             StudyError::Interrupted => Self::stopped(signals, error),
@@ -57,7 +57,7 @@ impl Failure {
         }
     }
 
-    /// Fails if one of `signals` came that stops the program.
+    /// Fails if a signal that stops the program has arrived.
     pub(crate) fn if_stopped(signals: &Signals) -> Result<(), Self> {
         match signals.stopped() {
             Some(_) => Err(Self::stopped(signals, anyhow::anyhow!("stopped by a signal"))),

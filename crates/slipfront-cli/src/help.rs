@@ -1,4 +1,4 @@
-//! The help of the whole command: subcommands in groups by what one wants to do.
+//! The help of the whole command: subcommands, grouped by purpose.
 
 /// Groups of subcommands, each with its heading.
 const GROUPS: [(&str, &[&str]); 7] = [
@@ -14,13 +14,13 @@ const GROUPS: [(&str, &[&str]); 7] = [
 /// Help on the subcommand that clap adds.
 const HELP: &str = "Print this help, or the help of a subcommand";
 
-/// Columns of the names of subcommands.
+/// Width of the column of subcommand names.
 const NAMES: usize = 12;
 
 /// The template of the help of a command with these subcommands.
 ///
 /// # Panics
-/// If a subcommand is in no group, or a group has another.
+/// If a subcommand is in no group, or a group contains an unknown one.
 pub(crate) fn template(command: &clap::Command) -> String {
     let about = |name: &str| match command.find_subcommand(name) {
         Some(subcommand) => subcommand.get_about().map(ToString::to_string),

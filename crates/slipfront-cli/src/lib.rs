@@ -1,10 +1,10 @@
-//! The command `slipfront` as a library, for its program and for other packages that contain the command: one
-//! file per subcommand under `commands/`, each thin. `run` is the same code for one process and for the ranks
-//! of `slipfront-mpi`.
+//! The command `slipfront` as a library, for its program and for other packages that contain the command.
+//! Each subcommand has a thin file under `commands/`. `run` is the same code for one process and for the
+//! ranks of `slipfront-mpi`.
 //!
-//! Errors go to stderr as sentences, results to stdout. `failure.rs` says what each exit status means.
+//! Errors go to stderr as sentences, results to stdout. `failure.rs` defines the exit statuses.
 
-// The macros of these lints panic where they cannot print.
+// These lints forbid the print macros, which panic if they cannot print.
 #![deny(clippy::print_stderr, clippy::print_stdout)]
 
 mod bounds;
@@ -129,11 +129,11 @@ Examples:
     Licences(commands::licences::LicencesCommand),
 }
 
-/// Runs the command with these arguments, the first of which is the name of the program; returns its exit
-/// status. The session of the laboratory as WebAssembly is looked for in `module_folder`, or beside the
-/// program if there is none.
+/// Runs the command with these arguments, of which the first is the name of the program; returns its exit
+/// status. The session of the laboratory as WebAssembly is searched for in `module_folder`, or next to the
+/// program if that is none.
 ///
-/// The command needs a process of its own: signals are caught and the number of threads is set for the whole
+/// The command needs its own process: it catches signals and sets the number of threads for the whole
 /// process, once.
 pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Path>) -> u8 {
     let args: Vec<OsString> = args.into_iter().collect();
@@ -176,7 +176,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
     })
 }
 
-/// Parses arguments, for whose help every command has the table of exit statuses at its end.
+/// Parses arguments; the help of every command ends with the table of exit statuses.
 fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, clap::Error> {
     let mut command = with_statuses(T::command());
     let matches = command.try_get_matches_from_mut(args)?;
@@ -184,7 +184,7 @@ fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, c
 }
 
 /// The subcommands and options of `slipfront`, from which help, manual pages and the page of the book are
-/// made.
+/// generated.
 pub fn command_line() -> clap::Command {
     with_statuses(Cli::command())
 }
@@ -197,15 +197,15 @@ fn with_statuses(command: clap::Command) -> clap::Command {
     command.after_help(help).mut_subcommands(with_statuses)
 }
 
-/// Runs the command `slipfront-mpi`, of which there is a process for every rank of the communicator;
-/// arguments and exit status as for [`main`].
+/// Runs the command `slipfront-mpi`, with one process for every rank of the communicator; arguments and exit
+/// status are those of [`main`].
 pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc<dyn Communicator>) -> u8 {
     let ranks = CommandRanks::new("slipfront-mpi", communicator);
     if !ranks.is_first() {
         silence();
     }
     execute(|| {
-        // Before all else: ranks of other builds may not say the next thing at the same time.
+        // This comes first, because ranks of other builds may differ in the messages that they exchange.
         ranks.expect_same(|| vec![("the build".to_owned(), this_build().to_owned())])?;
         let parsed = ranks.agree(limit_vectors().and_then(|()| parse_on_rank(args)))?;
         ranks.expect_same(|| vec![("what is asked for".to_owned(), parsed.name().to_owned())])?;
@@ -218,7 +218,7 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
     })
 }
 
-/// Request of the arguments of a rank.
+/// Request in the arguments of a rank.
 enum Parsed {
     Run(Box<RunCommand>),
     Licences(commands::licences::LicencesCommand),
@@ -237,7 +237,7 @@ impl Parsed {
     }
 }
 
-/// Request of the arguments; wrong arguments of one rank are a failure of all.
+/// The request in the arguments; wrong arguments of one rank are a failure of all ranks.
 fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Failure> {
     let args: Vec<OsString> = args.into_iter().collect();
     if let Some(sentence) = divided_override(&args) {
@@ -252,7 +252,7 @@ fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Fai
             let text = error.to_string();
             let sentence = match text.trim_end().strip_prefix("error: ") {
                 Some(sentence) => sentence.to_owned(),
-                // Where there are no arguments at all, clap gives the help.
+                // Without any arguments, clap returns the help.
                 None => format!("a subcommand is missing\n\n{}", text.trim_end()),
             };
             Err(Failure::input(anyhow::anyhow!(sentence)))
@@ -261,7 +261,7 @@ fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Fai
     }
 }
 
-/// Limits the vector instructions to those that the environment names, as on a processor that has no others.
+/// Limits the vector instructions to those that the environment names, as on a processor without wider ones.
 fn limit_vectors() -> Result<(), Failure> {
     const NAME: &str = "SLIPFRONT_SIMD";
     let Some(widest) = std::env::var_os(NAME) else {
@@ -272,7 +272,7 @@ fn limit_vectors() -> Result<(), Failure> {
 }
 
 fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {
-    // If the signal cannot be caught, only the error message for a file that grows too large is lost.
+    // If the signal cannot be caught, only the error message for a file above the size limit is lost.
     let _ = signals::ignore_sigxfsz();
     match work() {
         Ok(()) => 0,
@@ -280,17 +280,18 @@ fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {
     }
 }
 
-/// Prints the help that was asked for, or the error of the arguments.
+/// Prints the requested help, or the error of the arguments.
 fn print_usage(error: &clap::Error) -> u8 {
     let printed = error.print();
-    // Of a wrong line the status is what matters; help and version are what was asked for.
+    // For wrong arguments only the status matters. Help and version were requested, so a failure to print
+    // them is reported.
     match expect_printed(printed) {
         Err(failure) if !error.use_stderr() => failure.report(),
         _ => error.exit_code() as u8,
     }
 }
 
-/// The command that was probably meant by a word, a file or a folder in the place of the subcommand.
+/// The command that was probably meant by a word, a file or a folder in place of the subcommand.
 fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
         return None;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-/// Allocator of static programs. The allocator of musl gives memory back to the system and asks for it again,
+/// Allocator of static programs. The allocator of musl returns memory to the system and requests it again,
 /// 900 times in a run of 50 x 50 blocks.
 #[cfg(target_env = "musl")]
 #[global_allocator]

@@ -1,5 +1,5 @@
-//! Makes the case of a command, with progress and checks for signals while its files are read and its texture
-//! is laid over the blocks.
+//! Builds the case of a command, with progress and checks for signals while files are read and the texture is
+//! meshed.
 
 use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
@@ -9,8 +9,8 @@ use crate::progress::mesh::MeshProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// Makes a case with `make` on all ranks, and refuses it if a run of it has no memory; `make` gets the
-/// function that watches its work.
+/// Builds a case with `make` on all ranks, and refuses it if a run of it needs too much memory; `make` gets
+/// the function that watches its work.
 pub(crate) fn make_case(
     ranks: &CommandRanks,
     signals: &Signals,
@@ -34,7 +34,7 @@ pub(crate) fn make_case(
     progress.finish();
     made.map_err(|error| match error {
         CaseError::Stopped => {
-            // The signal may have come to another rank alone.
+            // The signal may have reached only another rank.
             let mut signal = [f64::from(signals.stopped().unwrap_or_default())];
             ranks.largest(&mut signal);
             Failure::Stopped(signal[0] as i32, error.into())

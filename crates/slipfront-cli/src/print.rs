@@ -6,25 +6,25 @@ use std::path::Path;
 use crate::failure::Failure;
 use crate::print_stderr::is_silent;
 
-/// Prints the product of a command. A reader that has closed the pipe, as `head` does, is no failure.
+/// Prints the output of a command. A reader that closes the pipe, as `head` does, causes no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     expect_printed(write(text))
 }
 
-/// Prints a file of the results as the product of a command.
+/// Prints a file of the results as the output of a command.
 pub(crate) fn print_file(path: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| Failure::running(anyhow::anyhow!("cannot read {}: {error}", path.display())))?;
     print(&format!("{}\n", text.trim_end()))
 }
 
-/// Prints a message of a command whose product is files. A message that cannot be printed is lost: the
-/// command goes on and ends with the exit status of its work.
+/// Prints a message of a command that produces files. A message that cannot be printed is lost: the command
+/// continues and ends with the exit status of its work.
 pub(crate) fn print_message(text: &str) {
     let _ = write(text);
 }
 
-/// Fails if the product of a command could not be printed, for another reason than a closed pipe.
+/// Fails if the output of a command could not be printed, except because of a closed pipe.
 pub(crate) fn expect_printed(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::running(anyhow::anyhow!(

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::wrap::for_stderr;
 
-/// Flag set where another process of the same command prints for all.
+/// Whether another process of the same command prints for all processes.
 static IS_SILENT: AtomicBool = AtomicBool::new(false);
 
 /// Silences this process.
@@ -25,8 +25,8 @@ pub(crate) fn print_notes(sentences: impl IntoIterator<Item = String>) {
     }
 }
 
-/// Prints a line to stderr. A line that cannot be printed, since the terminal is closed or the disk is full,
-/// is lost: the command goes on and ends with the exit status of its work.
+/// Prints a line to stderr. If it cannot be printed, because the terminal is closed or the disk is full, it
+/// is lost: the command continues and ends with the exit status of its work.
 pub(crate) fn print_stderr(line: &str) {
     if is_silent() {
         return;

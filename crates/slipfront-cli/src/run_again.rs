@@ -1,4 +1,4 @@
-//! Runs the case of a run folder again, in the folder for temporary files.
+//! Repeats the case of a run folder, in the folder for temporary files.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,16 +18,16 @@ use crate::progress::run::RunProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
-/// A case that was run again.
+/// A repeated run.
 pub(crate) struct RunAgain {
     pub(crate) case: Arc<Case>,
-    /// Folder of its results, in the temporary one.
+    /// Folder of its results, inside the temporary folder.
     pub(crate) made: RunFolder,
-    /// The folder that is removed in the end.
+    /// The temporary folder, which is removed in the end.
     pub(crate) temporary: TemporaryFolder,
 }
 
-/// The case of a run folder, to be run again by this process alone.
+/// Builds the case of a run folder, to be repeated by this process alone.
 pub(crate) fn case_to_run(
     folder: &Path,
     signals: &Signals,
@@ -35,7 +35,7 @@ pub(crate) fn case_to_run(
     make: impl FnOnce(&mut Watch) -> Result<Case, CaseError>,
 ) -> Result<Case, Failure> {
     let case = folder.join("case.toml");
-    // A user may hand over a case through a pipe; in a folder of results it would be waited for.
+    // A user may pass a case through a pipe, but reading a pipe in a results folder would wait for ever.
     if !case.is_file() {
         let sentence = format!(
             "{} is not a regular file: there is nothing to repeat",
@@ -46,13 +46,13 @@ pub(crate) fn case_to_run(
     make_case(&CommandRanks::alone(), signals, quiet, |watch, _| make(watch))
 }
 
-/// The case of a file that was read from a run folder.
+/// Builds the case of a file that was read from a run folder.
 pub(crate) fn of_file(file: CaseFile, folder: &Path, watch: &mut Watch) -> Result<Case, CaseError> {
     Case::to_run(file, "case", folder, watch, Ranks::ALONE)
 }
 
 impl RunAgain {
-    /// Runs a case again, until a signal, and writes its results but for pictures and manifest.
+    /// Repeats a case, unless a signal stops it, and writes its results except pictures and manifest.
     pub(crate) fn run(case: Case, folder: &Path, signals: &Signals, quiet: bool) -> Result<Self, Failure> {
         let case = Arc::new(case);
         let temporary =

@@ -1,4 +1,4 @@
-//! Options on how the table of a measured record is written.
+//! Options on the format of the table of a measured record.
 
 use clap::{Args, ValueEnum};
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};

@@ -1,4 +1,4 @@
-//! The pool of threads of this process.
+//! The thread pool of this process.
 
 use std::hint::black_box;
 use std::io::ErrorKind;
@@ -12,23 +12,23 @@ use slipfront_base::machine::threads_that_fit;
 use crate::failure::Failure;
 use crate::print_stderr::print_stderr;
 
-/// A number of threads or tasks on the command line.
+/// Parses a number of threads or tasks on the command line.
 pub(crate) fn count_from_one(text: &str) -> Result<u16, String> {
     let count = text.parse().ok().filter(|&count| count > 0);
     count.ok_or_else(|| "it must be a whole number from 1 to 65535".to_owned())
 }
 
-/// Makes the pool of threads of this process and returns their number: by default one per core, and never
-/// more. Where the system refuses some there are fewer, at least the present thread. If there are several,
-/// the present thread belongs to the pool, so that it need not wake others at every step of a run, nor wait
-/// for them.
+/// Starts the thread pool of this process and returns the number of its threads: one per core by default, and
+/// never more. If the system refuses some threads, there are fewer, but at least the present one. If there
+/// are several, the present thread belongs to the pool, so that it need not wake the others at every step of
+/// a run, nor wait for them.
 pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
     let working = start_pool(threads, 0, true)?;
     Ok(working.max(1))
 }
 
-/// Makes the pool, as [`set_threads`] does, for a command that runs cases on the pool while the present
-/// thread waits for them. Every thread of the pool starts `others` beside it.
+/// Starts the pool, as [`set_threads`] does, for a command that runs cases on the pool while the present
+/// thread waits for them. Every thread of the pool starts `others` further threads.
 pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
     match start_pool(threads, others, false)? {
         0 => Err(Failure::running(anyhow::anyhow!(
@@ -39,8 +39,8 @@ pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<
     }
 }
 
-/// Makes the pool and returns the number of its threads, each of which needs room for `others`; 0 if the
-/// present thread does all of its work. `joins`: whether the present thread is one of several.
+/// Starts the pool and returns the number of its threads, each with room for `others`; 0 if the present
+/// thread does all the work. With `joins`, the present thread is one of several.
 fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize, Failure> {
     let cores = available_parallelism().map_or(1, usize::from);
     let asked = threads.map_or(cores, usize::from);
@@ -50,7 +50,8 @@ fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize,
     } else {
         "this machine offers no more".to_owned()
     };
-    // They are started before the pool, which could not be made if one of its threads were refused.
+    // The threads start before the pool, because the pool could not be built if one of its threads were
+    // refused.
     let (hand_over, works) = channel::<ThreadBuilder>();
     let works = Arc::new(Mutex::new(works));
     let (settled, has_settled) = channel();
@@ -59,7 +60,7 @@ fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize,
     while started < to_start {
         let (works, settled) = (Arc::clone(&works), settled.clone());
         let wait_and_work = move || {
-            // The first piece of memory gives a thread its arena, which limits of addresses count.
+            // The first allocation gives a thread its arena, which counts for limits on address space.
             drop(black_box(Box::new(0_u8)));
             let _ = settled.send(());
             let work = works.lock().ok().and_then(|works| works.recv().ok());

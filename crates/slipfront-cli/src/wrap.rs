@@ -1,13 +1,13 @@
-//! Sentences broken between words, where a terminal would break them anywhere.
+//! Wraps sentences between words, where a terminal would break them anywhere.
 
 use slipfront_base::text::{self, COLUMNS, wrapped};
 
-/// The columns of the terminal that stdout is, or 80 for a file or pipe.
+/// Width in columns of the terminal on stdout; 80 for a file or pipe.
 pub(crate) fn stdout_columns() -> usize {
     columns(terminal_size::terminal_size_of(std::io::stdout())).unwrap_or(COLUMNS)
 }
 
-/// The columns of the terminal that stderr is, if it is one.
+/// Width in columns of the terminal on stderr; none if it is not a terminal.
 pub(crate) fn stderr_columns() -> Option<usize> {
     columns(terminal_size::terminal_size_of(std::io::stderr()))
 }
@@ -17,13 +17,13 @@ fn columns(size: Option<(terminal_size::Width, terminal_size::Height)>) -> Optio
         .filter(|&columns| columns > 0)
 }
 
-/// A note for stdout, with its line break.
+/// Formats a note for stdout, with its line break.
 pub(crate) fn note(sentence: &str) -> String {
     text::note(sentence, stdout_columns())
 }
 
-/// A text for stderr: lines are broken only on a terminal, so that programs find sentences whole. A line that
-/// begins with a blank is an excerpt of a file, and stays as it is.
+/// Formats a text for stderr: lines are wrapped only on a terminal, so that programs can search for whole
+/// sentences. A line that begins with a blank is an excerpt of a file, and stays unchanged.
 pub(crate) fn for_stderr(text: &str) -> String {
     let Some(columns) = stderr_columns() else {
         return text.to_owned();

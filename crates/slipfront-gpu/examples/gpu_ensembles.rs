@@ -1,14 +1,14 @@
-//! Runs a second of many small sliders on a GPU, beside one core and all cores of the machine, and whether
-//! they have the same bits.
+//! Measures how many runs per second of small sliders a GPU, one CPU core and all cores compute, and checks
+//! that GPU and CPU give the same bits.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-gpu --features cuda --example gpu_ensembles
 //! ```
 //!
-//! Sliders are those of the paper's Fig. 3 on 25 x 25 and 50 x 50 blocks at V* = 0.03, each with a surface of
-//! its own, through 1000 steps of 0.1 t*, and a number for each from all its steps: its largest mu*. Times
-//! of the GPU count from the models to these numbers: surfaces are made on the CPU before, copied there, and
-//! records are copied back and replayed on all cores.
+//! The sliders are those of the paper's Fig. 3, with 25 x 25, 50 x 50 and 64 x 64 blocks and V* = 0.03. Each
+//! has its own surface, takes 1000 steps of 0.1 t*, and yields one number from all its steps: the largest
+//! mu*. The times of the GPU run from the models to these numbers. They exclude the generation of surfaces,
+//! and include the copies to and from the GPU and the replay of the records on all CPU cores.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use slipfront_gpu::Gpu;
 
 const DT_STAR: f64 = 0.1;
 const STEPS: u32 = 1000;
-/// No energies but at the start.
+/// Energies are computed only at the start.
 const ENERGIES: EnergySteps = EnergySteps {
     every: u64::MAX,
     last: 0,

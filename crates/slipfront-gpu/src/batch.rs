@@ -1,4 +1,5 @@
-//! Lattices as the kernels take them: their numbers in common arrays, one lattice after the other.
+//! Lattices in the layout that the kernels expect: their numbers in common arrays, one lattice after the
+//! other.
 
 use slipfront::VectorField;
 use slipfront::device::{DeviceError, DeviceLattice, Equations, Motion, StepRecord};
@@ -19,20 +20,20 @@ pub(crate) struct Lattice {
     unused: u32,
 }
 
-// The sizes that `kernels/step.h` has.
+// The sizes of these structs in `kernels/step.h`.
 const _: () = assert!(size_of::<Lattice>() == 408 && size_of::<StepRecord>() == 88);
 
-/// Numbers of a record, each of 8 bytes.
+/// Size of a record, in numbers of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
 
-/// Lattices and the steps through which they go.
+/// Lattices, and the number of steps that each takes.
 #[derive(Debug)]
 pub(crate) struct Batch {
     pub(crate) lattices: Vec<Lattice>,
-    /// Displacements along x and along y, velocities along x and along y of the blocks of each lattice.
+    /// Displacements along x and y, then velocities along x and y, of the blocks of each lattice.
     pub(crate) state: Vec<f64>,
-    /// Squares of static thresholds and kinetic impulses of the blocks, and the positions of the driven ends
-    /// at each step, of each lattice.
+    /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, and the
+    /// positions of the driven ends at each step.
     pub(crate) given: Vec<f64>,
     pub(crate) flags: Vec<u16>,
     pub(crate) first_slips: Vec<u32>,
@@ -41,10 +42,10 @@ pub(crate) struct Batch {
 }
 
 impl Batch {
-    /// Lattices that are to go through `steps` steps.
+    /// Prepares lattices for `steps` steps.
     ///
     /// # Errors
-    /// For a lattice that has taken as many steps as can be counted.
+    /// If the step count of a lattice would overflow.
     pub(crate) fn new(lattices: &[&mut DeviceLattice], steps: u32) -> Result<Self, DeviceError> {
         let mut batch = Self {
             lattices: Vec::with_capacity(lattices.len()),
@@ -89,7 +90,7 @@ impl Batch {
         self.given.extend(lattice.drive_positions(steps).flatten());
         self.flags.extend(&lattice.flags);
         self.first_slips.extend(&lattice.first_slips);
-        // The kernels read as much of each array.
+        // The kernels rely on these lengths.
         let blocks = self.flags.len();
         let expected = 2 * (blocks + self.lattices.len() * steps as usize);
         assert!(
@@ -102,7 +103,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Hands the lattices back after the steps.
+    /// Copies the results of the steps back to the lattices.
     pub(crate) fn return_to(&self, lattices: &mut [&mut DeviceLattice]) {
         let mut first = 0;
         for (k, (lattice, after)) in lattices.iter_mut().zip(&self.lattices).enumerate() {
@@ -122,7 +123,7 @@ impl Batch {
     }
 }
 
-/// A record from its numbers.
+/// Converts the words of a record to a [`StepRecord`].
 fn record(words: &[u64; RECORD]) -> StepRecord {
     let number = |k: usize| f64::from_bits(words[k]);
     StepRecord {
@@ -131,7 +132,7 @@ fn record(words: &[u64; RECORD]) -> StepRecord {
         velocity_square: number(4),
         friction_power: number(5),
         stress_square_max: number(6),
-        // GPUs and the CPUs beside them store the lower bytes first.
+        // GPUs and their host CPUs are little-endian.
         n_sliding: [words[7] as u32, (words[7] >> 32) as u32],
         stored: [number(8), number(9), number(10)],
     }

@@ -1,4 +1,4 @@
-//! The kernels on a GPU of NVIDIA.
+//! The kernels on an NVIDIA GPU.
 
 #![allow(unsafe_code)] // Kernels are launched, and structs are copied to the GPU.
 
@@ -14,10 +14,10 @@ use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::batch::{Batch, Lattice, RECORD};
 
-/// The kernels for PTX, which `ptx.py` makes; empty where it was not run before this crate was compiled.
+/// The kernels as PTX, written by `ptx.py`; empty if that script was not run before this crate was compiled.
 const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/kernels.ptx"));
 
-/// The source of the kernels, for NVRTC: files in the order in which each includes those before it.
+/// The source of the kernels, for NVRTC. Each file includes only files before it in this list.
 const SOURCES: [&str; 7] = [
     include_str!("../kernels/target.h"),
     include_str!("../kernels/fixed_point.h"),
@@ -28,14 +28,14 @@ const SOURCES: [&str; 7] = [
     include_str!("../kernels/kernels.cu"),
 ];
 
-/// Bytes of shared memory that a kernel needs for each block.
+/// Bytes of shared memory that a kernel needs per block of the lattice.
 const BYTES_PER_BLOCK: usize = 6 * size_of::<f64>() + size_of::<u32>();
 
-/// Threads of the groups for which there are kernels, and the most blocks that each takes where there is
-/// memory for them.
+/// Thread-group sizes for which there are kernels, and the largest number of blocks for each if memory
+/// allows.
 const GROUPS: [(u32, usize); 3] = [(128, 1024), (256, 2304), (512, usize::MAX)];
 
-/// Kernel for lattices of some size.
+/// Kernel for lattices up to a given size.
 #[derive(Debug)]
 struct Kernel {
     function: CudaFunction,
@@ -43,7 +43,7 @@ struct Kernel {
     most_blocks: usize,
 }
 
-/// A GPU of NVIDIA.
+/// An NVIDIA GPU.
 #[derive(Debug)]
 pub struct Gpu {
     context: Arc<CudaContext>,
@@ -52,16 +52,17 @@ pub struct Gpu {
     kernels: Vec<Kernel>,
 }
 
-// SAFETY: the struct has no padding and no pointers, and is that of the kernels.
+// SAFETY: the struct has no padding and no pointers, and has the layout of the struct of the kernels.
 unsafe impl DeviceRepr for Lattice {}
 
 impl Gpu {
     /// Opens the first GPU of this machine.
     ///
     /// # Errors
-    /// A sentence with the remedy where there is no driver, no GPU or no compiler for the kernels.
+    /// A sentence with the remedy, if there is no driver, no GPU or no compiler for the kernels.
     pub fn open() -> Result<Self, DeviceError> {
-        // SAFETY: the function tries to load a library, whose initialisation is that of the driver.
+        // SAFETY: the function only tries to load a library, and initialising that library is the driver's
+        // own code.
         if !unsafe { sys::is_culib_present() } {
             let message = "no NVIDIA driver was found (libcuda.so.1): the CPU gives the same results";
             return Err(DeviceError(message.to_owned()));
@@ -104,7 +105,7 @@ impl Gpu {
         self.context.name().map_err(failed("the GPU has no name"))
     }
 
-    /// Takes lattices of at most so many blocks through their steps.
+    /// Runs the steps of a batch of lattices with at most `most_blocks` blocks each.
     fn launch(&self, batch: &mut Batch, kernel: &Kernel, most_blocks: usize) -> Result<(), DriverError> {
         let stream = &self.stream;
         let mut lattices = stream.clone_htod(&batch.lattices)?;
@@ -126,8 +127,8 @@ impl Gpu {
             .arg(&flags)
             .arg(&mut first_slips)
             .arg(&mut records);
-        // SAFETY: the arguments are those of the kernel, and as long as it takes them to be, as the batch has
-        // checked.
+        // SAFETY: the arguments have the types of the kernel's parameters, and the batch has checked the
+        // lengths of the arrays.
         unsafe { launch.launch(config) }?;
         stream.memcpy_dtoh(&lattices, &mut batch.lattices)?;
         stream.memcpy_dtoh(&state, &mut batch.state)?;
@@ -136,7 +137,8 @@ impl Gpu {
         stream.synchronize()
     }
 
-    /// Number of lattices of so many blocks whose numbers for so many steps take half of the free memory.
+    /// Number of lattices with `blocks` blocks that fit into half of the free memory, with the numbers of
+    /// `steps` steps.
     fn lattices_at_once(&self, blocks: usize, steps: u32) -> Result<usize, DeviceError> {
         let (free, _) = self
             .context
@@ -183,12 +185,12 @@ impl Device for Gpu {
     }
 }
 
-/// The kernels in PTX: made beforehand, or by NVRTC.
+/// The kernels as PTX: compiled beforehand, or now by NVRTC.
 fn ptx(major: i32, minor: i32) -> Result<Ptx, DeviceError> {
     if !PTX.is_empty() {
         return Ok(Ptx::from_src(PTX));
     }
-    // SAFETY: the function tries to load a library, which has no initialisation.
+    // SAFETY: the function only tries to load a library that runs no code on initialisation.
     if !unsafe { nvrtc::sys::is_culib_present() } {
         let message = "this program has no kernels for a GPU, and NVRTC, which could compile them, was not found \
                        (libnvrtc.so): run crates/slipfront-gpu/ptx.py before you build it, or install NVRTC, for \
@@ -196,7 +198,7 @@ fn ptx(major: i32, minor: i32) -> Result<Ptx, DeviceError> {
         return Err(DeviceError(message.to_owned()));
     }
     let options = CompileOptions {
-        // A product and a sum are two operations with two roundings, as on the CPU.
+        // No fused multiply-add: a product and a sum are two operations with two roundings, as on the CPU.
         fmad: Some(false),
         options: vec![
             format!("--gpu-architecture=compute_{major}{minor}"),
@@ -208,14 +210,14 @@ fn ptx(major: i32, minor: i32) -> Result<Ptx, DeviceError> {
         .map_err(|error| DeviceError(format!("NVRTC does not compile the kernels: {error}")))
 }
 
-/// The source in one piece.
+/// The source of all kernels as one text.
 fn source() -> String {
     let lines = SOURCES.into_iter().flat_map(str::lines);
     let kept = lines.filter(|line| !line.starts_with("#include \"") && !line.starts_with("#pragma once"));
     kept.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// The sentence for an error of the driver.
+/// Turns an error of the driver into a sentence.
 fn failed(what: &str) -> impl FnOnce(DriverError) -> DeviceError {
     move |error| DeviceError(format!("{what}: {error}"))
 }

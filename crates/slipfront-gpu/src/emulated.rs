@@ -1,4 +1,4 @@
-//! The kernels on groups of threads that are emulated on the CPU.
+//! The kernels on thread groups that the CPU emulates.
 
 #![allow(unsafe_code)] // Functions of C++ are called.
 
@@ -6,13 +6,13 @@ use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::batch::{Batch, Lattice};
 
-/// A device whose groups of threads are emulated on the thread that calls it: slow, and exact.
+/// A device that emulates groups of threads on the calling thread: slow, but exact.
 #[derive(Clone, Copy, Debug)]
 pub struct Emulated {
     /// Threads of a group: 32, 64, 128, 256, 512 or 1024.
     pub threads: u32,
-    /// Distance from a thread that waits to the thread that goes on: any odd number, of which results do not
-    /// depend.
+    /// Distance from a thread that waits to the thread that runs next: any odd number. Results do not depend
+    /// on it.
     pub stride: u32,
 }
 
@@ -27,14 +27,14 @@ struct Arrays {
     records: *mut u64,
 }
 
-// SAFETY: `kernels/emulated.cpp` has a function of this name and type, which keeps none of the pointers.
+// SAFETY: `kernels/emulated.cpp` defines a function of this name and type, which keeps none of the pointers.
 unsafe extern "C" {
     /// Takes `count` lattices through their steps on groups of `threads` emulated threads.
     fn slipfront_run_emulated(arrays: *const Arrays, count: usize, threads: i32, stride: i32);
 }
 
 impl Device for Emulated {
-    /// As many as the sums of a warp may have terms, for each warp.
+    /// Number of warps times the number of terms that the sum of a warp may have.
     fn most_blocks(&self) -> usize {
         (1 << 11) * self.threads as usize / 32
     }
@@ -54,8 +54,8 @@ impl Device for Emulated {
             first_slips: batch.first_slips.as_mut_ptr(),
             records: batch.records.as_mut_ptr(),
         };
-        // SAFETY: the pointers are to arrays of the batch, as long as the kernels take them to be, as the
-        // batch has checked. Nothing else refers to them meanwhile.
+        // SAFETY: the pointers lead to arrays of the batch, which has checked their lengths, and nothing else
+        // refers to these arrays during the call.
         unsafe {
             slipfront_run_emulated(
                 &raw const arrays,

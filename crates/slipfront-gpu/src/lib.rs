@@ -1,11 +1,11 @@
-//! Plain lattices of slipfront on a GPU, with the bits of its fused kernel.
+//! Plain lattices of slipfront on a GPU, with the same bits as slipfront's fused kernel.
 //!
-//! The kernels (`kernels/`) are one source in CUDA C++. The feature `cuda` runs them on a GPU of NVIDIA; the
-//! feature `emulated` compiles them for the CPU, thread by thread and warp by warp, for tests where there is
-//! no GPU. Both implement `slipfront::device::Device`. Without these features the crate is empty.
+//! The kernels (`kernels/`) are one source in CUDA C++. The feature `cuda` runs them on an NVIDIA GPU. The
+//! feature `emulated` compiles them for the CPU, thread by thread and warp by warp, for tests without a GPU.
+//! Both implement `slipfront::device::Device`. Without these features the crate is empty.
 //!
-//! Sums have the bits of the fused kernel since they are sums of integers. Terms have them since each is
-//! found by the operations of that kernel in their order, none of which is contracted with another.
+//! Sums have the same bits because they are sums of integers. Their terms have the same bits because each is
+//! computed by the same operations in the same order as in the fused kernel, without contraction.
 
 #![cfg(any(feature = "cuda", feature = "emulated"))]
 

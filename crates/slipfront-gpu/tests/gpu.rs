@@ -1,11 +1,11 @@
-//! A GPU where there is one, and the sentence where there is none.
+//! Tests with a GPU where there is one, and of the error message where there is none.
 
 use slipfront::device::{Device, DeviceLattice, EnergySteps};
 use slipfront::testing::FusedDevice;
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Surface};
 use slipfront_gpu::Gpu;
 
-/// Without a driver the program goes on to say what to do; with one, a run has the bits of the fused kernel.
+/// Without a usable GPU the error names a remedy; with one, a run has the bits of the fused kernel.
 #[test]
 fn a_gpu_has_the_same_bits_or_is_refused_with_a_remedy() {
     let gpu = match Gpu::open() {

@@ -1,5 +1,5 @@
-//! The kernels for a GPU have the bits of the fused kernel: every number of every step, of the state and of
-//! the bounds that a checkpoint keeps, for random plain models.
+//! The GPU kernels have the same bits as the fused kernel: in every number of every step, in the state, and
+//! in the bounds that a checkpoint keeps, for random plain models.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -16,12 +16,12 @@ use slipfront::{
 };
 use slipfront_gpu::Emulated;
 
-/// A number as its bits, by which NaN equals itself.
+/// Numbers as bits, so that NaN equals itself.
 fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|x| x.to_bits()).collect()
 }
 
-/// Everything that a device leaves of a lattice.
+/// All results of a device for a lattice.
 fn left(lattice: &DeviceLattice) -> (Vec<Vec<u64>>, Vec<u32>) {
     let State {
         displacement: u,
@@ -48,7 +48,7 @@ fn assert_same(emulated: &mut DeviceLattice, fused: &mut DeviceLattice) {
     assert_eq!(left(emulated), left(fused));
 }
 
-/// Takes a model on both devices through steps, in two parts.
+/// Runs a model on both devices in two batches of steps, and compares the results.
 fn compare(
     model: &Model,
     dt_star: f64,
@@ -74,13 +74,13 @@ fn edges() -> impl Strategy<Value = Edges> {
 }
 
 prop_compose! {
-    /// A plain model, its time step, and a state to begin with.
+    /// A plain model, its time step and an initial state.
     fn models()(
         (nx, ny) in (3_usize..24, 3_usize..20),
         edges in (edges(), edges()),
         (degrees, speed) in (prop_oneof![Just(0.0), -180.0..180.0], prop_oneof![Just(0.1), 0.01..2.0]),
         goes_back in any::<bool>(),
-        // Strains need the short series, the long one, or the square root.
+        // Strains for which the short series, the long series or the square root is needed.
         epsilon in prop_oneof![Just(0.0), Just(1e-6), 1e-5..1e-2, 1e-2..0.3],
         (damping, k_drive) in (0.0..2.0, 0.01..1.0),
         (r_star, deviation, seed) in (0.0..1.2, 0.0..0.3, any::<u64>()),

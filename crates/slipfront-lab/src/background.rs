@@ -1,4 +1,4 @@
-//! Jobs beside a session, each in a thread of its own.
+//! Jobs outside a session, each in its own thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,22 +8,22 @@ use std::time::{Duration, Instant};
 
 use slipfront_session::{Event, Job, Task, Worker};
 
-/// A job in a thread of its own. Dropping the task asks the job to stop.
+/// A job in its own thread. Dropping the task asks the job to stop.
 pub(crate) struct BackgroundTask {
     stop: Arc<AtomicBool>,
-    /// Events that the work sends; the channel closes once the work has ended.
+    /// Events that the job sends; the channel closes when the job has ended.
     events: Receiver<Event>,
     is_lost: bool,
 }
 
 impl BackgroundTask {
-    /// Begins a job in a thread, which holds `working`, on so many threads.
+    /// Begins a job in a thread that holds `working`, with a pool of `threads` threads.
     ///
     /// # Errors
     /// A sentence, if the system refuses threads.
     pub(crate) fn begin(job: Job, threads: usize, working: &Sender<()>) -> Result<Self, String> {
-        // A pool of its own: steps of the run that is shown would wait in that of all others until whole runs
-        // have ended.
+        // The job has its own thread pool: in the global pool, steps of the run on the page would wait until
+        // whole runs of the job have ended.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| format!("the system refuses threads for the work: {error}"))?;
         let stop = Arc::new(AtomicBool::new(false));
@@ -52,7 +52,7 @@ impl Task for BackgroundTask {
         match self.events.try_recv() {
             Ok(event) => Some(event),
             Err(TryRecvError::Empty) => None,
-            // Nobody asks any more after the last event of work that was done.
+            // After the last event of a completed job, the session does not ask again.
             Err(TryRecvError::Disconnected) if self.is_lost => None,
             Err(TryRecvError::Disconnected) => {
                 self.is_lost = true;
@@ -68,7 +68,7 @@ impl Drop for BackgroundTask {
     }
 }
 
-/// A thread that works.
+/// The thread of a job.
 struct ThreadWorker {
     tells: Sender<Event>,
     stop: Arc<AtomicBool>,
@@ -77,7 +77,7 @@ struct ThreadWorker {
 
 impl Worker for ThreadWorker {
     fn tell(&self, event: Event) {
-        // Nobody listens any more after the end of the session.
+        // After the end of the session nobody receives events.
         let _ = self.tells.send(event);
     }
 

@@ -1,7 +1,7 @@
-//! Connections over HTTP, which everybody on this machine may open: few at once, with small headers that come
-//! soon.
+//! HTTP connections, which every user of this machine may open: few at once, with small headers that must
+//! arrive soon.
 //!
-//! A page that has proved that it knows the token goes on over a WebSocket, and no longer counts here.
+//! A page that has proved that it knows the token continues over a WebSocket, which does not count here.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -15,18 +15,18 @@ use tokio::net::TcpListener;
 use tokio::task::{AbortHandle, yield_now};
 use tokio::time::sleep;
 
-/// Most connections at once; a browser opens six for a page.
+/// Largest number of connections at once; a browser opens six for a page.
 const MAX_CONNECTIONS: usize = 64;
 
-/// Most bytes of a header; those of browsers have one or two thousand.
+/// Largest size of a header; browsers send one or two thousand bytes.
 const MAX_HEADER_BYTES: usize = 16 << 10;
 
-/// Time to the next attempt when the system refuses a connection, for lack of files or memory.
+/// Time to the next attempt after the system has refused a connection for lack of files or memory.
 const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Serves whoever connects, for ever; a connection may take `header_timeout` to send the next header. When
-/// there are too many, the oldest goes: whoever holds connections open without a use keeps no page out, which
-/// needs its own for some milliseconds.
+/// Serves all connections, for ever; a connection has `header_timeout` to send its next header. When there
+/// are too many, the oldest is closed. An attacker who holds connections open therefore blocks no page,
+/// because a page needs its own connections only for some milliseconds.
 pub(crate) async fn serve(listener: TcpListener, router: Router, header_timeout: Duration) -> Infallible {
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
@@ -42,12 +42,12 @@ pub(crate) async fn serve(listener: TcpListener, router: Router, header_timeout:
         make_room(&mut open);
         let connection = http.serve_connection(TokioIo::new(stream), service.clone());
         open.push_back(tokio::spawn(connection.with_upgrades()).abort_handle());
-        // It may have its answer before others come that take its place.
+        // The connection may answer before later ones take its place.
         yield_now().await;
     }
 }
 
-/// Leaves room for one more.
+/// Makes room for one more connection.
 fn make_room(open: &mut VecDeque<AbortHandle>) {
     open.retain(|connection| !connection.is_finished());
     if open.len() >= MAX_CONNECTIONS

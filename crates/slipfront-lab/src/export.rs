@@ -1,5 +1,5 @@
-//! The laboratory without a server: its page, and the session as WebAssembly, as a folder for any web server
-//! or as one file.
+//! Export of the laboratory without a server: its page and the session as WebAssembly, as a folder for any
+//! web server or as one file.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,39 +19,39 @@ use slipfront_session::{Document, Presets};
 use crate::opening::{Start, StartSource};
 use crate::{assets, presets};
 
-/// The name of the session as WebAssembly, beside the program and in an exported folder.
+/// File name of the session as WebAssembly, next to the program and in an exported folder.
 pub const MODULE: &str = "slipfront.wasm";
 
-/// The name of the module beside it that does the work beside a session.
+/// File name of the second module, in the same folder, which runs the jobs outside a session.
 const WORK: &str = "slipfront-work.wasm";
 
 /// The file with the presets and the case with which the session begins.
 const BEGINNING: &str = "start.json";
 
-/// The file with the licences of what an exported page contains.
+/// The file with the licences of everything in an exported page.
 const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
 
-/// Content security policy of the page of an exported folder: it may take files from its own folder, and
+/// Content security policy of the page of an exported folder: it may load files from its own folder and
 /// compile the module.
 const POLICY_OF_FOLDER: &str = include_str!("../export/folder.policy");
 
-/// Content security policy of a page of one file: it may run its loader, show its styles, and use what the
-/// loader makes of its files.
+/// Content security policy of a page in one file: it may run its loader, apply its styles, and use what the
+/// loader makes from its files.
 const POLICY_OF_SINGLE: &str = include_str!("../export/single.policy");
 
-/// Element with which an exported page says that it has no server, and by which it is known as one.
+/// Element that marks an exported page as one without a server.
 const BEGINNING_OF_PAGE: &str = "<html data-channel=\"worker\">";
 
-/// Bytes among which that element is looked for.
+/// Number of bytes searched for that element.
 const BYTES_OF_BEGINNING: u64 = 256;
 
-/// Scripts with which the page begins.
+/// Scripts that start the page.
 const SCRIPTS: [&str; 2] = ["module.js", "main.js"];
 
 /// Styles of the page.
 const STYLES: [&str; 2] = ["vendor/uPlot.min.css", "style.css"];
 
-/// The manifest by which a browser offers to keep the page like a program.
+/// The manifest that lets a browser offer to install the page as a program.
 const MANIFEST: &str = r##"{
   "name": "slipfront laboratory",
   "short_name": "slipfront",
@@ -63,7 +63,7 @@ const MANIFEST: &str = r##"{
 }
 "##;
 
-/// Why the laboratory cannot be exported.
+/// Reasons why the laboratory cannot be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The module was not built.
@@ -72,19 +72,19 @@ pub enum ExportError {
         places(.0)
     )]
     NoModule(Vec<PathBuf>),
-    /// The file of the module holds no WebAssembly.
+    /// The file of the module is not WebAssembly.
     #[error("{} is no module of WebAssembly: build it anew by crates/slipfront-wasm/build.sh of the sources", display_path(.0))]
     NotModule(PathBuf),
-    /// A run folder needs a server that reads it.
+    /// A folder of a run needs a server to read it.
     #[error("a folder of a run cannot be exported: name the case.toml in it")]
     Folder,
-    /// The case with which the page opens cannot be made.
+    /// The case with which the page opens is invalid.
     #[error("{0}")]
     Case(String),
-    /// A folder that is not empty, and was not exported.
+    /// The folder is not empty, and is no exported laboratory.
     #[error("{} holds other things than an exported laboratory: name another folder", display_path(.0))]
     OtherThings(PathBuf),
-    /// A file that is no exported laboratory.
+    /// The file exists, and is no exported laboratory.
     #[error("{} exists, and is no exported laboratory: choose another name", display_path(.0))]
     OtherFile(PathBuf),
     /// The system refuses to read the module.
@@ -105,7 +105,7 @@ pub enum ExportError {
     },
 }
 
-/// Folders in a sentence of where nothing is.
+/// The folders that were searched, for an error message.
 fn places(folders: &[PathBuf]) -> String {
     let folders: Vec<String> = folders.iter().map(|folder| display_path(folder)).collect();
     folders.join(" or in ")
@@ -118,16 +118,16 @@ struct Beginning<'a> {
     opening: &'a Document,
 }
 
-/// All that a page without a server is made of.
+/// Everything that makes up a page without a server.
 struct Parts {
-    /// Files of the page by their names.
+    /// Files of the page by name.
     files: BTreeMap<String, Vec<u8>>,
-    /// Modules of WebAssembly by their names.
+    /// WebAssembly modules by name.
     modules: BTreeMap<&'static str, Vec<u8>>,
 }
 
-/// Finds the module of the session, in the first of some folders that has it. The one of work beside
-/// it is in the same folder.
+/// Finds the module of the session in the first folder that has it. The module of the jobs is in the same
+/// folder.
 ///
 /// # Errors
 /// When none of the folders has the module.
@@ -140,7 +140,7 @@ pub fn find_module(folders: &[PathBuf]) -> Result<PathBuf, ExportError> {
 /// Reads a module of WebAssembly.
 ///
 /// # Errors
-/// When the file cannot be read, or is none.
+/// When the file cannot be read, or is not WebAssembly.
 fn read_module(path: PathBuf) -> Result<Vec<u8>, ExportError> {
     let contents = fs::read(&path);
     match contents {
@@ -176,13 +176,13 @@ impl Parts {
         Ok(Self { files, modules })
     }
 
-    /// A file of the page as a text.
+    /// A file of the page as text.
     fn text(&self, name: &str) -> String {
         let contents = self.files.get(name).map(Vec::as_slice).unwrap_or_default();
         String::from_utf8_lossy(contents).into_owned()
     }
 
-    /// The page, which says that it has no server, with a policy and more in its head.
+    /// The page, marked as one without a server, with a policy and further elements in its head.
     fn page(&self, policy: &str, more: &str) -> String {
         let policy = policy.trim_end();
         let head = format!(
@@ -194,11 +194,11 @@ impl Parts {
     }
 }
 
-/// Writes the laboratory as a folder that any web server can serve: a page that opens with a case of the
-/// start, and asks for nothing outside of the folder. It contains the licence notices of its parts.
+/// Writes the laboratory as a folder for any web server: a page that opens with a case of the start, and
+/// loads nothing from outside the folder. It contains the licence notices of its parts.
 ///
 /// # Errors
-/// When the module is none, the folder holds other things, or the system refuses.
+/// When the module is not WebAssembly, the folder holds other things, or the system refuses to read or write.
 pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) -> Result<(), ExportError> {
     let write = |path: &Path, contents: &[u8]| {
         write_with_folders(path, contents).map_err(|source| ExportError::Write {
@@ -230,7 +230,7 @@ pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) ->
     write(&out.join("service_worker.js"), service_worker.as_bytes())
 }
 
-/// The script that keeps these files in the browser, under a name that follows from their contents.
+/// The script that caches these files in the browser, under a name derived from their contents.
 fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
     let mut hasher = Sha256::new();
     for (name, contents) in files {
@@ -240,7 +240,7 @@ fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
     }
     let hash = hasher.finalize();
     let digits: String = hash.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-    // The address of the folder is that of the page.
+    // The address of the folder is the address of the page.
     let names = ["./"].into_iter().chain(files.keys().map(String::as_str));
     let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
     include_str!("../export/service_worker.js")
@@ -248,11 +248,11 @@ fn service_worker(files: &BTreeMap<String, Vec<u8>>) -> String {
         .replacen("'CACHE'", &format!("'slipfront-{digits}'"), 1)
 }
 
-/// Writes the laboratory as one file, which opens from the disk: a page that opens with a case of the start,
-/// and asks for nothing. It contains the licence notices of its parts.
+/// Writes the laboratory as one file that opens from the disk: a page that opens with a case of the start,
+/// and loads nothing else. It contains the licence notices of its parts.
 ///
 /// # Errors
-/// When the module is none, there is another file of this name that was not exported, or the system refuses.
+/// When the module is not WebAssembly, another file has this name, or the system refuses to read or write.
 pub fn export_single(start: &Start, module: &Path, notices: &str, out: &Path) -> Result<(), ExportError> {
     if out.is_file() && !is_exported(out) {
         return Err(ExportError::OtherFile(out.to_owned()));
@@ -282,7 +282,7 @@ pub fn export_single(start: &Start, module: &Path, notices: &str, out: &Path) ->
             1,
         );
     }
-    // Behind all elements, since it is not a module and would not wait for them.
+    // The script comes after all elements: it is not a module, and would run before they exist.
     page = page.replacen(
         "</body>",
         &format!("{script}<script>{loader}</script>\n</body>"),
@@ -294,7 +294,7 @@ pub fn export_single(start: &Start, module: &Path, notices: &str, out: &Path) ->
     })
 }
 
-/// Whether a file is a page that was exported.
+/// Whether a file is an exported page.
 fn is_exported(path: &Path) -> bool {
     let mut beginning = Vec::new();
     let read =
@@ -302,15 +302,15 @@ fn is_exported(path: &Path) -> bool {
     read.is_ok() && String::from_utf8_lossy(&beginning).contains(BEGINNING_OF_PAGE)
 }
 
-/// A module of a page of one file: compressed by gzip, in Base64.
+/// A module for a page in one file: compressed with gzip, in Base64.
 fn compressed(module: &[u8]) -> String {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    // Memory takes all that it is given.
+    // Writing to memory cannot fail.
     let compressed = encoder.write_all(module).and_then(|()| encoder.finish());
     BASE64_STANDARD.encode(compressed.unwrap_or_default())
 }
 
-/// The files that a page of one file asks for, as JSON within a script: texts, and compressed modules.
+/// The files that a page in one file loads, as JSON inside a script: texts and compressed modules.
 fn files_within(parts: &Parts) -> String {
     let is_asked_for =
         |name: &str| name != "index.html" && !name.ends_with(".css") && !name.ends_with(".LICENSE");
@@ -323,7 +323,7 @@ fn files_within(parts: &Parts) -> String {
     for (name, contents) in &parts.modules {
         files.insert(name, compressed(contents));
     }
-    // Texts: serialisation cannot fail. What would end the script is written otherwise.
+    // Texts: serialisation cannot fail. Sequences that would end the script are escaped.
     serde_json::to_string(&files)
         .unwrap_or_default()
         .replace("</", "<\\/")
@@ -338,7 +338,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder with what begins like modules.
+    /// A folder with files that begin like modules.
     fn with_modules() -> (TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         for name in [MODULE, WORK] {
@@ -375,7 +375,8 @@ mod tests {
                 "{name}"
             );
         }
-        // The same files have the same bytes and the same name in the browser; others have another.
+        // The same files give the same bytes and the same cache name in the browser; other files give another
+        // name.
         let again = folder.path().join("again");
         export_folder(&Start::default(), &module, "notices", &again).unwrap();
         assert_eq!(kept, fs::read_to_string(again.join("service_worker.js")).unwrap());
@@ -413,7 +414,7 @@ mod tests {
         ] {
             assert!(asked.contains(name), "{name}");
         }
-        // The script that runs is the one that the policy allows.
+        // The policy allows the script that runs.
         let loader = loader
             .split_once("<script>")
             .unwrap()
@@ -449,7 +450,7 @@ mod tests {
                 .contains("is no exported laboratory")
         );
         assert_eq!(fs::read_to_string(other.join("mine")).unwrap(), "mine");
-        // A page that was exported is replaced.
+        // An exported page is replaced.
         let page = folder.path().join("page.html");
         export_single(&start, &module, "notices", &page).unwrap();
         export_single(&start, &module, "notices", &page).unwrap();

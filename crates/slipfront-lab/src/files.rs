@@ -1,4 +1,4 @@
-//! The files of a case on the disk.
+//! Files of a case on the disk.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -8,10 +8,10 @@ use slipfront_base::text::{display_path, shell_path};
 use slipfront_case::case_file::{CaseError, read_text};
 use slipfront_session::{Document, MAX_FILES};
 
-/// The case of a file, with the files that stand in its folder or in those that are `allowed`.
+/// Reads the case of a file, and the files that it names in its own folder or in the `allowed` folders.
 ///
 /// # Errors
-/// When it is no case, a file cannot be read or lies elsewhere, or there is too much of it.
+/// When it is not a case, a file cannot be read or lies elsewhere, or the files are too large.
 pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<Document, CaseError> {
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -20,8 +20,8 @@ pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<D
     Document::new(name, &text, |file| reach.read(file))
 }
 
-/// The folders in which files of the disk may be read: one, and those that the user allows. What leads out of
-/// them, by its name or by symbolic links, is refused.
+/// The folders from which files may be read: one folder, and the folders that the user allows. A name or a
+/// symbolic link that leads out of them is refused.
 pub(crate) struct ReadableFolders<'a> {
     folder: &'a Path,
     /// The owner of the folder in messages, such as `the case`.
@@ -31,7 +31,7 @@ pub(crate) struct ReadableFolders<'a> {
 }
 
 impl<'a> ReadableFolders<'a> {
-    /// The folder of what messages call `of`, such as `the case`, and the allowed folders.
+    /// The folder of `of`, an owner such as `the case`, together with the allowed folders.
     pub(crate) fn new(folder: &'a Path, of: &'static str, allowed: &[PathBuf]) -> Result<Self, String> {
         let folder = if folder.as_os_str().is_empty() {
             Path::new(".")
@@ -50,10 +50,10 @@ impl<'a> ReadableFolders<'a> {
         })
     }
 
-    /// The path of a file or folder of this name, without symbolic links.
+    /// Resolves a name to the path of a file or folder without symbolic links.
     ///
     /// # Errors
-    /// A sentence, if nothing has this name, or it lies outside the folders.
+    /// A sentence, if nothing has this name or it lies outside the folders.
     pub(crate) fn resolve(&self, name: impl AsRef<Path>) -> Result<PathBuf, String> {
         let resolved = self.folder.join(name).canonicalize();
         let resolved = resolved.map_err(|error| error.to_string())?;
@@ -73,7 +73,7 @@ impl<'a> ReadableFolders<'a> {
     /// Reads a file of at most [`MAX_FILES`] bytes.
     ///
     /// # Errors
-    /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is no file.
+    /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is not a file.
     pub(crate) fn read(&self, name: &str) -> Result<Vec<u8>, String> {
         self.read_up_to(name, MAX_FILES)
     }
@@ -81,12 +81,12 @@ impl<'a> ReadableFolders<'a> {
     /// Reads a file of at most `limit` bytes.
     ///
     /// # Errors
-    /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is no file.
+    /// A sentence, if there is no such file, or it lies outside the folders, is too large, or is not a file.
     pub(crate) fn read_up_to(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
         let path = self.resolve(name)?;
         let sentence = |error: std::io::Error| error.to_string();
         let mut file = open_limited(&path, limit).map_err(sentence)?;
-        // A link may have been put on the way to it since it was found.
+        // The path may have been replaced by a link after it was resolved.
         if !is_at(file.get_ref(), &path) {
             return Err("it was replaced while it was opened: try again".to_owned());
         }
@@ -96,7 +96,7 @@ impl<'a> ReadableFolders<'a> {
     }
 }
 
-/// Whether a file that was opened is the one at this path, to which no symbolic link leads.
+/// Whether an open file is the file at this path, and the path is not a symbolic link.
 #[cfg(unix)]
 fn is_at(opened: &std::fs::File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -105,7 +105,7 @@ fn is_at(opened: &std::fs::File, path: &Path) -> bool {
     there.is_some() && there == id(opened.metadata()) && path.canonicalize().is_ok_and(|found| found == path)
 }
 
-/// Whether a file that was opened is the one at this path: only its path tells, on systems without inodes.
+/// Whether an open file is the file at this path; on systems without inodes only the path can be compared.
 #[cfg(not(unix))]
 fn is_at(_opened: &std::fs::File, path: &Path) -> bool {
     path.canonicalize().is_ok_and(|found| found == path)
@@ -117,7 +117,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder `case` with a file, one beside it, and links from the first into the second.
+    /// A folder `case` with a file, a second folder next to it, and links from the first into the second.
     #[cfg(unix)]
     fn folders() -> TempDir {
         use std::os::unix::fs::symlink;
@@ -167,7 +167,7 @@ mod tests {
             );
             assert_eq!(allowed.read(name).unwrap(), b"shared/x.csv", "{name}");
         }
-        // A folder whose name begins in the same way is another one.
+        // A folder with a name that only begins the same way is a different folder.
         assert!(allowed.read("../case-2/y.csv").unwrap_err().contains("outside"));
         for name in [
             "loop",
@@ -182,7 +182,7 @@ mod tests {
         assert!(ReadableFolders::new(&case, "the case", &[all.path().join("none")]).is_err());
     }
 
-    /// A file is refused whose folder becomes a link to another folder between finding and opening the file.
+    /// A file is refused if its folder becomes a link to another folder between resolving and opening.
     #[cfg(unix)]
     #[test]
     fn a_file_that_was_replaced_by_a_link_is_noticed() {
@@ -195,7 +195,7 @@ mod tests {
         std::os::unix::fs::symlink("../shared", &inner).unwrap();
         let opened = std::fs::File::open(&found).unwrap();
         assert!(!is_at(&opened, &found));
-        // And the link goes again.
+        // The link is removed again.
         std::fs::remove_file(&inner).unwrap();
         std::fs::rename(all.path().join("case/before"), &inner).unwrap();
         assert!(!is_at(&opened, &found));

@@ -1,7 +1,8 @@
-//! Who is answered: pages that this server itself has given to a browser on this machine.
+//! The check of who sends a request: only pages that this server itself has sent to a browser on this machine
+//! are answered.
 //!
-//! A page of another site may send requests to 127.0.0.1 as well. Its browser then tells its origin, which is
-//! refused; and a name of another site that was made to stand for 127.0.0.1 is seen in the header `Host`.
+//! Pages of other sites can send requests to 127.0.0.1 too. The browser then reports their origin, which is
+//! refused. A foreign host name that resolves to 127.0.0.1 is detected by the header `Host`.
 
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
@@ -9,8 +10,8 @@ use axum::http::{StatusCode, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// Headers of every answer: the page takes files from this server alone, and no other site shows the page or
-/// reads it.
+/// Headers of every answer: the page loads files only from this server, and no other site can embed or read
+/// it.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -30,7 +31,7 @@ const HEADERS: [(HeaderName, &str); 6] = [
     ),
 ];
 
-/// Answers requests that come from this machine for this server, and refuses others.
+/// Answers requests from this machine to this server, and refuses all others.
 pub(crate) async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
     let mut response = match refusal(request.headers(), request.uri(), port) {
         Some(refusal) => refusal.into_response(),
@@ -44,7 +45,7 @@ pub(crate) async fn guard(State(port): State<u16>, request: Request, next: Next)
     response
 }
 
-/// Tells whether a `Host` header names this machine with the port of the server.
+/// Whether a `Host` header names this machine and the port of the server.
 fn is_this_server(host: &str, port: u16) -> bool {
     let names = ["127.0.0.1", "localhost", "[::1]"];
     names.iter().any(|name| host == format!("{name}:{port}"))

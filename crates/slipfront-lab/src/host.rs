@@ -1,4 +1,4 @@
-//! The host of a session: its page behind a connection, threads and folders of this machine.
+//! The host of a session: the page behind a connection, and the threads and folders of this machine.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,12 +12,12 @@ use crate::outbox::Outbox;
 use crate::saves::Saves;
 use crate::{presets, replay};
 
-/// Start, folders, threads, presets and running saves, which all sessions share.
+/// Start, folders, threads, presets and running saves, shared by all sessions.
 pub(crate) struct Setting {
     pub(crate) start: Start,
     /// The folder of results.
     pub(crate) results: PathBuf,
-    /// Folders other than that of the case in which files that cases name may lie.
+    /// Folders, besides the folder of the case, in which files that cases name may lie.
     pub(crate) allow_files: Vec<PathBuf>,
     pub(crate) saves: Arc<Saves>,
     pub(crate) threads: usize,
@@ -28,7 +28,7 @@ pub(crate) struct Setting {
 pub(crate) struct PageHost {
     pub(crate) setting: Arc<Setting>,
     pub(crate) outbox: Arc<Outbox>,
-    /// A sender that every thread holds as long as it works.
+    /// A sender that every thread holds while it works.
     pub(crate) working: Sender<()>,
 }
 
@@ -57,7 +57,7 @@ impl Host for PageHost {
         self.setting.threads
     }
 
-    /// One, which has all threads.
+    /// One worker, which uses all threads.
     fn workers(&self) -> usize {
         1
     }

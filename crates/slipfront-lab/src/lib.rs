@@ -1,13 +1,13 @@
-//! The laboratory: a page in the browser on which a surface slides while a person looks at it and changes it.
+//! The laboratory: a page in the browser on which a surface slides while the user watches and changes it.
 //!
 //! ```text
 //! browser  <- pictures, curves, numbers ---  server  <- Outbox ---  session (one thread per page)
 //!          --- requests ->                           --- channel ->
 //! ```
 //!
-//! The server answers on 127.0.0.1 alone; every page has a session of its own, with its own run, which works
-//! only while somebody looks. The session and what it and its page say to each other are slipfront-session's;
-//! the page itself stands in `web/`, without a build step.
+//! The server answers only on 127.0.0.1. Every page has its own session with its own run, which works only
+//! while the page is visible. slipfront-session holds the session and the messages between it and its page;
+//! the page itself is in `web/`, without a build step.
 
 mod assets;
 mod background;

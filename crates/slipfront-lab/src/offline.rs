@@ -1,4 +1,4 @@
-//! A session without server and page, which is handed messages one by one: for fuzzing.
+//! A session without server and page, which gets messages one by one: for fuzzing.
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -14,10 +14,10 @@ use crate::outbox::Outbox;
 use crate::presets;
 use crate::saves::Saves;
 
-/// Longest time for which a session works on a message.
+/// Longest time that a session works on a message.
 const MESSAGE_TIME: Duration = Duration::from_millis(20);
 
-/// A session that answers in the thread of whoever asks.
+/// A session that answers in the calling thread.
 pub struct OfflineSession {
     session: Session,
     setting: Arc<Setting>,
@@ -27,7 +27,7 @@ pub struct OfflineSession {
 }
 
 impl OfflineSession {
-    /// A session whose runs are saved in this folder; no case is open.
+    /// Begins a session that saves runs in this folder; no case is open.
     pub fn new(results: PathBuf) -> Self {
         let (working, all_work) = channel();
         let outbox = Arc::new(Outbox::default());
@@ -54,10 +54,10 @@ impl OfflineSession {
         }
     }
 
-    /// Handles a message of the page, and does what is due at once; gives the replies, each as JSON.
+    /// Handles a message of the page, and does what is due at once. Returns the replies, each as JSON.
     ///
     /// # Errors
-    /// A sentence, if it is no request: a page would lose its connection.
+    /// A sentence, if the message is not a request: a page would lose its connection.
     pub fn handle(&mut self, message: &str) -> Result<Vec<String>, String> {
         self.session.handle(Message::parse(message)?);
         let until = self.began.elapsed() + MESSAGE_TIME;
@@ -70,7 +70,7 @@ impl OfflineSession {
         }
     }
 
-    /// Ends the session and all that it has begun.
+    /// Ends the session and all work that it has begun.
     pub fn end(self) {
         let Self {
             session,
@@ -80,7 +80,7 @@ impl OfflineSession {
         } = self;
         setting.saves.end();
         drop(session);
-        // It never gets anything: it ends when the last thread that works has ended.
+        // Nothing is ever sent: the channel closes when the last working thread has ended.
         let _ = all_work.recv();
     }
 }
@@ -109,7 +109,7 @@ mod tests {
             session, all_work, ..
         } = offline;
         drop(session);
-        // It gets nothing, and ends when the last thread that works has ended.
+        // Nothing is sent: the channel closes when the last working thread has ended.
         let ended = all_work.recv_timeout(Duration::from_secs(5));
         assert_eq!(ended, Err(RecvTimeoutError::Disconnected));
     }

@@ -1,4 +1,4 @@
-//! The case with which the laboratory is started.
+//! The case with which the laboratory starts.
 
 use std::path::{Path, PathBuf};
 
@@ -16,20 +16,20 @@ pub(crate) enum StartSource {
     /// The preset with which the page opens by default.
     #[default]
     Preset,
-    /// A case of the user, given as a document.
+    /// A case of the user, as a document.
     Case(Box<Document>),
     /// The folder of a recorded run.
     Folder(PathBuf),
 }
 
-/// Why the laboratory cannot be started with a case: a sentence.
+/// The reason why the laboratory cannot start with a case: a sentence.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct OpeningError(String);
 
 impl Start {
-    /// The case of a file, or of the folder of a complete run, with the files that it names in its folder or
-    /// in one that is allowed.
+    /// Reads the case of a file, or of the folder of a complete run, with the files that it names in its own
+    /// folder or in an allowed one.
     ///
     /// # Errors
     /// When there is no such case or run, or it cannot be shown, or names a file elsewhere.

@@ -1,4 +1,4 @@
-//! Messages of a session that wait for its page: replies in their order, and only the newest picture.
+//! Messages of a session that wait for its page: all replies in order, but only the newest picture.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -6,20 +6,19 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use axum::body::Bytes;
 use tokio::sync::Notify;
 
-/// Replies that may wait before the run does.
+/// Number of waiting replies from which on the run waits.
 const MAX_WAITING_REPLIES: usize = 64;
 
-/// Bytes of replies that may wait before the next request does: those to a page that does not read them do
-/// not fill the memory.
+/// Bytes of waiting replies from which on the next request waits: replies to a page that does not read them
+/// must not fill the memory.
 const MAX_WAITING_BYTES: usize = 4 << 20;
 
-/// Messages that wait for a page. The session and the work it has begun fill the outbox, the connection
-/// empties it.
+/// Messages that wait for a page. The session and its jobs fill the outbox, and the connection empties it.
 #[derive(Default)]
 pub(crate) struct Outbox {
     waiting: Mutex<Queue>,
     filled: Notify,
-    /// Tells that there is room again.
+    /// Signals that there is room again.
     taken: Condvar,
 }
 
@@ -40,11 +39,11 @@ pub(crate) enum Outgoing {
 
 impl Outbox {
     fn waiting(&self) -> MutexGuard<'_, Queue> {
-        // Nothing panics while it is locked; what waits is whole in any case.
+        // Nothing panics while it is locked, and waiting messages are complete in any case.
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds a reply, which is JSON, to those that wait.
+    /// Adds a reply, which is JSON, to the waiting ones.
     pub(crate) fn reply(&self, reply: String) {
         self.waiting().replies.push_back(reply);
         self.filled.notify_one();
@@ -64,30 +63,30 @@ impl Outbox {
         self.waiting().closed
     }
 
-    /// Lets nobody wait for a page that is gone.
+    /// Marks the page as gone, so that nobody waits for it.
     pub(crate) fn close(&self) {
         self.waiting().closed = true;
         self.taken.notify_all();
     }
 
-    /// Puts a picture in the place of one that has not been sent yet.
+    /// Sets the next picture, and replaces one that has not been sent yet.
     pub(crate) fn picture(&self, picture: Bytes) {
         self.waiting().picture = Some(picture);
         self.filled.notify_one();
     }
 
-    /// Puts a kymograph in the place of one that has not been sent yet.
+    /// Sets the next kymograph, and replaces one that has not been sent yet.
     pub(crate) fn kymograph(&self, kymograph: Bytes) {
         self.waiting().kymograph = Some(kymograph);
         self.filled.notify_one();
     }
 
-    /// Whether the page is so far behind that it is given no more than answers.
+    /// Whether the page is so far behind that it gets only answers.
     pub(crate) fn is_full(&self) -> bool {
         self.waiting().replies.len() >= MAX_WAITING_REPLIES
     }
 
-    /// Takes all replies that wait; pictures are left out.
+    /// Takes all waiting replies, but no pictures.
     pub(crate) fn take_replies(&self) -> Vec<String> {
         self.waiting().replies.drain(..).collect()
     }
@@ -131,7 +130,7 @@ mod tests {
         let (done, replied) = channel();
         let filled = Arc::clone(&outbox);
         let session = thread::spawn(move || {
-            // Two are more than may wait.
+            // Two of these are more than may wait.
             let sentence = "x".repeat(MAX_WAITING_BYTES / 2);
             for number in 0..6 {
                 filled.wait_for_room();
@@ -141,7 +140,7 @@ mod tests {
         });
         let next = || replied.recv_timeout(TIMEOUT).unwrap();
         assert_eq!([next(), next()], [0, 1]);
-        // Nothing tells that somebody waits: a session that does not would be done by now.
+        // Waiting sends no signal; a session that did not wait would be done by now.
         thread::sleep(Duration::from_millis(50));
         assert!(replied.try_recv().is_err());
         assert!(outbox.take().is_some());

@@ -1,4 +1,4 @@
-//! Cases to choose from: those of the folder `cases/`, and those behind the figures of the paper.
+//! Cases to choose from: the cases of the folder `cases/`, and the cases of the paper's figures.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ const PICTURES: &str = "pictures.json";
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
-/// A file of the folder that is no case.
+/// The text of a file of the folder that is not a case.
 fn text_of(name: &str) -> &'static str {
     CASES
         .get_file(name)
@@ -19,8 +19,8 @@ fn text_of(name: &str) -> &'static str {
         .unwrap_or_default()
 }
 
-/// The groups of the list with the cases of the folder in them, in their order. The cases of the paper are
-/// another group.
+/// The groups of the list, in order, each with the cases of the folder that belong to it. The cases of the
+/// paper are another group.
 fn groups() -> impl Iterator<Item = (&'static str, &'static str)> {
     let groups = text_of("groups.txt")
         .lines()
@@ -61,8 +61,8 @@ pub(crate) fn all() -> Presets {
     Presets(all)
 }
 
-/// A case of the folder, with the files beside it that it names. It is not parsed before it is chosen: a text
-/// in quotes is taken for the name of a file if there is such a file.
+/// A case of the folder, with the files next to it that it names. The case is parsed only when it is chosen.
+/// Until then, any quoted text that is the name of an existing file counts as that file.
 fn case(name: &str, text: &str) -> Preset {
     let files = CASES.files().filter_map(|file| {
         let name = file.path().to_str()?;
@@ -103,7 +103,7 @@ fn figure(name: &str, text: &str) -> Preset {
 fn title(text: &str) -> String {
     let lines = text.lines().map_while(|line| line.strip_prefix('#'));
     let comment = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-    // "Fig. 3" and "Eq. 1" go on.
+    // A period after "Fig" or "Eq" does not end the sentence.
     let ends = comment.match_indices(". ").map(|(end, _)| &comment[..end]);
     let is_abbreviated =
         |part: &&str| part.ends_with("Fig") || part.ends_with("Figs") || part.ends_with("Eq");
@@ -111,10 +111,10 @@ fn title(text: &str) -> String {
     sentence.unwrap_or(&comment).trim_end_matches('.').to_owned()
 }
 
-/// The case of a file of the paper: as a whole, or the base of its study. The run goes on to its end, to be
-/// seen.
+/// The case of a file of the paper: the whole case, or the base of its study. The run continues to its full
+/// duration, so that it can be watched.
 fn case_of_study(text: &str) -> String {
-    // What is wrong with a case is told when it is chosen.
+    // Errors of a case are reported when it is chosen.
     let Ok(mut table) = text.parse::<Table>() else {
         return text.to_owned();
     };
@@ -139,11 +139,11 @@ mod tests {
 
     /// Pixels along each side of the small picture of a case.
     const SIZE: usize = 32;
-    /// Values of pixels without contact and without a block; between them are static coefficients.
+    /// Pixel values without contact and without a block; the values between them are static coefficients.
     const NO_CONTACT: u8 = 0;
     const NO_BLOCK: u8 = 15;
 
-    /// The small picture of a case from its upper left corner on, half a byte for each pixel: the static
+    /// The small picture of a case from its upper left corner on, half a byte per pixel: the static
     /// coefficient over its mean, from 0.7 to 1.3.
     fn small_picture(case: &Case) -> String {
         let (lattice, surface) = (&case.model.lattice, &case.model.surface);

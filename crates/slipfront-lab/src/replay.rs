@@ -1,4 +1,4 @@
-//! Run folders on the disk: their names, and their files for a session.
+//! Folders of runs on the disk: their names, and their files for a session.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use slipfront_session::{MAX_FILES, OpenedCase, is_plain_name, recorded_run};
 
 use crate::files::ReadableFolders;
 
-/// Largest file of fields whose snapshots are shown, in bytes.
+/// Largest file of fields from which snapshots are shown, in bytes.
 const MAX_FIELDS: u64 = 32 << 20;
 
 /// Names of the complete runs among the results.
@@ -23,10 +23,10 @@ pub(crate) fn folders(results: &Path) -> Vec<String> {
     names
 }
 
-/// The folder of a run of this name.
+/// Folder of the run with this name.
 ///
 /// # Errors
-/// A sentence, if the name is more than a name, or leads out of the results and of what is `allowed`.
+/// A sentence, if the name is not a plain name, or leads out of the results and the `allowed` folders.
 pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<PathBuf, String> {
     if !is_plain_name(name) {
         return Err(format!(
@@ -41,8 +41,8 @@ pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<
 /// Reads a complete run.
 ///
 /// # Errors
-/// A sentence, if it is none, or was changed since it was written, or one of its files lies elsewhere and not
-/// where it is `allowed`.
+/// A sentence, if it is not a complete run, or was changed since it was written, or one of its files lies
+/// outside the folder and the `allowed` folders.
 pub(crate) fn read(folder: &Path, allowed: &[PathBuf]) -> Result<OpenedCase, String> {
     let reach = ReadableFolders::new(folder, "the run", allowed)?;
     let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());

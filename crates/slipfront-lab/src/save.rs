@@ -1,4 +1,4 @@
-//! A run from rest into a folder of its own, with the bytes that `slipfront run` writes.
+//! Saves a run from rest into its own folder, with the same bytes as `slipfront run`.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -17,13 +17,13 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 use slipfront_session::{Document, is_plain_name};
 
-/// Time from one report of the progress to the next.
+/// Time between two progress reports.
 const REPORT_INTERVAL: Duration = Duration::from_millis(200);
 
-/// The folder of this name among the results.
+/// The folder for this name in the results.
 ///
 /// # Errors
-/// A sentence, if the name is more than a name, or is taken.
+/// A sentence, if the name is not a plain name, or is taken.
 pub(crate) fn folder(results: &Path, name: &str) -> Result<PathBuf, String> {
     if !is_plain_name(name) {
         return Err(format!(
@@ -42,7 +42,7 @@ fn is_taken(folder: &Path) -> String {
     format!("{} exists already: take another name", display_path(folder))
 }
 
-/// Makes a new folder. Fails if anything has that name already, even a link to an empty folder.
+/// Makes a new folder. Fails if the name is taken, even by a link to an empty folder.
 fn make_folder(path: &Path) -> Result<(), String> {
     let above = folder_of(path);
     make_folders(above)
@@ -54,11 +54,11 @@ fn make_folder(path: &Path) -> Result<(), String> {
         })
 }
 
-/// Runs the case to its end and writes it into a new folder; reports now and then the share that is done, and
-/// looks whether it shall stop. Gives whether the run was completed.
+/// Runs the case to its end and writes it into a new folder. From time to time, reports the completed
+/// fraction and checks whether to stop. Returns whether the run was completed.
 ///
 /// # Errors
-/// A sentence; then there is no folder.
+/// A sentence; in that case there is no folder.
 pub(crate) fn save(
     document: &Document,
     out: &Path,
@@ -66,7 +66,7 @@ pub(crate) fn save(
     stop: &AtomicBool,
     report_progress: impl Fn(f64),
 ) -> Result<bool, String> {
-    /// Any error as its sentence.
+    /// Converts any error to its message.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
     }
@@ -114,10 +114,10 @@ pub(crate) fn save(
     Ok(true)
 }
 
-/// Removes the folder that was made for a run that is not completed.
+/// Removes the folder of a run that was not completed.
 fn discard_folder(folder: RunFolder) {
     let path = folder.path().to_owned();
     folder.discard();
-    // One in which somebody else has put something stays.
+    // The folder stays if another process has put something into it.
     let _ = std::fs::remove_dir(path);
 }

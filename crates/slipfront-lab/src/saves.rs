@@ -1,5 +1,5 @@
-//! Runs that are being saved. They belong to the server and not to a page: one that is closed or loaded again
-//! ends none of them.
+//! Runs that are being saved. They belong to the server and not to a page: closing or reloading a page ends
+//! none of them.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -14,10 +14,10 @@ use slipfront_session::{Document, refused, saved, saving};
 use crate::outbox::Outbox;
 use crate::{replay, save};
 
-/// Most runs that are saved at once.
+/// Largest number of runs that are saved at once.
 const MAX_SAVES: usize = 4;
 
-/// All runs that are being saved, and the pages that hear of them.
+/// All runs that are being saved, and the pages that are notified of them.
 pub(crate) struct Saves {
     list: Mutex<ActiveSaves>,
     /// Prints a sentence in the terminal.
@@ -28,7 +28,7 @@ pub(crate) struct Saves {
 struct ActiveSaves {
     under_way: Vec<ActiveSave>,
     pages: Vec<Weak<Outbox>>,
-    /// Whether the server ends.
+    /// Whether the server is ending.
     ends: bool,
 }
 
@@ -48,7 +48,7 @@ impl ActiveSaves {
         self.pages.iter().filter_map(Weak::upgrade).collect()
     }
 
-    /// Sends all pages the list of runs that are being saved.
+    /// Sends the list of runs that are being saved to all pages.
     fn notify_pages(&mut self) {
         for page in self.pages() {
             page.reply(self.reply());
@@ -61,7 +61,7 @@ impl ActiveSaves {
 }
 
 impl Saves {
-    /// No run is being saved yet.
+    /// Starts with no run being saved.
     pub(crate) fn new(print: fn(&str)) -> Self {
         Self {
             list: Mutex::default(),
@@ -74,18 +74,18 @@ impl Saves {
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets a page hear of all saves from now on, and tells it of those under way.
+    /// Notifies a page of all saves from now on, beginning with those under way.
     pub(crate) fn add_page(&self, page: &Arc<Outbox>) {
         let mut list = self.list();
         list.pages.push(Arc::downgrade(page));
         page.reply(list.reply());
     }
 
-    /// Begins to save a run of a case, in a thread that holds `working`, into a folder of the results of this
-    /// name.
+    /// Begins to save a run of a case into the folder of this name in the results, in a thread that holds
+    /// `working`.
     ///
     /// # Errors
-    /// A sentence, if the name is taken or none, or too many runs are being saved.
+    /// A sentence, if the name is taken or invalid, or too many runs are being saved.
     pub(crate) fn begin(
         self: &Arc<Self>,
         mut document: Document,
@@ -134,7 +134,7 @@ impl Saves {
         Ok(())
     }
 
-    /// Notes the share of a run that is done, and sends it to all pages.
+    /// Updates the completed fraction of a run, and sends it to all pages.
     fn advance(&self, name: &str, share: f64) {
         let mut list = self.list();
         if let Some(one) = list.find(name) {
@@ -143,7 +143,7 @@ impl Saves {
         list.notify_pages();
     }
 
-    /// Tells terminal and pages how the saving of a run has ended: whether it is there, or why not.
+    /// Reports to the terminal and all pages that a run is saved, or why it is not.
     fn finish(&self, name: &str, out: &Path, outcome: &Result<bool, String>) {
         let folder = display_path(out);
         let (share, ends) = {
@@ -163,7 +163,7 @@ impl Saves {
             ),
             Err(error) => format!("{folder} was not saved: {error}"),
         };
-        // Not while the list is locked, since a terminal may hold up what is printed.
+        // Prints without holding the lock, because a terminal may block output.
         (self.print)(&sentence);
         let reply = match outcome {
             Ok(true) => {
@@ -188,7 +188,7 @@ impl Saves {
         }
     }
 
-    /// Stops saving all runs, since the server ends.
+    /// Stops saving all runs, because the server ends.
     pub(crate) fn end(&self) {
         let mut list = self.list();
         list.ends = true;

@@ -1,4 +1,4 @@
-//! The loop of a session, in a thread of its own.
+//! The loop of a session, in its own thread.
 
 use std::iter::once;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,7 +10,7 @@ use slipfront_session::{Host, Message, Session, failed};
 
 use crate::outbox::Outbox;
 
-/// Serves a page until it is gone. A defect of the simulation ends its run, not the session.
+/// Serves a page until it is gone. A panic of the simulation ends its run, not the session.
 pub(crate) fn serve(host: &Rc<dyn Host>, outbox: &Outbox, messages: &Receiver<Message>) {
     loop {
         let converse = || converse(Session::new(Rc::clone(host)), outbox, messages);
@@ -38,7 +38,7 @@ fn converse(mut session: Session, outbox: &Outbox, messages: &Receiver<Message>)
                     if outbox.is_closed() {
                         return;
                     }
-                    // A page that reads no replies leaves none.
+                    // A page that does not read its replies makes its next requests wait.
                     outbox.wait_for_room();
                     session.handle(message);
                 }
@@ -64,7 +64,7 @@ mod tests {
     use crate::presets;
     use crate::saves::Saves;
 
-    /// A host with a defect: it has a case that it fails to give.
+    /// A host with a defect: it panics when asked for a certain preset.
     struct DefectiveHost(PageHost);
 
     impl Host for DefectiveHost {
@@ -122,7 +122,7 @@ mod tests {
         }
     }
 
-    /// The next reply of this name.
+    /// Waits for the next reply of this name.
     fn wait_for(outbox: &Outbox, runtime: &tokio::runtime::Runtime, name: &str) {
         let is = format!("{{\"is\":\"{name}\"");
         runtime.block_on(async {

@@ -1,5 +1,4 @@
-//! The server: files of the page over HTTP, and a session for every page over a WebSocket, on 127.0.0.1
-//! alone.
+//! The server: files of the page over HTTP, and a session for every page over a WebSocket, only on 127.0.0.1.
 
 use std::future::Future;
 use std::io;
@@ -23,20 +22,20 @@ use crate::start_page::{PrivateFile, StartPage};
 use crate::token::Token;
 use crate::{assets, connections, guard, presets, socket};
 
-/// How long runs that are being saved have to take their unfinished folders away when the server ends.
+/// Time that runs being saved have to remove their unfinished folders when the server ends.
 const WORK_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// How the laboratory is started.
+/// Options with which the laboratory starts.
 pub struct ServerOptions {
     /// The case or run that the page shows first.
     pub start: Start,
-    /// The folder of results: where runs are saved, and of which runs can be shown again.
+    /// The folder of results: where runs are saved, and where saved runs are found again.
     pub results: PathBuf,
-    /// Folders other than that of the case in which files that cases name may lie.
+    /// Folders, besides the folder of the case, in which files that cases name may lie.
     pub allow_files: Vec<PathBuf>,
-    /// Prints a sentence in the terminal: what became of a run that was saved.
+    /// Prints a sentence in the terminal: the outcome of saving a run.
     pub print: fn(&str),
-    /// The port; 0 for any that is free.
+    /// The port; 0 for any free port.
     pub port: u16,
     /// Threads of a run.
     pub threads: usize,
@@ -49,9 +48,9 @@ pub struct ServerOptions {
 pub struct Patience {
     /// Time to wait for the next header of a connection.
     pub header: Duration,
-    /// Time to wait for a page that is to receive a message.
+    /// Time to wait for a page to receive a message.
     pub message: Duration,
-    /// Time to wait for all pages together, once they are told that the server ends.
+    /// Time to wait for all pages together after they were notified that the server ends.
     pub end: Duration,
 }
 
@@ -65,7 +64,7 @@ impl Default for Patience {
     }
 }
 
-/// A laboratory that can be reached, and is not served yet.
+/// A laboratory that is bound to a port, but does not serve yet.
 pub struct Laboratory {
     listener: TcpListener,
     port: u16,
@@ -76,7 +75,7 @@ pub struct Laboratory {
 }
 
 impl Laboratory {
-    /// Takes a port of this machine.
+    /// Binds a port of this machine.
     ///
     /// # Errors
     /// When the port is taken, or the system gives no random numbers.
@@ -100,8 +99,8 @@ impl Laboratory {
         })
     }
 
-    /// The address of the page, with the token that opens it; `link` is what follows `#case=` in the link of
-    /// another page.
+    /// The address of the page, with the token that opens it; `link` is the part after `#case=` of a link
+    /// from another page.
     pub fn address(&self, link: Option<&str>) -> String {
         let case = link.map_or(String::new(), |link| format!("&case={link}"));
         format!(
@@ -111,8 +110,8 @@ impl Laboratory {
         )
     }
 
-    /// Writes a page that leads to the address, and which only this user can read; its path may be told to
-    /// everybody. It is removed once a page has connected, or when the server ends.
+    /// Writes a page that leads to the address, and that only this user can read; its path need not be
+    /// secret. It is removed once a page has connected, or when the server ends.
     ///
     /// # Errors
     /// When the system refuses to write.
@@ -128,8 +127,8 @@ impl Laboratory {
         PrivateFile::write(".txt", &format!("{}\n", self.address(link)))
     }
 
-    /// Answers until `stop` is done. Then pages are told, whatever is open is closed, and what is being saved
-    /// takes its unfinished folder away; neither takes longer than it is given.
+    /// Serves until `stop` is done. Then pages are notified, open connections are closed, and runs being
+    /// saved remove their unfinished folders, each within its time limit.
     ///
     /// # Errors
     /// When the system refuses what a server needs.
@@ -177,14 +176,14 @@ impl Laboratory {
             }
             start_page.close();
             let _ = end.send(true);
-            // When all places are free, all pages are gone.
+            // All permits are free when all pages are gone.
             let _ = timeout(self.patience.end, pages.acquire_many(MAX_PAGES as u32)).await;
             Ok(())
         })
     }
 }
 
-/// Waits until all threads have ended, for [`WORK_TIMEOUT`] at most.
+/// Waits until all threads have ended, for at most [`WORK_TIMEOUT`].
 fn wait_for_threads(all_work: &Receiver<()>) {
     let _ = all_work.recv_timeout(WORK_TIMEOUT);
 }

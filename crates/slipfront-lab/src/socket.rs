@@ -1,4 +1,4 @@
-//! The connection with one page.
+//! The connection to one page.
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -27,19 +27,19 @@ use crate::token::{Caller, Token};
 /// The subprotocol of this version.
 const PROTOCOL: &str = "slipfront.lab.v2";
 
-/// Most pages at once.
+/// Largest number of pages at once.
 pub(crate) const MAX_PAGES: usize = 4;
 
-/// Requests that wait for a session that is busy. Each may have the length of [`MAX_MESSAGE`].
+/// Number of requests that may wait for a busy session. Each may have the length of [`MAX_MESSAGE`].
 const MAX_WAITING_REQUESTS: usize = 8;
 
-/// Time between two attempts to hand a request to a session that is busy.
+/// Time between two attempts to pass a request to a busy session.
 const RETRY_INTERVAL: Duration = Duration::from_millis(5);
 
-/// Time between two pings to a page whose requests wait for a busy session.
+/// Time between two pings to a page that has requests waiting for a busy session.
 const PING_INTERVAL: Duration = Duration::from_millis(300);
 
-/// Setting, token, start page and limits, which all connections share.
+/// Setting, token, start page and limits, shared by all connections.
 #[derive(Clone)]
 pub(crate) struct Shared {
     pub(crate) setting: Arc<Setting>,
@@ -48,13 +48,13 @@ pub(crate) struct Shared {
     pub(crate) pages: Arc<Semaphore>,
     /// A flag that turns true when the server ends.
     pub(crate) ends: watch::Receiver<bool>,
-    /// A sender that every thread holds as long as it works.
+    /// A sender that every thread holds while it works.
     pub(crate) working: Sender<()>,
     /// How long a page may take to receive a message.
     pub(crate) message_timeout: Duration,
 }
 
-/// Proves to a page that this is the server whose token it knows, before the page proves anything.
+/// Proves to a page that this server knows the same token, before the page proves anything.
 pub(crate) async fn prove(
     State(shared): State<Shared>,
     Path((tab, nonce)): Path<(String, String)>,
@@ -63,7 +63,7 @@ pub(crate) async fn prove(
     Ok(shared.token.proof_of_server(caller))
 }
 
-/// Begins a session with a page that knows the token. Browsers send tab, nonce and proof of a page as
+/// Begins a session with a page that knows the token. Browsers send the tab, nonce and proof of a page as
 /// subprotocols.
 pub(crate) async fn connect(
     State(shared): State<Shared>,
@@ -88,7 +88,8 @@ pub(crate) async fn connect(
                 socket,
                 timeout: shared.message_timeout,
             };
-            // On this connection too, since another server may have taken the port meanwhile.
+            // The server proves itself on this connection too: another server may have taken the port in the
+            // meantime.
             let proof = json!({ "is": "proof", "proof": proof });
             if to_page
                 .send(Message::Text(proof.to_string().into()))
@@ -130,7 +131,7 @@ async fn serve(mut to_page: ToPage, shared: &Shared) {
     outbox.close();
 }
 
-/// Tells a page what it can choose from, and serves it until it is gone.
+/// Sends a page what it can choose from, and serves it until it is gone.
 fn begin(host: PageHost, waiting: &Receiver<Request>) {
     let (setting, outbox) = (&host.setting, Arc::clone(&host.outbox));
     let results = &setting.results;
@@ -144,14 +145,14 @@ fn begin(host: PageHost, waiting: &Receiver<Request>) {
     serve::serve(&host, &outbox, waiting);
 }
 
-/// Passes on what page and session have for each other, until one of them is gone or the server ends.
+/// Passes messages between page and session, until one of them is gone or the server ends.
 async fn forward(
     to_page: &mut ToPage,
     outbox: &Outbox,
     requests: &SyncSender<Request>,
     mut ends: watch::Receiver<bool>,
 ) {
-    // For a session that is busy.
+    // A request that waits for a busy session.
     let mut kept = None;
     let mut asked = Instant::now();
     loop {
@@ -184,8 +185,8 @@ async fn forward(
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
             () = sleep(RETRY_INTERVAL), if kept.is_some() => {
-                // Nothing is read from the page meanwhile: that it has gone shows only when something is
-                // sent.
+                // Nothing is read from the page while a request waits: only sending shows that the page is
+                // gone.
                 if asked.elapsed() > PING_INTERVAL {
                     asked = Instant::now();
                     if to_page.send(Message::Ping(Bytes::new())).await.is_none() {
@@ -200,19 +201,19 @@ async fn forward(
     }
 }
 
-/// A page, and how long it may take to receive a message.
+/// Connection to a page, and the time that the page may take to receive a message.
 struct ToPage {
     socket: WebSocket,
     timeout: Duration,
 }
 
 impl ToPage {
-    /// Sends a message; none to a page that is gone, or does not read.
+    /// Sends a message; returns none if the page is gone or does not read.
     async fn send(&mut self, message: Message) -> Option<()> {
         timeout(self.timeout, self.socket.send(message)).await.ok()?.ok()
     }
 
-    /// Closes the connection with a reason, for which there is room for 123 bytes.
+    /// Closes the connection with a reason, which may have 123 bytes.
     async fn close(&mut self, code: u16, sentence: &str) {
         let reason: String = sentence.chars().filter(char::is_ascii).take(120).collect();
         let frame = CloseFrame {

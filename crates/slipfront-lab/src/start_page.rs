@@ -1,8 +1,8 @@
-//! Files that hold the address of the laboratory, and which only their owner can read.
+//! Files with the address of the laboratory that only their owner can read.
 //!
-//! Every user of the machine can read the arguments with which a browser is started, so that they must not
-//! hold the token of the address. They name the start page, which leads to the address, and which is gone
-//! once a page has connected. A log that others can read names a file with the address.
+//! Every user of the machine can read the arguments of a browser process, so they must not contain the token
+//! of the address. Instead they name the start page, a file that leads to the address and is removed once a
+//! page has connected. A log that others can read names a file with the address.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use tempfile::{Builder, NamedTempFile};
 pub(crate) struct StartPage(Arc<Mutex<Option<PrivateFile>>>);
 
 impl StartPage {
-    /// Writes the page that leads to this address; gives its path.
+    /// Writes the page that leads to this address; returns its path.
     ///
     /// # Errors
     /// When the system refuses to write.
@@ -37,21 +37,21 @@ impl StartPage {
     }
 }
 
-/// A file in the folder of temporary files of this process, for this user alone. Dropping the value removes
-/// the file.
+/// A file in this process's folder of temporary files that only this user can read. Dropping the value
+/// removes the file.
 pub struct PrivateFile {
     file: NamedTempFile,
     _folder: Arc<TemporaryFolder>,
 }
 
 impl PrivateFile {
-    /// Writes a file whose name has this ending.
+    /// Writes a file with a name that ends in `ending`.
     ///
     /// # Errors
     /// When the system refuses to write.
     pub(crate) fn write(ending: &str, text: &str) -> io::Result<Self> {
         let folder = TemporaryFolder::shared()?;
-        // Such files are for their owner alone.
+        // The builder makes files that only their owner can read.
         let mut file = Builder::new().suffix(ending).tempfile_in(folder.path())?;
         file.write_all(text.as_bytes())?;
         Ok(Self {
@@ -60,13 +60,13 @@ impl PrivateFile {
         })
     }
 
-    /// Path of the file, which may be told to everybody.
+    /// Path of the file, which need not be secret.
     pub fn path(&self) -> &Path {
         self.file.path()
     }
 }
 
-/// The start page: it needs no script, and sends servers no address of its own.
+/// The start page: it needs no script, and reveals its own address to no server.
 fn html(address: &str) -> String {
     let address = address
         .replace('&', "&amp;")

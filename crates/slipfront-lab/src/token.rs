@@ -1,10 +1,10 @@
-//! The token of the address, and how a page and the server prove to each other that they know it without
-//! telling it.
+//! The token of the address, and how page and server prove to each other that they know it without sending
+//! it.
 //!
-//! Whoever listens on the port once the server has ended may be another user, to whom a page that tries to
-//! connect must give nothing. So a tab draws a name, keeps the key that the token gives for this name, and
-//! forgets the token. For every connection it draws a number, the nonce; the server proves with it that it
-//! knows the key, and then the page does.
+//! After the server has ended, another user may listen on the port, and a page that tries to connect must
+//! reveal nothing to them. A tab therefore draws a name, keeps the key derived from the token for this name,
+//! and forgets the token. For every connection it draws a random number, the nonce. First the server proves
+//! with the nonce that it knows the key, then the page does.
 
 use std::io;
 
@@ -22,7 +22,7 @@ pub(crate) struct Caller<'a> {
 }
 
 impl<'a> Caller<'a> {
-    /// A caller, or none if tab or nonce is not one that a page draws.
+    /// Returns a caller, or none if tab or nonce does not have the form that a page draws.
     pub(crate) fn new(tab: &'a str, nonce: &'a str) -> Option<Self> {
         let is_drawn = |text: &str| text.len() == 32 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
         (is_drawn(tab) && is_drawn(nonce)).then_some(Self { tab, nonce })
@@ -44,13 +44,13 @@ impl Token {
         &self.0
     }
 
-    /// Proof of the server to a page, in hexadecimal digits: the code of "server NONCE", which only those who
-    /// know the token can compute.
+    /// Proof of the server for a page, in hexadecimal digits: the code of "server NONCE", which only those
+    /// who know the token can compute.
     pub(crate) fn proof_of_server(&self, caller: Caller) -> String {
         hexadecimal(&self.code("server", caller).finalize().into_bytes())
     }
 
-    /// Tells whether a page proves that it knows the token: `proof` is the code of "page NONCE", in
+    /// Whether a page proves that it knows the token: `proof` must be the code of "page NONCE", in
     /// hexadecimal digits.
     pub(crate) fn is_proof_of_page(&self, caller: Caller, proof: &str) -> bool {
         let bytes: Option<Vec<u8>> = (proof.len() == 64 && proof.is_ascii())

@@ -1,4 +1,4 @@
-//! The connection of a rank with the others, by MPI.
+//! Connection of a rank to the others through MPI.
 
 use std::thread::{self, ThreadId};
 
@@ -9,14 +9,14 @@ use mpi::topology::{Process, SimpleCommunicator};
 use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Source};
 use slipfront::Communicator;
 
-/// Tag that distinguishes a message to the rank below from one to the rank above: of two ranks, each has the
-/// other on both sides.
+/// Tags distinguish messages to the rank below from messages to the rank above: with two ranks, each is both
+/// the lower and the upper neighbour of the other.
 const DOWN: Tag = 0;
 const UP: Tag = 1;
 
-/// The ranks with which this one was started.
+/// The ranks started together with this one.
 ///
-/// The connection belongs to the thread that has initialized MPI, on which all of its calls must be made.
+/// The connection belongs to the thread that initialized MPI, and all MPI calls must be made on that thread.
 #[derive(Debug)]
 pub struct MpiCommunicator {
     owner: ThreadId,
@@ -25,7 +25,7 @@ pub struct MpiCommunicator {
 }
 
 impl MpiCommunicator {
-    /// All ranks, once MPI is initialized.
+    /// All ranks. MPI must be initialized.
     pub(crate) fn world() -> Self {
         let world = SimpleCommunicator::world();
         Self {
@@ -35,7 +35,7 @@ impl MpiCommunicator {
         }
     }
 
-    /// The handle of MPI, which no other thread may have.
+    /// The MPI handle. Only the thread that initialized MPI may use it.
     fn handle(&self) -> SimpleCommunicator {
         let here = thread::current().id();
         assert_eq!(
@@ -65,7 +65,7 @@ impl Communicator for MpiCommunicator {
         let [below, above] = [neighbour(&world, -1), neighbour(&world, 1)];
         let ([to_below, to_above], [from_below, from_above]) = (to, from);
         request::scope(|scope| {
-            // Places for what comes are made first, so that nothing has to be kept elsewhere.
+            // Receives are posted before sends, so that MPI needs no buffers for messages that arrive early.
             let receives = [(below, from_below, UP), (above, from_above, DOWN)].map(|(rank, values, tag)| {
                 (!values.is_empty()).then(|| rank.immediate_receive_into_with_tag(scope, values, tag))
             });
@@ -86,7 +86,7 @@ impl Communicator for MpiCommunicator {
     }
 
     fn sum(&self, values: &mut [i64]) {
-        // Of unsigned numbers C defines the sum modulo 2^64.
+        // C defines sums of unsigned numbers modulo 2^64.
         let own: Vec<u64> = values.iter().map(|value| value.cast_unsigned()).collect();
         let mut sums = vec![0_u64; own.len()];
         self.handle()

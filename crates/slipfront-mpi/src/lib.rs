@@ -1,7 +1,7 @@
-//! One lattice over many processes, on one machine or many: the command of slipfront on the ranks of MPI.
+//! One lattice over many processes, on one machine or many: the command of slipfront on MPI ranks.
 //!
-//! All computation, printing and writing is in the other crates. They know a rank's connection with the
-//! others as [`slipfront::Communicator`]; this crate makes it.
+//! The other crates do all computation, printing and writing. They see the connection to other ranks as a
+//! [`slipfront::Communicator`], which this crate implements.
 
 mod communicator;
 
@@ -18,8 +18,8 @@ pub use self::communicator::MpiCommunicator;
 /// The status with which Rust ends a program that panics.
 const PANICKED: i32 = 101;
 
-/// Runs `work` on every rank, and returns the status of the process. The function is called once, on the main
-/// thread. A rank that panics takes the others with it, where they would wait for it without an end.
+/// Runs `work` on every rank, and returns the exit status of the process. `work` is called once, on the main
+/// thread. A rank that panics aborts all ranks, because the others would wait for it for ever.
 pub fn on_ranks(work: impl FnOnce(Arc<MpiCommunicator>) -> ExitCode) -> ExitCode {
     let Some((universe, threading)) = initialize_with_threading(Threading::Funneled) else {
         panic!("MPI is initialized already");
@@ -32,6 +32,6 @@ pub fn on_ranks(work: impl FnOnce(Arc<MpiCommunicator>) -> ExitCode) -> ExitCode
         );
         work(communicator)
     }));
-    // What went wrong has been printed where it did.
+    // The error has already been printed where it occurred.
     done.unwrap_or_else(|_| universe.world().abort(PANICKED))
 }

@@ -1,4 +1,4 @@
-//! The command under mpirun: its files and messages, however it ends.
+//! The command under mpirun: its files and messages, for every way in which it can end.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -16,8 +16,8 @@ use tempfile::TempDir;
 use crate::support::results::{Files, assert_same, results};
 use crate::support::{SECONDS_TO_END, mpirun, output, printed, run_plain, run_plain_command};
 
-/// Long enough to be stopped: `mpirun` waits a second before it passes a signal on to the ranks, and a
-/// fast machine needs less than half of the nine seconds measured here.
+/// Long enough to be stopped: `mpirun` waits a second before it passes a signal on to the ranks, and a fast
+/// machine needs less than half of the nine seconds measured here.
 const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n\
     [time]\nduration_star = 12_000\n";
 
@@ -58,7 +58,7 @@ enum Target {
     LastRank,
 }
 
-/// Command that goes on with a run.
+/// Command that resumes a run.
 #[derive(Clone, Copy)]
 enum Resumed {
     OnRanks,
@@ -77,7 +77,7 @@ fn send(signal: &str, target: Target, child: &Child) {
     assert!(kill.unwrap().success(), "{signal} cannot be sent");
 }
 
-/// Usage, help and refusals are equal for every rank, and printed by one.
+/// All ranks produce the same usage, help and refusals, and only one prints them.
 #[rstest]
 #[case("run --nonsense", 2, "unexpected argument '--nonsense'")]
 #[case("--help", 0, "byte for byte")]
@@ -106,8 +106,8 @@ fn several_ranks_speak_with_one_voice(#[case] line: &str, #[case] status: i32, #
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
 }
 
-/// Shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows, sums at every
-/// step, slow drives; other drives and laws, which either kernel computes.
+/// Cases with shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows,
+/// sums at every step, slow drives, and other drives and laws in either kernel.
 const CASES: [(&str, &str); 8] = [
     ("baseline", ""),
     (
@@ -184,11 +184,11 @@ fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 
     }
 }
 
-/// Message of a run that has saved its state where it was stopped.
+/// Message of a run that was stopped and has saved its state.
 const SAVED: &str = "the state is saved, and `slipfront-mpi run --resume stopped` resumes the run";
 
-/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status
-/// 1 whatever theirs is. mpirun itself reports that a rank was killed.
+/// mpirun passes on SIGUSR2 unchanged. After SIGINT and SIGTERM it sends SIGTERM to the ranks, and exits with
+/// status 1 whatever their status. mpirun itself reports a rank that was killed.
 #[rstest]
 #[case(Target::Mpirun, "-USR2", 140, SAVED, Resumed::OnRanks)]
 #[case(Target::Mpirun, "-TERM", 1, SAVED, Resumed::Plain)]
@@ -206,7 +206,7 @@ fn a_run_that_is_stopped_by_a_signal_goes_on_in_either_command(
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("slow.toml"), SLOW).unwrap();
     let mut command = on_ranks(ranks, &folder, "run slow.toml --checkpoint 0s -o stopped");
-    // As users have it: what mpirun stops has time to save its state.
+    // Users have this default: ranks that mpirun stops have time to save their state.
     command.env_remove(SECONDS_TO_END);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().unwrap();
@@ -220,7 +220,7 @@ fn a_run_that_is_stopped_by_a_signal_goes_on_in_either_command(
     match resumed {
         Resumed::Plain => run_plain(folder.path(), line),
         Resumed::OnRanks => {
-            // On another number of ranks.
+            // The run is resumed with another number of ranks.
             let output = output(&mut on_ranks(ranks + 1, &folder, line));
             assert!(output.status.success(), "{}", printed(&output));
         }

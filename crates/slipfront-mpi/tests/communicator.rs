@@ -1,5 +1,4 @@
-//! Ranks talk to each other: messages arrive where they belong, and no rank is left behind by one that gives
-//! up.
+//! Communication between ranks: messages reach the right rank, and no rank waits for one that has failed.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -35,7 +34,7 @@ fn what_ranks_tell_each_other_is_right(
     assert_eq!(passed, ranks, "{}", printed(&output));
 }
 
-/// The values of a message, from its sender, its round, its direction and its length.
+/// Values of a message, from its sender, round, direction and length.
 fn message(rank: usize, round: usize, upwards: bool, length: usize) -> Vec<f64> {
     let head = (rank * 1000 + round * 10 + usize::from(upwards)) as f64;
     (0..length).map(|k| head + k as f64 / length as f64).collect()
@@ -47,8 +46,8 @@ fn rank_exchange() {
     check_ranks(|ranks| {
         let (rank, size) = (ranks.rank(), ranks.size());
         let [below, above] = [(rank + size - 1) % size, (rank + 1) % size];
-        // Nothing one way or both, and messages below and above the length from which MPI waits for the
-        // receiver.
+        // Empty messages in one or both directions, and messages below and above the length from which on MPI
+        // waits for the receiver.
         let lengths = [
             [1, 1],
             [3, 7],
@@ -95,7 +94,7 @@ fn rank_largest_and_sum() {
 fn rank_agreement() {
     check_ranks(|ranks| {
         let (rank, size) = (ranks.rank(), ranks.size());
-        // Every set of ranks that fail.
+        // Every subset of the ranks fails.
         for failing in 0..1_usize << size {
             let fails = failing >> rank & 1 == 1;
             let failure = RankFailure {
@@ -133,7 +132,7 @@ fn rank_one_thread() {
     });
 }
 
-/// The last rank gives up while the others wait for it.
+/// The last rank fails while the others wait for it.
 #[rstest]
 #[case::panic("rank_panics", "the last rank gives up")]
 #[case::kill("rank_is_killed", "signal 9")]
@@ -144,14 +143,14 @@ fn the_end_of_one_rank_is_the_end_of_all(
 ) {
     let output = output(&mut ranks_of_test(ranks, test));
     let printed = printed(&output);
-    // mpirun has waited for nobody until its `--timeout`.
+    // No rank has waited until the `--timeout` of mpirun.
     assert!(!printed.contains("mpirun --timeout"), "{printed}");
     assert!(!output.status.success(), "{printed}");
     assert_eq!(printed.matches(sentence).count(), 1, "{printed}");
     assert_eq!(printed.matches("passed").count(), 0, "{printed}");
 }
 
-/// Gives up on the last rank after some messages; the others go on for ever.
+/// Calls `give_up` on the last rank after some messages; the other ranks continue for ever.
 fn give_up_on_last_rank(give_up: impl Fn()) {
     check_ranks(|ranks| {
         for round in 0_u64.. {

@@ -1,8 +1,8 @@
-//! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint:
-//! both ranks end, with one answer, and the run that they leave goes on to the same bytes.
+//! File-system calls of one of two ranks fail or kill it, while both resume a run from its checkpoint. Both
+//! ranks end with one error message, and the run that they leave can be resumed and gives the same bytes.
 //!
-//! A few calls are tried, each fault under another law; with `SLIPFRONT_TORTURE=long` every call under every
-//! law.
+//! By default a few calls are tried, each fault with one law; with `SLIPFRONT_TORTURE=long`, every call with
+//! every law.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
@@ -30,18 +30,18 @@ use crate::support::results::{Files, assert_same, results};
 use crate::support::{launcher, mpirun, output, printed, run_plain, run_plain_command};
 use crate::watcher::watcher;
 
-/// Some tenths of a second, with frames before the checkpoint and after it.
+/// Takes some tenths of a second, with frames before and after the checkpoint.
 const CASE: &str = "slider = { blocks = [60, 50], edges = ['periodic', 'free'] }\ndrive.v_star = 0.05\n\
                     output = { snapshots = [20, 55], series = 5 }\n";
 
-/// Laws of friction and a drive, of which each keeps other numbers in a checkpoint, with the end of [`CASE`].
+/// Laws of friction and a drive that each keep other numbers in a checkpoint, with the end of [`CASE`].
 const LAWS: [&str; 6] = [
     "friction.slip_weakening = { length_star = 0.4 }\ntime.duration_star = 200\n",
     "friction.velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.2 }\ntime.duration_star = 200\n",
     "friction.ageing = { law = 'logarithmic', beta = 0.07, time_star = 1 }\ntime.duration_star = 200\n",
     "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }\ntime.duration_star = 200\n",
     "friction.correlation_length = '3 um'\ntime.duration_star = 200\n",
-    // Steps in which the drive is held come on top, and would be a hundred thousand.
+    // The steps in which the drive is held come in addition; for 200 t* they would be a hundred thousand.
     "drive.loading = 'held'\ntime.duration_star = 60\n",
 ];
 
@@ -53,7 +53,7 @@ fn plain_command() {
     run_plain_command();
 }
 
-/// Results of [`CASE`] with a law by the plain command.
+/// Results of the plain command for [`CASE`] with a law.
 fn undisturbed(law: &str) -> Files {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("case.toml"), format!("{CASE}{law}")).unwrap();
@@ -61,7 +61,7 @@ fn undisturbed(law: &str) -> Files {
     results(&folder.path().join("run"))
 }
 
-/// A folder with a run under a law that was stopped in its middle.
+/// A folder with a run under a law, stopped halfway.
 fn stopped_run(law: &str) -> TempDir {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("run");
@@ -75,8 +75,8 @@ fn stopped_run(law: &str) -> TempDir {
     folder
 }
 
-/// Goes on with the run on two ranks. Calls of one of them that concern its folder meet with an action from
-/// number `from` to number `to`, 0 for no end. Returns all of its calls as well.
+/// Resumes the run on two ranks. On one of them, the calls with numbers `from` to `to` that concern the run
+/// folder are met with an action; 0 as `to` means no end. Also returns all of these calls.
 fn resume_disturbed(folder: &Path, rank: usize, [action, from, to]: [&str; 3]) -> (Output, Vec<String>) {
     let log = folder.join("log");
     let mut command = launcher();
@@ -101,15 +101,16 @@ fn resume_disturbed(folder: &Path, rank: usize, [action, from, to]: [&str; 3]) -
     (output, log.lines().map(str::to_owned).collect())
 }
 
-/// Kinds of calls that are tried in the short form.
+/// Number of kinds of calls to try in the short form.
 const SHORT: usize = 5;
 
-/// Whether the long form is asked for.
+/// Whether the long form was requested.
 fn is_long() -> bool {
     std::env::var("SLIPFRONT_TORTURE").is_ok()
 }
 
-/// Numbers of the calls that are tried with an action: of some kinds, which are a name and a file, the first.
+/// Numbers of the calls to try with an action: all in the long form, otherwise the first call of each of some
+/// kinds. A kind is a name and a file.
 fn calls_to_try(calls: &[String], action: &str) -> Vec<usize> {
     let long = is_long();
     let mut kinds = BTreeSet::new();
@@ -117,7 +118,7 @@ fn calls_to_try(calls: &[String], action: &str) -> Vec<usize> {
         let mut words = call.splitn(3, ' ').skip(1);
         let (name, path) = (words.next().unwrap(), words.next().unwrap());
         let writes = ["write", "fsync", "fdatasync", "rename", "renameat", "mkdir"].contains(&name);
-        // Names of temporary files have the step of a checkpoint in them, or are random.
+        // Names of temporary files contain the step of a checkpoint, or are random.
         let is_checkpoint = path.ends_with("checkpoint.bin");
         let path = path.split_inclusive("/tmp/").next().unwrap();
         let is_new = kinds.insert((name.to_owned(), path.to_owned(), is_checkpoint));
@@ -144,7 +145,7 @@ fn a_fault_of_one_rank_is_the_answer_of_all(
     if watcher().is_none() {
         return;
     }
-    // Each fault of each rank meets a law of its own, and in the long form all of them.
+    // In the short form each fault of each rank has one law; in the long form all laws.
     let laws = if is_long() {
         &LAWS
     } else {
@@ -174,7 +175,8 @@ fn try_faults(rank: usize, action: &str, lasts: bool, cause: &str, law: &str) {
         assert!(!text.contains("mpirun --timeout"), "{case}");
         let sentences: Vec<&str> = text.lines().filter(|line| line.starts_with("error: ")).collect();
         if disturbed.status.success() {
-            // A checkpoint that is not saved is no more than a warning; and clocks decide how many there are.
+            // A checkpoint that cannot be saved causes only a warning, and the number of checkpoints depends
+            // on the clock.
             assert!(action != "kill" || met.is_none(), "{case}");
             assert_same(&whole, &results(&run));
             continue;
@@ -188,7 +190,7 @@ fn try_faults(rank: usize, action: &str, lasts: bool, cause: &str, law: &str) {
                 sentences[0].contains(cause) && sentences[0].contains(" run"),
                 "{case}"
             );
-            // Bad input, as what cannot be read is, has other remedies.
+            // Bad input, such as an unreadable file, has other remedies.
             let goes_on = sentences[0].contains("`slipfront-mpi run --resume run` goes on");
             assert!(goes_on || disturbed.status.code() == Some(2), "{case}");
         }

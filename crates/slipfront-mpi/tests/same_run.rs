@@ -1,5 +1,5 @@
-//! Ranks that were given different inputs: all of them end, with one sentence on the difference and its rank,
-//! before anything is written. Other inputs may differ.
+//! Ranks with different inputs: all of them end before anything is written, with one sentence that names the
+//! difference and the rank. Inputs that do not affect the results may differ.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -58,7 +58,7 @@ fn two_places() -> TempDir {
     folder
 }
 
-/// Two ranks, each with its own program and arguments, in `a` and in `b`.
+/// Runs two ranks, each with its own program and arguments, one in `a` and one in `b`.
 fn two_ranks(folder: &Path, ranks: [(&str, &str); 2]) -> Output {
     let mut command = launcher();
     for ((program, line), (place, begin)) in ranks.into_iter().zip([("a", &[][..]), ("b", &[":"])]) {
@@ -71,7 +71,7 @@ fn two_ranks(folder: &Path, ranks: [(&str, &str); 2]) -> Output {
     output(&mut command)
 }
 
-/// Every file and folder below a folder, with the bytes of files.
+/// Every file and folder below a folder, with the contents of the files.
 fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut tree = BTreeMap::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -84,7 +84,7 @@ fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     tree
 }
 
-/// Both ranks refuse, in one sentence, and have written nothing.
+/// Asserts that both ranks refuse, with one sentence in total, and have written nothing.
 fn assert_refused(folder: &Path, ranks: [(&str, &str); 2], wanted: &[&str]) {
     let before = tree(folder);
     let refused = two_ranks(folder, ranks);
@@ -126,7 +126,7 @@ fn another_case_is_refused(#[case] change: &str, #[case] sentence: &str) {
     let folder = two_places();
     let changed = format!("{RUN} --set {change}");
     assert_refused(folder.path(), [(PROGRAM, RUN), (PROGRAM, &changed)], &[sentence]);
-    // On rank 0 the same words, the other way round.
+    // The sentence is the same if the ranks are swapped.
     let key = sentence.split_inclusive('`').take(2).collect::<String>();
     let key = if key.starts_with('`') {
         key.as_str()
@@ -185,7 +185,7 @@ fn another_command_is_refused(#[case] line: &str, #[case] sentence: &str) {
     assert_refused(folder.path(), [(PROGRAM, RUN), (PROGRAM, line)], &[sentence]);
 }
 
-/// Another build is refused: programs differ by the hash of their sources, and any digit of it counts.
+/// A rank of another build is refused: builds are compared by the hash of their sources, in every digit.
 #[test]
 fn another_build_is_refused() {
     let folder = two_places();
@@ -201,7 +201,7 @@ fn another_build_is_refused() {
     let other = folder.path().join("other");
     std::fs::copy(PROGRAM, &other).unwrap();
     std::fs::write(&other, program).unwrap();
-    // What is said first, and not what the option of one of them means.
+    // The builds are compared first, before an option that only one of them knows.
     let line = format!("{RUN} --new-option");
     let ranks = [(PROGRAM, RUN), (other.to_str().unwrap(), &line)];
     assert_refused(
@@ -211,7 +211,7 @@ fn another_build_is_refused() {
     );
 }
 
-/// A folder that only one rank would replace keeps what it holds.
+/// A folder that only one rank would replace keeps its contents.
 #[test]
 fn results_are_not_replaced_by_a_run_that_is_refused() {
     let folder = two_places();
@@ -231,7 +231,7 @@ fn results_are_not_replaced_by_a_run_that_is_refused() {
     );
 }
 
-/// A run of [`CASE`] that was stopped after two checkpoints, the first of this step.
+/// A run of [`CASE`] that was stopped after two checkpoints, the first at step `first`.
 fn stopped_run(place: &Path, overrides: &[String], first: u64) {
     let case = Case::load(&place.join("m.toml"), overrides, &mut |_| true, Ranks::ALONE).unwrap();
     let case = Arc::new(case);
@@ -251,7 +251,7 @@ fn copy(from: &Path, to: &Path) {
     assert!(copied.unwrap().success());
 }
 
-/// Folders of one name on different machines are not the same.
+/// Folders of the same name on different machines can have different contents.
 #[rstest]
 #[case::other_step("", "the step of the checkpoint is 55 on rank 1 and 50 on rank 0")]
 #[case::other_case("", "`drive.v_star` is 0.2 on rank 1 and 0.1 on rank 0")]
@@ -301,7 +301,7 @@ fn another_folder_is_not_resumed(#[case] change: &str, #[case] sentence: &str) {
 }
 
 /// Threads, spellings of the folder, names of the case and printed output may differ: the results are those
-/// of a run alone.
+/// of a run on one rank.
 #[rstest]
 #[case::threads("run m.toml -q -o ../k --threads 1", "run m.toml -q -o ../k --threads 2")]
 #[case::spelling("run m.toml -q -o ../k", "run m.toml -q -o ABSOLUTE/k")]
@@ -325,7 +325,7 @@ fn what_need_not_be_the_same_may_differ(#[case] line: &str, #[case] other: &str)
     assert_same(&results(&folder.path().join("a/plain")), &found);
 }
 
-/// A run is resumed under two names, by links to one folder in two places.
+/// Two ranks resume one run under two names, which are links to the same folder.
 #[test]
 fn a_run_is_resumed_under_two_names() {
     let folder = two_places();

@@ -1,4 +1,4 @@
-//! Files within messages.
+//! Files inside messages.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -7,7 +7,7 @@ pub(crate) fn encode(bytes: &[u8]) -> String {
     BASE64_STANDARD.encode(bytes)
 }
 
-/// The bytes of a text of the page.
+/// Decodes a text of the page.
 ///
 /// # Errors
 /// A sentence, if it is not Base64.
@@ -17,7 +17,7 @@ pub(crate) fn decode(text: &str) -> Result<Vec<u8>, String> {
         .map_err(|error| format!("a file of the message is not Base64 ({error})"))
 }
 
-/// Files by their names, in Base64.
+/// Files by name, in Base64.
 pub(crate) mod files {
     use std::collections::BTreeMap;
 

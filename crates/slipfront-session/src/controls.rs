@@ -1,4 +1,4 @@
-//! The quantities that the page offers to be changed, as dimensionless groups and with their units.
+//! Quantities that the page offers to change, as dimensionless groups and in units.
 
 use std::collections::BTreeMap;
 
@@ -76,7 +76,7 @@ pub(crate) static CONTROLS: [Control; 8] = [
     },
 ];
 
-/// The values that the quantities with a slider have in a case, by their ids.
+/// Values in a case of the quantities with a slider, by their ids.
 pub(crate) fn values(case: &Case) -> BTreeMap<&'static str, ControlValue> {
     let (groups, scales, file) = (&case.groups, &case.scales, &case.file);
     let value = |star, si| ControlValue { star, si };
@@ -98,8 +98,8 @@ pub(crate) fn values(case: &Case) -> BTreeMap<&'static str, ControlValue> {
     ])
 }
 
-/// Share of the range of a slider, or of its value where the slider is logarithmic, by which a quantity is
-/// changed to see what static friction does.
+/// Change of a quantity for its effect on static friction: share of the range of a linear slider, and share
+/// of the value of a logarithmic one.
 const CHANGE: [f64; 2] = [0.05, 0.1];
 
 /// Two values of the quantity of a slider.
@@ -107,17 +107,17 @@ const CHANGE: [f64; 2] = [0.05, 0.1];
 pub(crate) struct TwoValues {
     pub(crate) control: String,
     pub(crate) key: String,
-    /// The present value and the other one, as the slider has them.
+    /// The present value and the other one, in the unit of the slider.
     pub(crate) values: [f64; 2],
     /// Both values, as the key takes them.
     pub(crate) set_to: [Value; 2],
 }
 
-/// The present value of the quantity of a slider, and one that is a tenth larger, or by a twentieth of the
-/// range of a linear slider; smaller where the range ends before.
+/// Returns the present value of the quantity of a slider, and one that is larger: by a tenth, or by a
+/// twentieth of the range for a linear slider. It is smaller instead if the range ends before that.
 ///
 /// # Errors
-/// A sentence, if there is no such quantity, or it is a number of a surface.
+/// A sentence, if there is no such quantity, or it is an integer such as the seed.
 pub(crate) fn two_values(case: &Case, id: &str) -> Result<TwoValues, String> {
     let control = CONTROLS.iter().find(|control| control.id == id && !control.whole);
     let control =

@@ -1,4 +1,4 @@
-//! The case as it is edited: its keys, as a user would write them, and the files that they name.
+//! The case that is edited: its keys, as a user would write them, and the files that they name.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -16,15 +16,15 @@ use crate::base64;
 use crate::names::{MAX_FILES, is_plain_name, plain_name};
 use crate::protocol::Source;
 
-/// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small
+/// Largest number of blocks of a case: the run, its twin and the pictures must fit into the memory of a small
 /// machine.
 pub const MAX_BLOCKS: usize = 1 << 19;
 
 /// Name of the image that holds a painted texture.
 const PAINTED: &str = "texture.png";
 
-/// A case that is edited. Copies share their files. It can be sent as JSON, as the source of an `open`
-/// request that opens it.
+/// A case that is edited. Copies share their files. As JSON, it is the source of an `open` request that opens
+/// it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Source", into = "Source")]
 pub struct Document {
@@ -35,7 +35,7 @@ pub struct Document {
     files: BTreeMap<String, Arc<[u8]>>,
 }
 
-/// A sentence as the error of a case.
+/// Turns a sentence into the error of a case.
 fn case_error(sentence: String) -> CaseError {
     CaseFile::default().source.error("", sentence)
 }
@@ -55,7 +55,7 @@ impl From<Document> for Source {
 impl TryFrom<Source> for Document {
     type Error = String;
 
-    /// The case of a source that has its text.
+    /// Builds the case of a source that contains its text.
     fn try_from(source: Source) -> Result<Self, String> {
         let toml = source.toml.ok_or("the source of a case has no text")?;
         let name = source.name.filter(|name| is_plain_name(name));
@@ -73,16 +73,17 @@ impl TryFrom<Source> for Document {
 }
 
 impl Document {
-    /// The case of a text; `read` gives the contents of the files that it names. These get plain names.
+    /// Builds a case from its text; `read` returns the contents of the files that it names. The files get
+    /// plain names.
     ///
     /// # Errors
-    /// When it is no case, or a file cannot be read, or there is too much of it.
+    /// When it is not a case, a file cannot be read, or the files are too large.
     pub fn new(
         name: &str,
         text: &str,
         read: impl Fn(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, CaseError> {
-        // First, since its errors name the place in the text as it was written.
+        // The text is parsed first, because these errors refer to places in the original text.
         let mut case = CaseFile::parse(text, name, &[])?;
         let mut keys: Table = text.parse().map_err(|error| case_error(format!("{error}")))?;
         let mut contents: BTreeMap<String, Vec<u8>> = BTreeMap::new();
@@ -129,7 +130,7 @@ impl Document {
         &self.keys
     }
 
-    /// Contents of the files that the case names, as a case takes them.
+    /// Contents of the files that the case names, in the form that builds a case.
     pub(crate) fn files_in_memory(&self) -> FilesInMemory {
         let files = self.files.iter();
         files
@@ -142,12 +143,12 @@ impl Document {
         &self.files
     }
 
-    /// Bytes of memory that the keys take, about.
+    /// Approximate memory of the keys, in bytes.
     pub(crate) fn bytes_of_keys(&self) -> usize {
         bytes_of_table(&self.keys)
     }
 
-    /// The textures, as the page changes them.
+    /// The textures, in the form in which the page edits them.
     pub(crate) fn textures(&self) -> serde_json::Value {
         let textures = self.keys.get("texture").cloned();
         textures.map_or(serde_json::Value::Array(Vec::new()), |textures| {
@@ -170,15 +171,15 @@ impl Document {
         twin
     }
 
-    /// Whether both are one case, whatever they are called.
+    /// Whether both are the same case, apart from their names.
     pub(crate) fn is_same_case(&self, other: &Self) -> bool {
         self.keys == other.keys && self.files == other.files
     }
 
-    /// The slider without texture with which this case is compared, of the same body.
+    /// The slider without texture and with the same body, to which this case is compared.
     ///
     /// # Errors
-    /// A sentence, if the keys are no case.
+    /// A sentence, if the keys are not a case.
     pub(crate) fn twin(&self) -> Result<Self, String> {
         let file = CaseFile::parse(&self.toml(), &self.name, &[]).map_err(|error| error.to_string())?;
         let body = key_of_body(&file).map(|(key, value)| (key.to_owned(), Some(Value::from(value))));
@@ -187,8 +188,8 @@ impl Document {
         Ok(twin)
     }
 
-    /// A copy of the case with other values of keys, none to remove one. A key that sets the same thing as
-    /// another replaces it.
+    /// A copy of the case with other values of keys; a value of none removes its key. A key replaces all keys
+    /// that set the same quantity.
     ///
     /// # Errors
     /// A sentence, if a key has no place in the case.
@@ -212,15 +213,15 @@ impl Document {
     /// A copy of the case with an image in place of its textures.
     ///
     /// # Errors
-    /// When it is no case without the image either.
+    /// When the case is invalid even without the image.
     pub(crate) fn with_image(&self, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
         self.without_texture().and_image(None, png, threshold)
     }
 
-    /// The case with an image as a texture more, at this place among them, or behind them.
+    /// Adds an image as another texture, at `index` among the textures or at the end.
     ///
     /// # Errors
-    /// When it is no case without the image either.
+    /// When the case is invalid even without the image.
     fn and_image(self, index: Option<usize>, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
         let mut painted = self;
         painted.drop_unnamed_files()?;
@@ -245,10 +246,10 @@ impl Document {
         Ok(painted)
     }
 
-    /// Gives up the files that no key names any more.
+    /// Drops the files that no key names any more.
     ///
     /// # Errors
-    /// When it is no case.
+    /// When it is not a case.
     pub(crate) fn drop_unnamed_files(&mut self) -> Result<(), CaseError> {
         if self.files.is_empty() {
             return Ok(());
@@ -259,10 +260,10 @@ impl Document {
         Ok(())
     }
 
-    /// A copy of the case with this mask as its texture, one value per block from y = 0 upwards.
+    /// A copy of the case with this mask as its only texture, one value per block from y = 0 upwards.
     ///
     /// # Errors
-    /// When the image of the mask cannot be written, or the case is none without it either.
+    /// When the image of the mask cannot be written, or the case is invalid even without it.
     pub(crate) fn with_mask(&self, textured: &[bool], nx: usize) -> Result<Self, CaseError> {
         if !textured.contains(&true) {
             return Ok(self.without_texture());
@@ -271,8 +272,8 @@ impl Document {
         self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
-    /// The place of the texture that a brush paints on, among all textures: the last image that is stretched
-    /// over the slider as it is. None if there is no such texture.
+    /// Index of the texture that a brush paints on: the last image that is stretched over the slider
+    /// unchanged. None if there is no such texture.
     pub(crate) fn painted_layer(&self) -> Option<usize> {
         let textures = self.keys.get("texture")?.as_array()?;
         let is_layer = |texture: &Value| {
@@ -286,11 +287,11 @@ impl Document {
         textures.iter().rposition(is_layer)
     }
 
-    /// A copy of the case whose texture at `index` is this mask instead, one value per block from y = 0
-    /// upwards; without an index the mask is a texture more. A mask of no block is none.
+    /// A copy of the case in which this mask replaces the texture at `index`, one value per block from y = 0
+    /// upwards; without an index, the mask is added. A mask without blocks is left out.
     ///
     /// # Errors
-    /// When the image of the mask cannot be written, or the case is none without it either.
+    /// When the image of the mask cannot be written, or the case is invalid even without it.
     pub(crate) fn with_layer(
         &self,
         index: Option<usize>,
@@ -311,21 +312,21 @@ impl Document {
         others.and_image(index, &png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
-    /// The case that can be run, as `slipfront run` makes it, unless `watch` ends the work.
+    /// Builds the case to run, as `slipfront run` does, unless `watch` stops the work.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was
-    /// ended.
+    /// When the keys are not a case that can be run, it has more than [`MAX_BLOCKS`] blocks, or the work was
+    /// stopped.
     pub fn case(&self, watch: &mut Watch) -> Result<Case, CaseError> {
         self.build(&[], watch)
     }
 
-    /// The case that is shown, unless `watch` ends the work: it writes nothing, and keeps no more snapshots
-    /// than the instants A-F.
+    /// Builds the case to show, unless `watch` stops the work: it writes nothing, and keeps no snapshots
+    /// except those at the instants A-F.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was
-    /// ended.
+    /// When the keys are not a case that can be run, it has more than [`MAX_BLOCKS`] blocks, or the work was
+    /// stopped.
     pub fn case_to_show(&self, watch: &mut Watch) -> Result<Case, CaseError> {
         let overrides = [
             "output.fields=[\"sliding\"]",
@@ -336,11 +337,11 @@ impl Document {
         self.build(&overrides, watch)
     }
 
-    /// The case with other values of keys, each as `key=value`.
+    /// Builds the case with other values of keys, each as `key=value`.
     ///
     /// # Errors
-    /// When the keys are no case that can be run, or it has more than [`MAX_BLOCKS`] blocks, or the work was
-    /// ended.
+    /// When the keys are not a case that can be run, it has more than [`MAX_BLOCKS`] blocks, or the work was
+    /// stopped.
     fn build(&self, overrides: &[&str], watch: &mut Watch) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
@@ -360,8 +361,8 @@ impl Document {
         Case::to_run_with(file, &self.name, files, watch, Ranks::ALONE)
     }
 
-    /// Refuses a file that does not belong to the case, wherever that may be: keys may come from anybody's
-    /// link.
+    /// Refuses a file that does not belong to the case, wherever the file is: the keys may come from a
+    /// stranger's link.
     fn expect_own_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
         let (mut named, source) = case.files_mut();
         match named.find(|file| !self.files.contains_key(file.name.as_str())) {
@@ -382,7 +383,7 @@ fn mask_png(textured: &[bool], nx: usize) -> Result<Vec<u8>, CaseError> {
     mask_image(textured, nx).map_err(|error| case_error(format!("the mask cannot be written: {error}")))
 }
 
-/// An image of one pixel per block, black where it is texture, the largest y first.
+/// An image with one pixel per block, black for texture, with the largest y first.
 fn mask_image(textured: &[bool], nx: usize) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let rows = textured.chunks(nx).rev();
@@ -404,11 +405,11 @@ fn mask_image(textured: &[bool], nx: usize) -> Result<Vec<u8>, png::EncodingErro
     Ok(bytes)
 }
 
-/// The table that holds the last of the parts of a key such as `texture.0.center`, and that part; the tables
-/// on the way are made if they are to be.
+/// Finds the table that holds the last part of a key such as `texture.0.center`, and returns both. If `make`,
+/// missing tables on the way are made.
 ///
 /// # Errors
-/// A sentence, if it is no key.
+/// A sentence, if it is not a key.
 fn table_of<'t, 'k>(
     mut table: &'t mut Table,
     key: &'k str,
@@ -439,7 +440,7 @@ fn table_of<'t, 'k>(
 /// Sets a key.
 ///
 /// # Errors
-/// A sentence, if the case has no place for it.
+/// A sentence, if the case has no place for the key.
 fn put(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
     let found = table_of(table, key, true)?;
     let (table, last) =
@@ -451,7 +452,7 @@ fn put(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
 /// Removes a key, if it is there.
 ///
 /// # Errors
-/// A sentence, if it is no key.
+/// A sentence, if it is not a key.
 fn remove(table: &mut Table, key: &str) -> Result<(), String> {
     if let Some((table, last)) = table_of(table, key, false)? {
         table.remove(last);
@@ -459,7 +460,7 @@ fn remove(table: &mut Table, key: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Bytes of memory that a table takes, about.
+/// Approximate memory of a table, in bytes.
 fn bytes_of_table(table: &Table) -> usize {
     let entry = |(key, value): (&String, &Value)| size_of::<String>() + key.len() + bytes_of(value);
     table.iter().map(entry).sum()
@@ -510,9 +511,7 @@ mod tests {
         assert_eq!(error, "the case has no place for the key `drive.v_star.more`");
     }
 
-    /// Masks come back from their image unchanged, also where the width is no multiple of the eight blocks
-    /// that a byte holds.
-    /// Sheets are fitted for the wave lengths of a texture, which a slider without one has not.
+    /// The longest wavelength of the body is derived from the texture, so the twin must set it explicitly.
     #[test]
     fn a_bulk_body_is_compared_with_the_same_body() {
         let text = "slider = { blocks = [32, 32], body = 'bulk' }\ndrive.v_star = 0.01\n\
@@ -521,11 +520,13 @@ mod tests {
         let [body, twin] = [&textured, &textured.twin().unwrap()]
             .map(|document| document.case(&mut |_| true).unwrap().bulk_body().unwrap());
         assert_eq!((body.longest_wave, body), (8e-6, twin));
-        // A sheet needs no key more.
+        // The twin of a sheet needs no additional key.
         let sheet = document("texture = [{ shape = 'cavity', coverage = 5 }]");
         assert_eq!(sheet.twin().unwrap().toml(), sheet.without_texture().toml());
     }
 
+    /// Masks are read back from their images unchanged, even if the width is not a multiple of the eight
+    /// blocks in a byte.
     #[test]
     fn a_mask_is_the_texture_it_was_painted_as() {
         for (nx, ny) in [(1, 2), (7, 3), (8, 8), (13, 5), (100, 9)] {

@@ -1,4 +1,4 @@
-//! Events by which work beside a session reports to it, and the worker that does such work.
+//! Events that a job reports to its session, and the worker that runs the job.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -10,29 +10,29 @@ use serde_json::Value;
 
 use crate::protocol::{CalibratingReply, Estimate};
 
-/// Static friction mu_s* with one seed: of the case and, if it has texture, of the case without; none of a
-/// run without a transition.
+/// Static friction mu_s* with one seed: with the texture and, if there is one, without it; none for a run
+/// without a transition.
 pub(crate) type Frictions = Vec<Option<f64>>;
 
-/// Whoever does work beside a session: it passes on what the work tells, and tells it the time and whether it
-/// shall stop.
+/// The worker of a job: it passes events on to the session, and gives the job the time and the request to
+/// stop.
 pub trait Worker {
-    /// Passes an event of the work on to the session.
+    /// Passes an event of the job on to the session.
     fn tell(&self, event: Event);
 
-    /// Whether the work shall stop: nobody listens to it any more.
+    /// Whether the job is to stop, because nobody receives its events any more.
     fn stop(&self) -> &AtomicBool;
 
-    /// The time since some instant.
+    /// The time since a fixed instant.
     fn now(&self) -> Duration;
 }
 
-/// A report of work beside a session to the session, which can be sent as JSON.
+/// A report of a job to its session, which can be sent as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Event(pub(crate) EventKind);
 
 impl Event {
-    /// Tells that the work has ended by a defect of its own.
+    /// The event that the job has crashed.
     pub fn lost() -> Self {
         Self(EventKind::Lost)
     }
@@ -40,9 +40,9 @@ impl Event {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum EventKind {
-    /// Static friction with the next of the seeds, or why it cannot be found.
+    /// Static friction with the next seed, or why it cannot be found.
     Repeated(Result<Frictions, String>),
-    /// How far a search is.
+    /// Progress of a search.
     Tried(Tried),
     /// The best texture of a search, or why there is none.
     Searched(Result<Mask, String>),
@@ -50,19 +50,19 @@ pub(crate) enum EventKind {
     Compared(Result<Comparison, String>),
     /// A reply to the page, as JSON, with which the work ends.
     Replied(String),
-    /// How far a calibration is.
+    /// Progress of a calibration.
     Calibrating(CalibratingReply),
-    /// Runs that a calibration needs before it can go on.
+    /// Runs that a calibration needs before it can continue.
     Wants(Vec<WantedRun>),
-    /// The curves of the next of the runs that a calibration wanted, as JSON, or why they cannot be made.
+    /// The curves of the next run that a calibration wanted, as JSON, or why they cannot be computed.
     Made(Result<String, String>),
-    /// The results of a calibration as the page is sent them, or why there are none.
+    /// The results of a calibration in the form for the page, or why there are none.
     Calibrated(Result<Value, String>),
-    /// The work has ended by a defect of its own.
+    /// The job has crashed.
     Lost,
 }
 
-/// A run that a calibration wants, as JSON that the calibration alone understands.
+/// A run that a calibration wants, as JSON that only the calibration reads.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct WantedRun(pub(crate) String);
 
@@ -73,7 +73,7 @@ pub(crate) struct MadeRun {
     pub(crate) curves: String,
 }
 
-/// Textured blocks. They are sent as a text of a digit for each block.
+/// Textured blocks. They are sent as a text with one digit per block.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub(crate) struct Mask(pub(crate) Arc<Vec<bool>>);
@@ -99,12 +99,12 @@ impl From<Mask> for String {
     }
 }
 
-/// How far a search is.
+/// Progress of a search.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Tried {
-    /// Textures that were tried.
+    /// Number of textures tried.
     pub(crate) textures: usize,
-    /// Change of static friction by the best texture tried, against the slider without texture, %.
+    /// Change of static friction by the best texture tried, relative to the slider without texture, %.
     pub(crate) best_percent: Option<f64>,
     /// Textured blocks of the best texture tried.
     pub(crate) best_texture: Option<Mask>,
@@ -115,12 +115,13 @@ pub(crate) struct Tried {
 pub(crate) struct Comparison {
     /// Number of surfaces on which the textures are compared.
     pub(crate) surfaces: usize,
-    /// Change of static friction by the best texture of the search, against the slider without texture, %.
+    /// Change of static friction by the best texture of the search, relative to the slider without texture,
+    /// %.
     pub(crate) best: Option<Estimate>,
-    /// Change of static friction by the painted texture, against the slider without texture, %; none where
+    /// Change of static friction by the painted texture, relative to the slider without texture, %; none if
     /// nothing is painted.
     pub(crate) painted: Option<Estimate>,
-    /// Whether the best texture of the search is better than the painted one, by more than the scatter over
+    /// Whether the best texture of the search is better than the painted one by more than the scatter over
     /// surfaces.
     pub(crate) is_better: bool,
 }

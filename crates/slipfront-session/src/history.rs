@@ -1,4 +1,4 @@
-//! The cases that were edited one after the other, to go back to.
+//! Successive versions of the edited case, for undo and redo.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -6,11 +6,11 @@ use std::sync::Arc;
 use crate::document::Document;
 use crate::names::MAX_FILES;
 
-/// Most steps back.
+/// Largest number of undo steps.
 const MAX_STEPS: usize = 100;
 
-/// Most bytes of keys and files of all cases together: more than the files of one case may have, so that some
-/// steps back are left to a large one.
+/// Largest size of the keys and files of all cases together, bytes. It exceeds the limit for the files of one
+/// case, so that a large case still has some undo steps.
 const MAX_BYTES: usize = MAX_FILES as usize + (32 << 20);
 
 /// The present case, those before it and those that were undone.
@@ -18,7 +18,7 @@ pub(crate) struct History {
     present: Document,
     before: Vec<Document>,
     undone: Vec<Document>,
-    /// The gesture of the page that made the present case of the one before it.
+    /// The gesture of the page that led from the previous case to the present one.
     gesture: Option<u64>,
 }
 
@@ -38,7 +38,7 @@ impl History {
         &self.present
     }
 
-    /// Makes a changed case the present one; the changes of one gesture are undone at once.
+    /// Makes a changed case the present one; all changes of one gesture are undone together.
     pub(crate) fn change(&mut self, document: Document, gesture: u64) {
         let before = std::mem::replace(&mut self.present, document);
         if self.gesture != Some(gesture) {
@@ -51,7 +51,7 @@ impl History {
         }
     }
 
-    /// Bytes of keys and files of all cases; a file that several of them share counts once.
+    /// Bytes of the keys and files of all cases; a file that several cases share counts once.
     fn bytes(&self) -> usize {
         let all = || self.before.iter().chain([&self.present]).chain(&self.undone);
         let mut counted = HashSet::new();
@@ -69,7 +69,7 @@ impl History {
         !self.undone.is_empty()
     }
 
-    /// Goes back, if there is a case before.
+    /// Returns to the previous case, if there is one.
     pub(crate) fn undo(&mut self) -> bool {
         let Some(before) = self.before.pop() else {
             return false;
@@ -79,7 +79,7 @@ impl History {
         true
     }
 
-    /// Goes forward again, if there is a case.
+    /// Returns to the case before the last undo, if there is one.
     pub(crate) fn redo(&mut self) -> bool {
         let Some(after) = self.undone.pop() else {
             return false;
@@ -96,7 +96,7 @@ mod tests {
 
     use super::*;
 
-    /// How many files of the cases are kept, out of some.
+    /// Number of these files that are still in memory.
     fn count_of_kept(of: &[Weak<[u8]>]) -> usize {
         of.iter().filter(|file| file.strong_count() > 0).count()
     }
@@ -113,7 +113,7 @@ mod tests {
             images.extend(image.files().get("texture.png").map(Arc::downgrade));
             history.change(image, u64::from(number));
             assert!(history.bytes() <= MAX_BYTES);
-            // What it does not depend on is not copied.
+            // Files that do not change are shared, not copied.
             let shared = &history.present().files()["mu.csv"];
             assert!(Arc::ptr_eq(shared, &history.before[0].files()["mu.csv"]));
         }
@@ -141,7 +141,7 @@ mod tests {
             history.change(document(number), number as u64);
             assert!(history.bytes() <= MAX_BYTES);
         }
-        // A word has one to three letters beside its value.
+        // A word takes one to three letters in addition to its value.
         let each = WORDS * (size_of::<toml::Value>() + 3);
         assert!(
             history.before.len() + 1 >= MAX_BYTES / each,

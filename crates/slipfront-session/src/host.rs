@@ -1,53 +1,54 @@
-//! The interface of a session to its host, which holds the session and connects it with page, folders and
-//! threads.
+//! The interface of a session to its host, which owns the session and connects it to the page, to folders and
+//! to threads.
 
 use crate::document::Document;
 use crate::event::Event;
 use crate::job::Job;
 use crate::recorded::RecordedRun;
 
-/// Whoever holds a session: it passes on what the session says, and does what the session may not.
+/// The owner of a session: it passes on the output of the session, and does what the session itself may not
+/// do.
 pub trait Host {
-    /// Sends the page a reply, which is JSON, behind those before it.
+    /// Sends a reply, which is JSON, to the page, after all previous ones.
     fn reply(&self, reply: String);
 
-    /// Sends the page a picture of the field, in the place of one that has not been sent yet.
+    /// Sends a picture of the field to the page, in place of one that has not been sent yet.
     fn picture(&self, picture: Vec<u8>);
 
-    /// Sends the page a kymograph, in the place of one that has not been sent yet.
+    /// Sends a kymograph to the page, in place of one that has not been sent yet.
     fn kymograph(&self, kymograph: Vec<u8>);
 
-    /// Whether the page is so far behind that it is given no more than answers.
+    /// Whether the page is so far behind that it gets only answers.
     fn is_full(&self) -> bool;
 
-    /// Whether the page is gone, so that whatever is done for it is to end.
+    /// Whether the page is gone, so all work for it is to end.
     fn is_gone(&self) -> bool;
 
-    /// Threads of a run and of work beside the session.
+    /// Number of threads of a run or a job.
     fn threads(&self) -> usize;
 
-    /// How many parts of one computation beside the session go on at a time.
+    /// Number of parts of one computation that can run at the same time.
     fn workers(&self) -> usize;
 
-    /// Gives the case with which the page opens unless another one is named.
+    /// Returns the case with which the page opens unless another one is named.
     ///
     /// # Errors
     /// A sentence, if it cannot be read any more.
     fn opening(&self) -> Result<OpenedCase, String>;
 
-    /// Gives a case to choose by its name.
+    /// Returns a preset by name.
     ///
     /// # Errors
-    /// A sentence, if there is none of that name.
+    /// A sentence, if there is no preset of that name.
     fn preset(&self, name: &str) -> Result<Document, String>;
 
-    /// Gives a run that was recorded by its name.
+    /// Returns a recorded run by name.
     ///
     /// # Errors
-    /// A sentence, if there is none of that name, or it cannot be read.
+    /// A sentence, if there is no run of that name, or it cannot be read.
     fn recorded_run(&self, name: &str) -> Result<OpenedCase, String>;
 
-    /// Begins work beside the session.
+    /// Begins a job outside the session.
     ///
     /// # Errors
     /// A sentence, if the system refuses.
@@ -56,16 +57,16 @@ pub trait Host {
     /// Begins to save a run of a case from rest under this name.
     ///
     /// # Errors
-    /// A sentence, if the name is taken or none, or too many runs are being saved.
+    /// A sentence, if the name is taken or invalid, or too many runs are being saved.
     fn save(&self, document: Document, name: &str) -> Result<(), String>;
 
     /// Stops saving the run of this name, if it is under way.
     fn stop_saving(&self, name: &str);
 }
 
-/// A job that was begun beside the session. Dropping the task ends the job.
+/// A job that was begun outside the session. Dropping the task ends the job.
 pub trait Task {
-    /// Gives the next thing that the work tells; none if it has told nothing new.
+    /// Returns the next event of the job; none if there is nothing new.
     fn next_event(&mut self) -> Option<Event>;
 }
 

@@ -1,4 +1,4 @@
-//! Jobs beside a session: computations that its host runs wherever it can.
+//! Jobs outside a session: computations that its host may run anywhere.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::document::Document;
 use crate::event::{MadeRun, Mask, WantedRun};
 use crate::protocol::{CalibrateRequest, DrawingFormat, RecordFile};
 
-/// A computation beside a session. It reports what it finds by events, and can be sent as JSON.
+/// A computation outside a session. It reports its results as events, and can be sent as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Job {
     pub(crate) document: Document,
@@ -16,30 +16,30 @@ pub struct Job {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum JobKind {
-    /// A computation of static friction with each of these seeds.
+    /// Computes static friction with each of these seeds.
     Repeat(Vec<u64>),
-    /// A search for a texture with less static friction than the painted one.
+    /// Searches for a texture with less static friction than the painted one.
     Search,
-    /// A comparison of the best texture of a search with the painted one.
+    /// Compares the best texture of a search with the painted one.
     Compare(Mask),
-    /// A computation of static friction with two values of the quantity of a slider.
+    /// Computes static friction at two values of the quantity of a slider.
     Sensitivity(TwoValues),
-    /// The record in a file.
+    /// Reads the record in a file.
     ReadRecord(RecordFile),
-    /// A calibration of the case.
+    /// Calibrates the case.
     Calibrate {
         request: Box<CalibrateRequest>,
-        /// Runs that it needs and that have been made, each with its curves.
+        /// Runs that it needs and that other jobs have made, each with its curves.
         made: Vec<MadeRun>,
-        /// Whether the runs are made by other jobs, or by the threads of this one.
+        /// Whether other jobs make the runs, instead of the threads of this one.
         is_elsewhere: bool,
     },
-    /// Runs of a calibration.
+    /// Makes runs of a calibration.
     MakeRuns {
         request: Box<CalibrateRequest>,
         wanted: Vec<WantedRun>,
     },
-    /// The texture as a drawing.
+    /// Draws the texture.
     Draw(DrawingFormat),
 }
 

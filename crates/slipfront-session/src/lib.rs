@@ -1,13 +1,14 @@
-//! A session of the laboratory: a case that is edited, its run beside that of the slider without texture, and
-//! what is shown of them.
+//! A session of the laboratory: a case that is edited, its run next to a run of the slider without texture,
+//! and their display.
 //!
 //! ```text
 //! page -- Message -->  Session  -- replies as JSON, pictures as bytes --> Host
 //!                      work(now) -> when to call again
 //! ```
 //!
-//! A session knows no file, thread, socket or clock. Its [`Host`] tells it the time, hands it the messages of
-//! the page, passes on what it says, and does what it may not: work beside it, saving, folders.
+//! A session does no input or output of its own and starts no threads. Its [`Host`] passes it the time and
+//! the messages of the page, passes on its replies, and does everything else: jobs outside the session,
+//! saving, access to folders.
 
 mod base64;
 mod controls;

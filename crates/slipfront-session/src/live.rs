@@ -1,4 +1,4 @@
-//! A run that is shown: its legs, its curve, its first peak.
+//! The run on the page: its legs, its curve and its first peak.
 
 use std::sync::Arc;
 
@@ -9,34 +9,34 @@ use slipfront_run::summary::Summary;
 
 use crate::protocol::PeakReply;
 
-/// A run from rest, and the legs that changes of its case have begun since.
+/// A run from rest, with the legs begun by changes of its case.
 pub(crate) struct LiveRun {
     running: Running,
     /// Number of the present leg; 0 for the leg that begins at rest.
     pub(crate) leg: usize,
     /// Steps and time of the legs before the present one.
     before: Elapsed,
-    /// Position of the drive when the present leg began, m, block by block; none from rest.
+    /// Position of the drive at the start of the present leg, m, block by block; none for a leg from rest.
     origin: Option<Vec<[f32; 2]>>,
-    /// Number of points of the curve of the present leg that the page has been sent.
+    /// Number of points of the present leg's curve that were sent to the page.
     n_sent: usize,
-    /// Whether every block in contact has slipped since rest; never in a later leg.
+    /// Whether every block in contact has slipped since rest; always false in a later leg.
     pub(crate) crossed: bool,
-    /// Why the run ended, if it did.
+    /// The reason why the run ended, if it has.
     pub(crate) ended: Option<StopReason>,
 }
 
-/// Steps and time that have passed.
+/// Steps and times that have passed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Elapsed {
     steps: u64,
     time_star: f64,
-    /// t* of the drive, which stands at times under a held one.
+    /// t* of the drive, which stops while a held drive is held.
     drive_time_star: f64,
     time_s: f64,
 }
 
-/// Points of a curve: t* since rest, t* of the drive, mu* and N*.
+/// Points of a curve: t* of the drive, mu* and the share of sliding blocks.
 #[derive(Default)]
 pub(crate) struct CurvePoints {
     pub(crate) time_star: Vec<f64>,
@@ -45,7 +45,7 @@ pub(crate) struct CurvePoints {
 }
 
 impl LiveRun {
-    /// A run of a case that begins at rest.
+    /// Starts a run of a case from rest.
     pub(crate) fn from_rest(case: &Arc<Case>, threads: usize) -> Self {
         Self {
             running: Running::start(case, None, Execution::on_threads(threads)),
@@ -58,10 +58,10 @@ impl LiveRun {
         }
     }
 
-    /// Lets the run go on under another case, as its next leg.
+    /// Continues the run with another case, as its next leg.
     ///
     /// # Errors
-    /// A sentence, if a run cannot go on under that case.
+    /// A sentence, if a run cannot continue with that case.
     pub(crate) fn change(&mut self, case: &Arc<Case>) -> Result<(), String> {
         let dt_star = self.case().time_plan.dt_star;
         let leg = self
@@ -101,17 +101,17 @@ impl LiveRun {
         self.origin.as_deref()
     }
 
-    /// Whether contacts of the run remember more than a displacement and a velocity.
+    /// Whether the friction law has state variables besides displacement and velocity.
     pub(crate) fn has_memory(&self) -> bool {
         self.case().model.friction.n_columns() > 0
     }
 
-    /// Whether a block in contact has slipped in this leg or one before: the instant B of a run from rest.
+    /// Whether a block in contact has slipped in this or a previous leg: the instant B of a run from rest.
     pub(crate) fn has_slipped(&self) -> bool {
         self.leg > 0 || self.running.instants().any(|(letter, _)| letter == 'B')
     }
 
-    /// Takes at most so many steps.
+    /// Takes at most `steps` steps.
     ///
     /// # Errors
     /// A sentence, when the run diverges.
@@ -122,8 +122,8 @@ impl LiveRun {
         Ok(())
     }
 
-    /// How much of a transition from rest has been seen: the first slip, the first peak, the slip of every
-    /// block in contact. It looks at every block.
+    /// Number of stages seen of a transition from rest: the first slip, the first peak, and the slip of every
+    /// block in contact. Checks every block.
     pub(crate) fn look_for_stages(&mut self) -> usize {
         if self.leg == 0 && !self.crossed && self.has_slipped() {
             let first_slips = self.running.snapshot().first_slip_time_star();
@@ -152,22 +152,22 @@ impl LiveRun {
         self.before.time_s + self.running.snapshot().time_star * self.case().scales.time()
     }
 
-    /// Time of the legs before the present one, s.
+    /// Duration of the previous legs, s.
     pub(crate) fn time_before_s(&self) -> f64 {
         self.before.time_s
     }
 
-    /// t* of the legs before the present one.
+    /// Duration of the previous legs, t*.
     pub(crate) fn time_before_star(&self) -> f64 {
         self.before.time_star
     }
 
-    /// t* of the drive in the legs before the present one.
+    /// t* of the drive in the previous legs.
     pub(crate) fn drive_time_before_star(&self) -> f64 {
         self.before.drive_time_star
     }
 
-    /// The points of the curve that the page has not been sent yet; from now on they count as sent.
+    /// Returns the points of the curve that were not sent to the page yet, and marks them as sent.
     pub(crate) fn take_unsent_points(&mut self) -> CurvePoints {
         let rows = &self.running.rows()[self.n_sent..];
         self.n_sent += rows.len();
@@ -179,7 +179,7 @@ impl LiveRun {
         }
     }
 
-    /// The first peak of mu* since rest; none of a later leg, which does not begin at rest.
+    /// The first peak of mu* since rest; none for a later leg, which does not begin at rest.
     pub(crate) fn peak(&self) -> Option<PeakReply> {
         let now = self.running.snapshot();
         (self.leg == 0 && now.step > 0).then_some(PeakReply {
@@ -189,7 +189,7 @@ impl LiveRun {
         })
     }
 
-    /// The numbers of a run from rest that has ended.
+    /// The summary of a run from rest that has ended.
     pub(crate) fn summary(&self) -> Option<Summary> {
         let reason = self.ended.filter(|_| self.leg == 0)?;
         Some(self.running.summary(reason))

@@ -1,19 +1,19 @@
-//! The files of a case: how much of them there may be, and names that lead nowhere else.
+//! Files of a case: their largest total size, and names that cannot lead out of a folder.
 
-/// Most bytes of all files of a case.
+/// Largest total size of the files of a case, bytes.
 pub const MAX_FILES: u64 = 64 << 20;
 
-/// Characters that stand for themselves in names of files on every system.
+/// Characters that are valid in file names on every system.
 fn is_plain(c: char) -> bool {
     c.is_alphanumeric() || "_-. ()+".contains(c)
 }
 
-/// Tells whether `name` is a name within a folder, and not a path that may lead out of the folder.
+/// Whether `name` is a name inside a folder, and not a path that may lead out of it.
 pub fn is_plain_name(name: &str) -> bool {
     !name.is_empty() && name.len() <= 100 && !name.starts_with('.') && name.chars().all(is_plain)
 }
 
-/// The name of a file as a plain one.
+/// Converts the name of a file to a plain one.
 pub(crate) fn plain_name(path: &str) -> String {
     let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.trim_start_matches('.').chars();

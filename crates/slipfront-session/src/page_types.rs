@@ -1,9 +1,9 @@
-//! Holds `types/protocol.d.ts` of slipfront-lab, which the page is written against, against `protocol.rs` by
-//! samples of messages.
+//! Tests that `types/protocol.d.ts` of slipfront-lab, with which the page is written, agrees with
+//! `protocol.rs`, by samples of messages.
 //!
-//! The tests write the samples as `types/samples.ts`, read every request among them, and know that a sample
-//! shows each key, word and kind of this crate. `tsc` (`tests/browser/run.sh`) finds the types of the page in
-//! them, and that they show all of these types.
+//! The tests write the samples to `types/samples.ts`, parse every request among them, and ensure that the
+//! samples contain every key, word and kind of this crate. `tsc` (`tests/browser/run.sh`) checks the samples
+//! against the types of the page, and ensures that the samples contain all of these types.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -24,8 +24,8 @@ use crate::protocol::{
 };
 use crate::shapes;
 
-/// Requests as the page may send them: every key with every kind of value, and every key that may be absent
-/// so.
+/// Requests that the page may send: every key with every kind of value, and without every key that is
+/// optional.
 const REQUESTS: [&str; 39] = [
     r#"{"do":"open","source":{}}"#,
     r#"{"do":"open","source":{"preset":"circle"}}"#,
@@ -72,20 +72,20 @@ fn read(request: Value) -> Result<Request, String> {
     serde_json::from_value(request).map_err(|error| error.to_string())
 }
 
-/// The names in marks that the end of an error of serde expects, in their order.
+/// The names in backticks after "expected" in an error of serde, in order.
 fn expected(error: &str) -> Vec<String> {
     let (_, names) = error.rsplit_once("expected").unwrap_or_else(|| panic!("{error}"));
     names.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// Keys and texts that the requests show at one place.
+/// Keys and texts that the requests have at one place.
 #[derive(Default)]
 struct Place {
     keys: BTreeSet<String>,
     words: BTreeSet<String>,
 }
 
-/// Adds what a value shows, at a place that begins with the name of its request.
+/// Adds the keys and texts in a value, at a place that begins with the name of its request.
 fn add_places(value: &Value, at: &[&str], places: &mut BTreeMap<Vec<String>, Place>) {
     let place = at.iter().map(|&key| key.to_owned()).collect();
     let place = places.entry(place).or_default();
@@ -101,7 +101,7 @@ fn add_places(value: &Value, at: &[&str], places: &mut BTreeMap<Vec<String>, Pla
     }
 }
 
-/// The error about a request that has only this value, at this place; empty if it is read.
+/// The error for a request with only this value, at this place; empty if it is accepted.
 fn error_at(place: &[String], value: Value) -> String {
     let within = place[1..].iter().rev();
     let mut request = within.fold(value, |value, key| json!({ key: value }));
@@ -128,7 +128,7 @@ fn requests_are_read_and_show_every_key_and_word_that_is() {
     let (mut any_key, mut of_words) = (Vec::new(), Vec::new());
     for (place, Place { keys, words }) in &places {
         let at = place.join(".");
-        // What keys of the case may hold is the case's.
+        // Keys of the case are the case's own business.
         if at.starts_with("set.keys.") || at.starts_with("calibrate.unknowns.") {
             continue;
         }
@@ -160,8 +160,8 @@ fn requests_are_read_and_show_every_key_and_word_that_is() {
     assert_eq!(of_words, ["drawing.format", "view.after_change", "view.field"]);
 }
 
-/// Keys of `summary.json` that the page shows, in the order of the alphabet: new numbers of runs change no
-/// sample.
+/// Keys of `summary.json` that the page shows, in alphabetical order: other numbers of runs do not change the
+/// samples.
 const SHOWN_OF_SUMMARY: [&str; 9] = [
     "energy_error",
     "front_duration_star",
@@ -174,8 +174,7 @@ const SHOWN_OF_SUMMARY: [&str; 9] = [
     "transition",
 ];
 
-/// Hands `check` every kind of reply, which between them have every kind of value that each of their keys may
-/// hold.
+/// Calls `check` with replies of every kind that together contain every kind of value of each of their keys.
 fn each_reply(check: &mut impl FnMut(&Reply)) {
     let text = "[[texture]]\npoints = [['10 um', '10 um'], ['20 um', '10 um'], ['10 um', '20 um']]\nshape = 'polygon'\n";
     let document = Document::new("case", text, |_| Err("there is no file".to_owned())).unwrap();
@@ -395,7 +394,7 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
     });
 }
 
-/// Hands `check` the replies about records, calibrations, sensitivities and drawings.
+/// Calls `check` with the replies about records, calibrations, sensitivities and drawings.
 fn records_and_calibrations(check: &mut impl FnMut(&Reply)) {
     for (along, of) in [
         (RecordAbscissa::Time, RecordOrdinate::Force),
@@ -474,8 +473,8 @@ fn records_and_calibrations(check: &mut impl FnMut(&Reply)) {
     }
 }
 
-/// Names each kind of reply, and all of them: the compiler demands a new kind here, and then the test a
-/// sample of it.
+/// Lists all kinds of replies and names the kind of a reply. The compiler demands that a new kind is listed
+/// here, and then the test demands a sample of it.
 macro_rules! kinds {
     ($($kind:ident)*) => {
         const KINDS: &[&str] = &[$(stringify!($kind)),*];
@@ -489,7 +488,7 @@ macro_rules! kinds {
 }
 kinds! { Hello Case Curve Numbers Probe Repeated Finding Found Saving Saved Exported Recorded Record Calibrating Calibrated Sensitivity Drawing Refused Failed }
 
-/// Values that a key of a texture may have.
+/// Possible values of a key of a texture.
 fn texture_values(key: &Key) -> Vec<Value> {
     match key.kind {
         KeyKind::Number { .. } | KeyKind::Whole { .. } => vec![json!(1)],
@@ -522,7 +521,7 @@ fn textures() -> Vec<String> {
     all
 }
 
-/// The text of messages by their kinds, each of which its message names after the first sign and key.
+/// Text of the messages, grouped by kind, which is the first value of each message.
 fn by_kind(messages: &[String]) -> String {
     let mut text = String::new();
     let mut last = "";

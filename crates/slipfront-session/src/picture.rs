@@ -1,4 +1,4 @@
-//! A field of all blocks as a picture of one byte per block.
+//! A field of all blocks as a picture with one byte per block.
 
 use serde::Deserialize;
 use slipfront::Snapshot;
@@ -20,13 +20,13 @@ pub(crate) enum DisplayedField {
 }
 
 impl DisplayedField {
-    /// Whether colours stand for times of first slips, which some blocks may not have yet.
+    /// Whether colours represent times of first slips, which some blocks may not have yet.
     fn shows_first_slips(self) -> bool {
         matches!(self, Self::FirstSlip | Self::Front)
     }
 }
 
-/// Byte of the largest value.
+/// Byte of the largest value of the scale.
 const MAX_BYTE: f32 = 250.0;
 /// Bytes of blocks without a value.
 const SLIDES: u8 = 252;
@@ -34,7 +34,7 @@ const NOT_YET: u8 = 253;
 const NO_BLOCK: u8 = 254;
 const TEXTURED: u8 = 255;
 
-/// Value of a block that slides, where the others have times.
+/// Value of a sliding block where other blocks have times.
 pub(crate) const SLIDING_NOW: f32 = f32::INFINITY;
 
 /// Kinds of binary messages.
@@ -48,11 +48,11 @@ pub(crate) struct Painter {
     values: Vec<f32>,
     other: Vec<f32>,
     times: Vec<f64>,
-    /// The largest value of the scale of a field.
+    /// The largest value of the scale, and the field that it belongs to.
     high: Option<(DisplayedField, f32)>,
 }
 
-/// Header of a picture: step, time, friction, sliding share, size and textured blocks.
+/// Header of a picture: step, time, friction, percentage of sliding blocks, size and textured blocks.
 pub(crate) struct PictureFrame<'a> {
     pub(crate) step: u64,
     pub(crate) time_star: f64,
@@ -65,13 +65,13 @@ pub(crate) struct PictureFrame<'a> {
 }
 
 impl Painter {
-    /// Forgets the scale, so that the next picture finds its own.
+    /// Resets the scale, so that the next picture chooses its own.
     pub(crate) fn reset_scale(&mut self) {
         self.high = None;
     }
 
-    /// The picture of a run at this instant. Displacements count from rest: `origin` is where the drive stood
-    /// when the leg began, m.
+    /// The picture of a run at this instant. Displacements count from rest: `origin` is the position of the
+    /// drive at the start of the leg, m.
     pub(crate) fn paint_snapshot(
         &mut self,
         now: &Snapshot,
@@ -141,7 +141,7 @@ impl Painter {
         picture
     }
 
-    /// The picture of these values, which are in the unit of the field.
+    /// Draws values, which are in the unit of the field.
     pub(crate) fn paint(
         &mut self,
         frame: &PictureFrame,
@@ -182,7 +182,7 @@ impl Painter {
         let first = bytes.len();
         bytes.extend(values.iter().map(byte));
         let pixels = &mut bytes[first..];
-        // Where nothing touches there is no contact stress; how such blocks move is shown as that of others.
+        // Blocks without contact have no contact stress, but their motion is shown like that of other blocks.
         if !matches!(shown, DisplayedField::Displacement | DisplayedField::Speed) {
             for (pixel, textured) in pixels.iter_mut().zip(frame.textured) {
                 *pixel = if *textured { TEXTURED } else { *pixel };
@@ -209,7 +209,7 @@ impl Painter {
             let earliest = finite().fold(f32::INFINITY, f32::min);
             return [earliest.min(largest), largest];
         }
-        // It shrinks when most of it is not used, so that colours do not flicker.
+        // The scale shrinks only when most of it is unused, so that colours do not flicker.
         let kept = self
             .high
             .filter(|(of, high)| *of == shown && (0.3 * high..=*high).contains(&largest));
@@ -226,14 +226,14 @@ fn read_scaled(now: &Snapshot, field: Field, unit: f32, values: &mut [f32]) {
     }
 }
 
-/// Lengths of vectors, in place of their first components.
+/// Replaces first components of vectors by the lengths of the vectors.
 pub(crate) fn lengths(x: &mut [f32], y: &[f32]) {
     for (x, y) in x.iter_mut().zip(y) {
         *x = (*x * *x + y * y).sqrt();
     }
 }
 
-/// The next of 1, 1.5, 2, 3, 5, 7 and 10 times a power of ten; 1 where nothing is above 0.
+/// Rounds up to 1, 1.5, 2, 3, 5, 7 or 10 times a power of ten; 1 if the value is not positive.
 fn round_up(value: f32) -> f32 {
     if value <= 0.0 || !value.is_finite() {
         return 1.0;
@@ -244,8 +244,8 @@ fn round_up(value: f32) -> f32 {
     step.unwrap_or(10.0) * power
 }
 
-/// The share of blocks that slide against place and time, as a picture; `before_star` is t* of the legs
-/// before this one.
+/// The share of sliding blocks over place and time, as a picture; `before_star` is the duration t* of the
+/// previous legs.
 pub(crate) fn kymograph(
     of: &Kymograph,
     bins: &PositionBins,

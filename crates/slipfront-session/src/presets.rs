@@ -1,4 +1,4 @@
-//! Cases to choose from, which the host of a session has.
+//! Presets: cases to choose from, which the host of a session provides.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use crate::base64;
 use crate::document::Document;
 use crate::protocol::PresetEntry;
 
-/// A case to choose.
+/// A case to choose from.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preset {
     /// The name by which the case is chosen.
     pub name: String,
-    /// The group of the list in which the case stands, such as `grooves` or `paper`.
+    /// The group of the list to which the case belongs, such as `grooves` or `paper`.
     pub group: String,
-    /// The small picture of the case, which the page draws: 32 x 32 values of half a byte, in Base64.
+    /// The small picture of the case in the list: 32 x 32 values of half a byte, in Base64.
     pub picture: String,
     /// Whether the case is the base of a study of many runs.
     pub is_study: bool,
-    /// A sentence that says what the case shows.
+    /// A sentence on what the case shows.
     pub title: String,
-    /// The case as a text.
+    /// The text of the case.
     pub toml: String,
     /// Contents of the files that the text names.
     #[serde(with = "base64::files")]
@@ -34,10 +34,10 @@ pub struct Preset {
 pub struct Presets(pub Vec<Preset>);
 
 impl Presets {
-    /// Gives a case by its name.
+    /// Returns a case by name.
     ///
     /// # Errors
-    /// A sentence, if there is none of that name or it cannot be made.
+    /// A sentence, if there is no case of that name, or it cannot be made.
     pub fn document(&self, name: &str) -> Result<Document, String> {
         let found = self.0.iter().find(|preset| preset.name == name);
         let preset = found.ok_or_else(|| format!("there is no case `{}`", truncated(name)))?;
@@ -45,7 +45,7 @@ impl Presets {
             let contents = preset.files.get(file).cloned();
             contents.ok_or_else(|| "there is no such file".to_owned())
         };
-        // Of a name in a group, such as `paper/fig03`, the case has the last part.
+        // The case gets the last part of a name in a group, such as `paper/fig03`.
         let plain = name.rsplit('/').next().unwrap_or(name);
         Document::new(plain, &preset.toml, read).map_err(|error| error.to_string())
     }

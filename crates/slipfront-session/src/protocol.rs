@@ -1,7 +1,7 @@
 //! Messages between the page and a session: requests as JSON, replies as JSON, pictures as bytes.
 //!
-//! The page is written against the types of `types/protocol.d.ts`: samples of all messages hold them against
-//! the types of this module.
+//! The page is written with the types of `types/protocol.d.ts`. Samples of all messages ensure that they
+//! agree with the types of this module.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ use crate::view::ViewChange;
 /// Longest message of the page, in bytes: an image of the texture.
 pub const MAX_MESSAGE: usize = 8 << 20;
 
-/// Most values of a request, those within lists and tables too: one takes some 30 times the memory of its
-/// text.
+/// Largest number of values of a request, including those in lists and tables: a value takes some 30 times
+/// the memory of its text.
 const MAX_VALUES: usize = 20_000;
 
 /// A message of the page, which holds one request.
@@ -25,10 +25,10 @@ const MAX_VALUES: usize = 20_000;
 pub struct Message(pub(crate) Request);
 
 impl Message {
-    /// Reads a message, which is JSON.
+    /// Parses a message, which is JSON.
     ///
     /// # Errors
-    /// A sentence, if it is no request, or has too many values.
+    /// A sentence, if it is not a request, or has too many values.
     pub fn parse(text: &str) -> Result<Self, String> {
         if most_values(text) > MAX_VALUES {
             return Err(format!("not a request: it has more than {MAX_VALUES} values"));
@@ -40,7 +40,7 @@ impl Message {
     }
 }
 
-/// A number of values that a text of JSON cannot exceed: every value but the first is behind a comma or an
+/// Upper bound of the number of values in a JSON text: every value except the first follows a comma or an
 /// opening bracket.
 fn most_values(text: &str) -> usize {
     let (mut is_quoted, mut is_escaped, mut values) = (false, false, 1);
@@ -265,7 +265,7 @@ pub(crate) enum Reply<'a> {
 impl Reply<'_> {
     /// The reply as JSON.
     pub(crate) fn json(&self) -> String {
-        // Texts and finite or infinite numbers, which become null: nothing that JSON does not have.
+        // Replies contain only texts and numbers; infinite numbers become null. Serialisation cannot fail.
         serde_json::to_string(self).expect("replies are JSON")
     }
 }
@@ -616,7 +616,7 @@ pub(crate) struct DrawingReply {
     pub(crate) notes: Vec<String>,
 }
 
-/// Confidence of the intervals.
+/// Confidence level of the intervals.
 const CONFIDENCE: f64 = 0.95;
 
 /// A mean and the half width of its interval.
@@ -627,7 +627,7 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// The mean of values with the half width of its 95 % interval; none without values.
+    /// The mean of values, with half the width of its 95 % confidence interval; none without values.
     pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let sample = Sample::of(values, CONFIDENCE)?;
         Some(Self {

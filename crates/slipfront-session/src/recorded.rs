@@ -1,24 +1,24 @@
-//! A run that was recorded before: its curve and its snapshots.
+//! A recorded run: its curve and its snapshots.
 
 use slipfront::observe::Field;
 use slipfront_run::fields::FieldsData;
 
 use crate::picture::{DisplayedField, SLIDING_NOW, lengths};
 
-/// A run that was recorded before.
+/// A recorded run.
 pub struct RecordedRun {
     /// t* of the drive at the points of the recorded curve.
     pub time_star: Vec<f64>,
     /// mu* at the points of the recorded curve.
     pub mu_star: Vec<f64>,
-    /// The snapshots of the run, unless they are too large, or of fewer blocks than the lattice has.
+    /// The snapshots of the run; none if they are too large, or contain fewer blocks than the lattice.
     pub snapshots: Option<FieldsData>,
-    /// Largest contact stress, Pa, by which the recorded one is divided; NaN if it is not known.
+    /// Largest contact stress, Pa, by which the recorded stress is divided; NaN if unknown.
     pub contact_stress_max_pa: f32,
 }
 
 impl RecordedRun {
-    /// The values of a recorded field in the unit in which it is shown; none if it was not recorded.
+    /// Values of a recorded field in its unit on the page; none if it was not recorded.
     pub(crate) fn values(&self, index: usize, shown: DisplayedField) -> Option<Vec<f32>> {
         let of = self.snapshots.as_ref()?;
         let frame = of.frames.get(index)?;
@@ -32,7 +32,7 @@ impl RecordedRun {
             Some(x)
         };
         match shown {
-            // It is recorded over its largest value.
+            // The stress is recorded relative to its largest value.
             DisplayedField::ContactStress => {
                 let mut stress = recorded(Field::ContactStress)?;
                 stress
@@ -56,7 +56,7 @@ impl RecordedRun {
                 let times = of.first_slip_time_star.iter().zip(slides);
                 let value = |(time, slides): (&f64, bool)| match slides {
                     true => SLIDING_NOW,
-                    // Later slips are not known at this instant.
+                    // Slips after this instant are not known yet.
                     false if *time > frame.time_star => f32::NAN,
                     false => *time as f32,
                 };

@@ -5,19 +5,19 @@ use std::collections::BTreeMap;
 use crate::event::Frictions;
 use crate::protocol::{Estimate, RepeatedReply};
 
-/// Results over the seeds from 1 on. They are counted in the order of the seeds, whichever ends first: seeds
-/// whose runs are short would come first otherwise, and a mean over them depends on the machine.
+/// Results for the seeds from 1 on. They are counted in the order of the seeds, whichever ends first.
+/// Otherwise seeds with short runs would come first, and a mean over them would depend on the machine.
 #[derive(Debug)]
 pub(crate) struct SeedsFound {
     of: u64,
-    /// Results of the seeds from 1 on, as far as all before are done.
+    /// Results of the seeds from 1 on, up to the first one that is not done.
     counted: Vec<Frictions>,
-    /// Results of seeds of which one before is still to be done.
+    /// Results of later seeds, which wait for an earlier one.
     waiting: BTreeMap<u64, Result<Frictions, String>>,
 }
 
 impl SeedsFound {
-    /// Nothing found yet over this number of seeds.
+    /// No results yet, for a computation over `of` seeds.
     pub(crate) fn none_of(of: u64) -> Self {
         Self {
             of,
@@ -26,15 +26,15 @@ impl SeedsFound {
         }
     }
 
-    /// Notes what was found with a seed.
+    /// Adds the result of a seed.
     pub(crate) fn note(&mut self, seed: u64, found: Result<Frictions, String>) {
         self.waiting.insert(seed, found);
     }
 
-    /// Counts the next seed; none as long as it is not done.
+    /// Counts the next seed; none while it is not done.
     ///
     /// # Errors
-    /// Why nothing was found with it.
+    /// The error of that seed.
     pub(crate) fn count_next(&mut self) -> Option<Result<RepeatedReply, String>> {
         let found = self.waiting.remove(&(self.counted.len() as u64 + 1))?;
         Some(found.map(|frictions| {
@@ -44,7 +44,7 @@ impl SeedsFound {
     }
 
     /// Means over the seeds counted up to now. Runs without a transition have no static friction: they are
-    /// counted, and neither a mean nor a change has them.
+    /// counted, but enter neither a mean nor a change.
     pub(crate) fn report(&self, finished: bool) -> RepeatedReply {
         let column = |k: usize| self.counted.iter().filter_map(move |found| *found.get(k)?);
         let changes = self.counted.iter().filter_map(|found| match found[..] {
@@ -74,7 +74,7 @@ fn estimate(values: impl Iterator<Item = f64>) -> Option<Estimate> {
 mod tests {
     use super::*;
 
-    /// Reports on three seeds that end in this order, the last of which cannot be run.
+    /// Reports on three seeds that end in this order. The last of them cannot be run.
     fn reports(order: [u64; 3]) -> Vec<Result<RepeatedReply, String>> {
         let mut found = SeedsFound::none_of(4);
         let mut reports = Vec::new();

@@ -1,4 +1,4 @@
-//! Replies that the host of a session gives by itself, as JSON.
+//! Replies that the host of a session sends itself, as JSON.
 
 use slipfront_run::program::VERSION;
 
@@ -7,8 +7,8 @@ use crate::document::MAX_BLOCKS;
 use crate::presets::Presets;
 use crate::protocol::{Reply, SavingEntry};
 
-/// The first reply to a page, with what it can choose from: cases, names of the runs that were recorded, and
-/// the folder `results` of these, if there is one.
+/// The first reply to a page, with its choices: cases, names of the recorded runs, and their folder
+/// `results`, if there is one.
 pub fn hello(presets: &Presets, folders: &[String], results: Option<&str>) -> String {
     let hello = Reply::Hello {
         version: VERSION,
@@ -21,8 +21,7 @@ pub fn hello(presets: &Presets, folders: &[String], results: Option<&str>) -> St
     hello.json()
 }
 
-/// The reply that tells of all runs that are being saved, each with its name and the share of it that is
-/// done.
+/// The reply that lists all runs being saved, each with its name and completed fraction.
 pub fn saving<'a>(under_way: impl IntoIterator<Item = (&'a str, f64)>) -> String {
     let entries = under_way.into_iter();
     let entries = entries.map(|(name, share)| SavingEntry { name, share });
@@ -32,8 +31,7 @@ pub fn saving<'a>(under_way: impl IntoIterator<Item = (&'a str, f64)>) -> String
     saving.json()
 }
 
-/// The reply that tells that a run of this name was saved into a folder, beside the names of all `folders` of
-/// runs.
+/// The reply that a run of this name was saved into a folder, with the names of all `folders` of runs.
 pub fn saved(name: &str, folder: &str, folders: &[String]) -> String {
     let saved = Reply::Saved {
         name,
@@ -43,12 +41,12 @@ pub fn saved(name: &str, folder: &str, folders: &[String]) -> String {
     saved.json()
 }
 
-/// The reply that tells why a request of this name was refused.
+/// The reply that a request of this name was refused, with the reason.
 pub fn refused(of: &'static str, sentence: String) -> String {
     Reply::Refused { of, sentence }.json()
 }
 
-/// The reply that tells why the run has failed.
+/// The reply that the run has failed, with the reason.
 pub fn failed(sentence: String) -> String {
     Reply::Failed { sentence }.json()
 }

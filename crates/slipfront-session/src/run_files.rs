@@ -1,4 +1,4 @@
-//! A run that was recorded before, read from the files of its folder, wherever these are.
+//! Reads a recorded run from the files of its folder, wherever they are.
 
 use std::path::Path;
 
@@ -14,19 +14,18 @@ use crate::document::Document;
 use crate::host::OpenedCase;
 use crate::recorded::RecordedRun;
 
-/// Any error as its sentence.
+/// Converts any error to its message.
 fn sentence(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-/// A complete run, which gets this name: its case with the files that the case names, its curve, and its
-/// snapshots where the fields are given. `read` gives the contents of a file of the run's folder, none if
-/// there is no such file; errors call the folder `place`. Each file is held to the manifest, if the folder
-/// has one.
+/// Reads a complete run and gives it a name: its case with the files that the case names, its curve, and its
+/// snapshots if the fields are present. `read` returns the contents of a file of the run's folder, or none if
+/// there is no such file; errors call the folder `place`. Each file is checked against the manifest, if the
+/// folder has one.
 ///
 /// # Errors
-/// A sentence, if the folder is not that of a run, or a file cannot be read or was changed since it was
-/// written.
+/// A sentence, if the folder is not a run, or a file cannot be read or was changed since it was written.
 pub fn recorded_run(
     name: &str,
     place: &Path,

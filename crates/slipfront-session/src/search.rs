@@ -6,17 +6,17 @@ use slipfront_case::case::Case;
 
 use crate::protocol::SearchLimits;
 
-/// How long a search looks for textures.
+/// Duration of a search.
 pub(crate) const SEARCH_TIME: Duration = Duration::from_secs(60);
 
-/// Smallest width of a feature and of a gap, in blocks: what a laser writes has round corners, which three
-/// blocks can show.
+/// Smallest width of a feature and of a gap, in blocks: a laser makes round corners, which take three blocks
+/// to resolve.
 pub(crate) const WIDTH: usize = 3;
 
-/// Largest coverage of a search, %, where nothing is painted.
+/// Largest coverage of a search, %, if nothing is painted.
 const PLAIN_PERCENT: f64 = 10.0;
 
-/// Largest coverage of a search, %, where the painted coverage is below 3 %.
+/// Largest coverage of a search, %, if the painted coverage is smaller than this.
 const LEAST_PERCENT: f64 = 3.0;
 
 /// Bounds of the textures that a search for a case may try.
@@ -32,11 +32,11 @@ pub(crate) fn limits(case: &Case) -> SearchLimits {
     }
 }
 
-/// Why a search that was stopped at once has found nothing.
+/// Reason why a search that was stopped at once has found nothing.
 pub(crate) const NOTHING_TRIED: &str =
     "the search was stopped before it had tried a texture: nothing has changed";
 
-/// The strips of blocks of a texture along x: the row, the first column, and the one after the last.
+/// The strips of blocks of a texture along x: the row, the first column, and the column after the last.
 pub(crate) fn strips(texture: &[bool], columns: usize) -> Vec<[usize; 3]> {
     let mut strips: Vec<[usize; 3]> = Vec::new();
     for block in (0..texture.len()).filter(|&block| texture[block]) {

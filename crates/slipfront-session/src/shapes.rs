@@ -1,4 +1,4 @@
-//! Outlines of the textures, to be drawn over the field.
+//! Outlines of the textures, drawn over the field.
 
 use std::f64::consts::TAU;
 
@@ -14,15 +14,15 @@ pub(crate) struct ShapeOutlines {
     outlines: Vec<Vec<[f64; 2]>>,
 }
 
-/// Most outlines of all textures that are drawn; beyond, the field itself shows them.
+/// Largest number of outlines of all textures; further textures are visible only in the field itself.
 const MAX_OUTLINES: usize = 2000;
 
-/// Points of an ellipse.
+/// Number of points on an ellipse.
 const POINTS: usize = 72;
 
-/// The outlines of the textures of a case that have one.
+/// Outlines of the textures of a case that have one.
 pub(crate) fn outlines(case: &Case) -> Vec<ShapeOutlines> {
-    // Where there are images alone they are not read again: this is told at every stroke of a brush.
+    // Images alone are not read again, because this function runs at every stroke of a brush.
     if !case
         .file
         .texture
@@ -63,7 +63,7 @@ fn points(contour: &Contour) -> Vec<[f64; 2]> {
     }
 }
 
-/// Points of an ellipse from one parameter up to another one.
+/// Points of an ellipse between two parameters.
 fn arc(ellipse: &Ellipse, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     let count = (((to - from) / TAU * POINTS as f64).ceil() as usize).max(1);
     let at = |k| ellipse.at(from + (to - from) * k as f64 / count as f64);

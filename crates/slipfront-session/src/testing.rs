@@ -1,5 +1,5 @@
-//! A session for tests, without threads: its host does work when it is begun, and its clock goes on when it
-//! is told to.
+//! A session for tests, without threads: its host runs each job at once, and its clock advances only on
+//! demand.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -17,20 +17,20 @@ use crate::presets::Presets;
 use crate::protocol::Message;
 use crate::session::Session;
 
-/// Time that passes for work between two looks at its clock.
+/// Time that passes for a job between two reads of its clock.
 const TICK: Duration = Duration::from_secs(3);
 
-/// A host for tests, which keeps what a session has sent its page and asked its host for.
+/// A host for tests, which records all output and requests of a session.
 #[derive(Default)]
 pub(crate) struct TestHost {
     replies: RefCell<Vec<String>>,
     pub(crate) pictures: RefCell<Vec<Vec<u8>>>,
     pub(crate) is_full: Cell<bool>,
     pub(crate) is_gone: Cell<bool>,
-    /// Names of the runs that were to be saved, and of those that were to be stopped.
+    /// Names of the runs to save, and of the runs to stop saving.
     pub(crate) saves: RefCell<Vec<String>>,
     pub(crate) stops: RefCell<Vec<String>>,
-    /// Whether searches go on for ever.
+    /// Whether searches continue for ever.
     pub(crate) is_endless: Cell<bool>,
 }
 
@@ -99,7 +99,7 @@ impl Host for TestHost {
     }
 }
 
-/// Finished work, whose next event appears at every other look.
+/// A finished job that gives an event only at every other call.
 struct TestTask {
     events: VecDeque<Event>,
     is_next: bool,
@@ -134,7 +134,7 @@ impl Worker for TestWorker {
     }
 }
 
-/// A session of a test, and the time by its clock.
+/// A session of a test, and the time on its clock.
 pub(crate) struct Tried {
     pub(crate) session: Session,
     pub(crate) host: Rc<TestHost>,
@@ -142,7 +142,7 @@ pub(crate) struct Tried {
 }
 
 impl Tried {
-    /// A session in which no case is open.
+    /// A session without an open case.
     pub(crate) fn new() -> Self {
         let host = Rc::new(TestHost::default());
         Self {
@@ -152,7 +152,7 @@ impl Tried {
         }
     }
 
-    /// A session with a case that is paused.
+    /// A session with a paused case.
     pub(crate) fn with(case: &str) -> Self {
         let mut tried = Self::new();
         tried.ask(serde_json::json!({ "do": "view", "paused": true }));
@@ -160,7 +160,7 @@ impl Tried {
         tried
     }
 
-    /// Hands over a request, and works once.
+    /// Passes a request to the session, and calls it once.
     pub(crate) fn ask(&mut self, request: Value) -> Vec<Value> {
         self.session
             .handle(Message(serde_json::from_value(request).unwrap()));
@@ -168,12 +168,12 @@ impl Tried {
         self.replies()
     }
 
-    /// Works once, and gives the time at which there is something to do next.
+    /// Calls the session once, and returns the time at which there is something to do next.
     pub(crate) fn advance(&mut self) -> Option<Duration> {
         self.session.advance(self.now)
     }
 
-    /// Works up to a time, on each call for so long.
+    /// Calls the session until a time; each call takes the time `each`.
     pub(crate) fn advance_until(&mut self, end: Duration, each: Duration) {
         while let Some(due) = self.advance()
             && due <= end

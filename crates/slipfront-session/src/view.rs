@@ -22,7 +22,7 @@ pub(crate) struct ViewChange {
     probe: Option<Option<[usize; 2]>>,
 }
 
-/// Reads a key that may be null, which is not the same as a key that is absent.
+/// Parses a key that may be null; null differs from a missing key.
 fn deserialize_nullable<'de, D: serde::Deserializer<'de>>(
     from: D,
 ) -> Result<Option<Option<[usize; 2]>>, D::Error> {
@@ -40,18 +40,18 @@ pub(crate) enum AfterChange {
     GoOn,
 }
 
-/// The view of a run: the field, its pace, and what runs or is drawn beside it.
+/// The view of a run: the field, the pace, and what runs or is drawn next to it.
 #[derive(Debug)]
 pub(crate) struct View {
     pub(crate) field: DisplayedField,
-    /// Whether the page is seen.
+    /// Whether the page is visible.
     pub(crate) visible: bool,
     pub(crate) paused: bool,
-    /// t* in a second; 0 for as fast as possible.
+    /// t* per second; 0 for as fast as possible.
     pub(crate) pace: f64,
-    /// t* in a second until a block in contact slips, where that is faster than the pace.
+    /// t* per second until a block in contact slips, if that is faster than the pace.
     pub(crate) loading_pace: f64,
-    /// Whether the slider without texture runs beside the run.
+    /// Whether the slider without texture runs next to the run.
     pub(crate) twin: bool,
     pub(crate) kymograph: bool,
     pub(crate) frames_per_second: f64,
@@ -77,8 +77,7 @@ impl Default for View {
 }
 
 impl View {
-    /// t* in a second, 0 for as fast as possible, of a run in which a block in contact has slipped, or none
-    /// yet.
+    /// Pace of a run, t* per second, by whether a block in contact has slipped; 0 for as fast as possible.
     pub(crate) fn pace_when(&self, has_slipped: bool) -> f64 {
         if has_slipped || self.pace == 0.0 {
             self.pace
@@ -90,7 +89,7 @@ impl View {
     /// Changes the parts of the view that are given.
     ///
     /// # Errors
-    /// A sentence with the bound that a number is beyond; then nothing changes.
+    /// A sentence with the bound that a number exceeds; in that case nothing changes.
     pub(crate) fn change(&mut self, change: &ViewChange) -> Result<(), String> {
         let pace = change.pace.unwrap_or(self.pace);
         let loading_pace = change.loading_pace.unwrap_or(self.loading_pace);

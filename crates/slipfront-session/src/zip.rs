@@ -4,7 +4,7 @@ use std::io::Write;
 
 use rawzip::ZipArchiveWriter;
 
-/// A ZIP archive of these files as they are: images and arrays are small, or compressed already.
+/// A ZIP archive of these files, uncompressed: images and arrays are small, or compressed already.
 pub(crate) fn archive<'a>(
     files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
 ) -> Result<Vec<u8>, rawzip::Error> {

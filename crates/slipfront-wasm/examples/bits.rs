@@ -1,5 +1,5 @@
-//! Prints the bits of runs on this machine: for each case file its name, the steps taken, and hashes of mu*,
-//! displacements and velocities.
+//! Prints the bits of runs on this machine: for each case file its name, the number of steps taken, and
+//! hashes of mu*, displacements and velocities.
 //!
 //! ```console
 //! $ cargo run -p slipfront-wasm --example bits -- 3000 cases/*.toml

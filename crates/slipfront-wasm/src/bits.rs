@@ -1,4 +1,4 @@
-//! The bits of a run, by which two builds are held against each other.
+//! Bits of a run, to compare two builds.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,13 +8,14 @@ use slipfront::{Execution, Simulation};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
 
-/// Takes a case to its end, or at most so many steps, and gives the steps that were taken and hashes of mu*,
-/// of all displacements and of all velocities then: FNV-1a of the bits of the numbers, as hexadecimal digits.
+/// Runs a case to its end, or for `most_steps` steps at most. Returns the number of steps taken, and hashes
+/// of mu*, of all displacements and of all velocities at that time: FNV-1a of the bits of the numbers, as
+/// hexadecimal digits.
 ///
 /// # Errors
-/// A sentence, if it is no case, or the run diverges.
+/// A sentence, if the text is not a case or the run diverges.
 pub fn bits_of_run(toml: &str, files: &BTreeMap<String, Vec<u8>>, most_steps: u64) -> Result<String, String> {
-    /// Any error as its sentence.
+    /// Converts any error to its message.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
     }

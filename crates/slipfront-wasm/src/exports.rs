@@ -1,10 +1,10 @@
-//! The names by which the Worker calls.
+//! Functions that the Worker calls by name.
 
-/// Gives functions of a module of this crate to the Worker, by their names.
+/// Exports functions of a module of this crate to the Worker under their own names.
 macro_rules! exported {
     ($($module:ident::$name:ident($($argument:ident: $kind:ty),*) $(-> $given:ty)?;)*) => {$(
-        // SAFETY: a name that is not changed could be that of another function of the module, of which none
-        // is called like this.
+        // SAFETY: without mangling, a name could clash with another symbol of the module, but no other
+        // function has one of these names.
         #[unsafe(no_mangle)]
         extern "C" fn $name($($argument: $kind),*) $(-> $given)? {
             crate::$module::$name($($argument),*)

@@ -1,4 +1,4 @@
-//! The host of a session in a Worker: it says everything to the Worker.
+//! Host of a session in a Worker: it passes all output to the Worker.
 
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, VecDeque};
@@ -9,10 +9,10 @@ use slipfront_session::{Document, Event, Host, Job, OpenedCase, Presets, Task};
 
 use crate::imports::{Saying, tell};
 
-/// Replies that the page may not have read yet before it is given no more than answers.
+/// Unread replies from which on the page gets only answers.
 const MAX_UNREAD: u32 = 64;
 
-/// Events of all work that the session has not read yet, by the number of the work.
+/// Events that the session has not read yet, by the number of the task that sent them.
 type EventQueues = Rc<RefCell<HashMap<u32, VecDeque<Event>>>>;
 
 /// The host of a session in a Worker.
@@ -20,14 +20,14 @@ pub(crate) struct WorkerHost {
     presets: Presets,
     opening: Document,
     events: EventQueues,
-    /// How many Workers beside the session share the parts of one computation.
+    /// Number of Workers, besides the session's own, that share the parts of one computation.
     workers: u32,
     n_tasks: Cell<u32>,
     /// Messages that the page has not read yet.
     pub(crate) unread: Cell<u32>,
 }
 
-/// A run that is to be saved.
+/// A run to be saved.
 #[derive(Serialize)]
 struct Saved<'a> {
     name: &'a str,
@@ -50,7 +50,7 @@ impl WorkerHost {
         &self.presets
     }
 
-    /// Notes what work tells, unless nobody waits for it any more.
+    /// Queues an event of a task, unless the session has dropped the task.
     pub(crate) fn hear(&self, task: u32, event: Event) {
         if let Some(events) = self.events.borrow_mut().get_mut(&task) {
             events.push_back(event);
@@ -58,9 +58,9 @@ impl WorkerHost {
     }
 }
 
-/// Something as JSON.
+/// Serialises a value as JSON.
 fn json(of: &impl Serialize) -> Vec<u8> {
-    // Structs of texts and numbers: serialisation cannot fail.
+    // These structs hold only texts and numbers, so serialisation cannot fail.
     serde_json::to_vec(of).expect("what is said is JSON")
 }
 
@@ -81,7 +81,7 @@ impl Host for WorkerHost {
         self.unread.get() >= MAX_UNREAD
     }
 
-    /// Never: a Worker ends with its page.
+    /// Always false: a Worker ends with its page.
     fn is_gone(&self) -> bool {
         false
     }
@@ -131,7 +131,7 @@ impl Host for WorkerHost {
     }
 }
 
-/// Work that another Worker does.
+/// A task that another Worker does.
 struct WorkerTask {
     number: u32,
     events: EventQueues,

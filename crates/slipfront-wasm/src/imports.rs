@@ -1,4 +1,4 @@
-//! The function that the Worker gives every module, for messages to it.
+//! The function that the Worker provides to every module for messages to the Worker.
 
 /// Kinds of messages from a module to the Worker.
 #[derive(Clone, Copy)]
@@ -11,42 +11,42 @@ pub(crate) enum Saying {
     Picture,
     /// A kymograph.
     Kymograph,
-    /// Work that is to be begun, with its number.
+    /// A job to begin, with its task number.
     Job,
-    /// The number of work that is to be ended.
+    /// The number of a task to end.
     End,
-    /// An event of work beside a session, as JSON.
+    /// An event of a job outside the session, as JSON.
     Event,
-    /// A run that is to be saved.
+    /// A run to save.
     Save,
-    /// The name of a run that is no longer to be saved.
+    /// The name of a run to stop saving.
     StopSaving,
-    /// The share of a run that is done, in millionths.
+    /// The completed fraction of a run, in millionths.
     Share,
     /// The archive of a run.
     Archive,
-    /// Bits of a run.
+    /// The bits of a run.
     Bits,
     /// A sentence that says why a call was refused.
     Refusal,
-    /// A defect, as the terminal of a program would show it.
+    /// A panic, with the text that a program would print in its terminal.
     Defect,
 }
 
 #[expect(unsafe_code, reason = "Rust cannot look at a function of the Worker")]
-// SAFETY: the Worker gives it with these types (`lab_worker.js`), and reads no more than the bytes that it is
-// shown.
+// SAFETY: the Worker provides these functions with these types (`lab_worker.js`), and reads no more than the
+// bytes passed to it.
 unsafe extern "C" {
     safe fn say(what: u32, number: u32, at: *const u8, length: usize);
     /// The time by the clock of the Worker, ms.
     #[cfg(feature = "work")]
     pub(crate) safe fn now() -> f64;
-    /// Gives the module the time of day, UTC as in RFC 3339.
+    /// Makes the Worker pass the time of day to the module: UTC, as in RFC 3339.
     #[cfg(feature = "work")]
     pub(crate) safe fn date();
 }
 
-/// Says something to the Worker, with a number where it has one.
+/// Sends a message to the Worker, with a task number if it has one.
 pub(crate) fn tell(what: Saying, number: u32, bytes: &[u8]) {
     say(what as u32, number, bytes.as_ptr(), bytes.len());
 }

@@ -1,9 +1,9 @@
-//! The laboratory as WebAssembly, for Workers of its page: `lab_worker.js` of slipfront-lab. One module has
-//! the session, made with the feature `session` alone. A second one, made with `work` alone and loaded on
-//! first use, does the work beside it.
+//! The laboratory as WebAssembly, for Workers of its page: `lab_worker.js` of slipfront-lab. One module holds
+//! the session and is built with the feature `session` alone. A second module runs the jobs outside the
+//! session; it is built with the feature `work` alone, and loaded on first use.
 //!
-//! The Worker writes bytes into the room that a module gives it, calls a function, and gets the results by
-//! `say`.
+//! To call a function, the Worker allocates bytes in a module, fills them and calls the function. The
+//! function returns its results through `say`.
 
 #[cfg(feature = "work")]
 pub mod bits;

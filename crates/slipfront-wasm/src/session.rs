@@ -20,8 +20,8 @@ struct Beginning {
     opening: Document,
 }
 
-/// Begins a session, given presets and the case with which the page opens, and how many Workers may go on
-/// beside it.
+/// Begins a session, given presets, the case with which the page opens, and the number of further Workers
+/// that may run.
 pub(crate) fn open(workers: u32) {
     refuse(read().map(|Beginning { presets, opening }| {
         let host = Rc::new(WorkerHost::new(presets, opening, workers));
@@ -37,7 +37,7 @@ pub(crate) fn handle() {
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return };
         let message = Message::parse(&text);
-        // It may hold the files of a run.
+        // The text may hold the files of a run.
         drop(text);
         match message {
             Ok(message) => session.handle(message),
@@ -46,8 +46,8 @@ pub(crate) fn handle() {
     });
 }
 
-/// Does what is due at a time of the Worker, ms, when the page has so many messages still to read; gives the
-/// time at which to call again, ms, which is negative if there is nothing to do before a message.
+/// Does what is due at `now`, a time of the Worker in ms, when the page has `unread` messages still to read.
+/// Returns the time of the next call, ms; negative if there is nothing to do before a message arrives.
 pub(crate) fn advance(now: f64, unread: u32) -> f64 {
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return -1.0 };
@@ -57,7 +57,7 @@ pub(crate) fn advance(now: f64, unread: u32) -> f64 {
     })
 }
 
-/// Hears what work of this number tells.
+/// Takes an event of the task with this number.
 pub(crate) fn hear(task: u32) {
     refuse(read().map(|event: Event| {
         PAGE.with_borrow(|page| {
@@ -68,7 +68,7 @@ pub(crate) fn hear(task: u32) {
     }));
 }
 
-/// Hears that work of this number has ended by a defect of its own.
+/// Records that the task with this number has crashed.
 pub(crate) fn hear_lost(task: u32) {
     PAGE.with_borrow(|page| {
         if let Some((_, host)) = page {

@@ -1,4 +1,4 @@
-//! Functions of the work beside a session that the Worker calls.
+//! Functions that the Worker calls for jobs outside the session.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -11,7 +11,7 @@ use crate::bits::bits_of_run;
 use crate::given::{self, duration, read, refuse};
 use crate::imports::{Saying, date, now, tell};
 
-/// A Worker that does work beside a session. It is ended from outside.
+/// The Worker of a job outside the session. It is stopped by terminating it from outside.
 struct OtherWorker(AtomicBool);
 
 impl Worker for OtherWorker {
@@ -35,18 +35,18 @@ fn clock() -> Duration {
     duration(now())
 }
 
-/// The time of day, UTC as in RFC 3339.
+/// The time of day: UTC, as in RFC 3339.
 fn time_of_day() -> String {
     date();
     String::from_utf8(given::take()).unwrap_or_default()
 }
 
-/// Does a job beside a session, and reports what it finds.
+/// Runs a job outside the session, and reports its events.
 pub(crate) fn run() {
     refuse(read().map(|job: Job| job.run(&OtherWorker(AtomicBool::new(false)))));
 }
 
-/// Runs a case from rest, and gives the archive of its files.
+/// Runs a case from rest, and sends the archive of its files.
 pub(crate) fn save() {
     let now = || (time_of_day(), clock());
     let report = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
@@ -54,14 +54,14 @@ pub(crate) fn save() {
     refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
 }
 
-/// A case as a text, and the files that it names.
+/// The text of a case, and the files that it names.
 #[derive(Deserialize)]
 struct CaseOfFiles {
     toml: String,
     files: BTreeMap<String, Vec<u8>>,
 }
 
-/// Gives the bits of a run after so many steps.
+/// Sends the bits of a run after at most `most_steps` steps.
 pub(crate) fn bits(most_steps: u32) {
     let bits =
         read().and_then(|case: CaseOfFiles| bits_of_run(&case.toml, &case.files, u64::from(most_steps)));

@@ -1,4 +1,4 @@
-//! `slipfront calibrate`: the keys of a case that measured records tell.
+//! `slipfront calibrate`: estimates keys of a case from measured records.
 
 use std::path::{Path, PathBuf};
 
@@ -80,13 +80,13 @@ impl CalibrateCommand {
             return self.plan(&file);
         }
         let records = file.read(&self.records).map_err(Failure::input)?;
-        // A calibration that is invalid, or has no memory, leaves no folder.
+        // A calibration that is invalid or needs too much memory leaves no folder.
         file.check_memory(&records, threads).map_err(Failure::input)?;
         let device = self.device.open(None, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         let training = self.training.as_deref();
         let notes: Vec<String> = records.iter().flat_map(SampledRecord::notes).collect();
-        // A signal leaves nothing of what is copied to the folder.
+        // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let folder = CalibrationFolder::open(&out, training, &file, records, self.force);
         let mut folder = folder.map_err(Failure::of_folder)?;
@@ -113,7 +113,7 @@ impl CalibrateCommand {
         folder.expect_own_records().map_err(Failure::running)
     }
 
-    /// Prints what records would tell.
+    /// Prints what planned records would determine.
     fn plan(&self, file: &CalibrationFile) -> Result<(), Failure> {
         let grids = match &self.until {
             Some(until) => file.planned(until, self.values),

@@ -1,4 +1,4 @@
-//! `slipfront design`: the texture that gives the friction that is wished for.
+//! `slipfront design`: the texture with the desired friction.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -64,14 +64,14 @@ impl DesignCommand {
         let threads = set_threads(self.threads)?;
         let file = DesignFile::load(&self.design).map_err(Failure::input)?;
         let runs = self.runs.unwrap_or(file.keys.runs) as usize;
-        // A design that is invalid, or has no memory, leaves no folder.
+        // A design that is invalid or needs too much memory leaves no folder.
         file.check(runs, threads, self.time.is_some())
             .map_err(Failure::input)?;
         if self.dry_run {
             return self.plan(&file, runs, threads);
         }
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
-        // A signal leaves nothing of what is copied to the folder.
+        // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         let began = Instant::now();
@@ -119,7 +119,7 @@ impl DesignCommand {
         folder.expect_verdict().map_err(Failure::running)
     }
 
-    /// Prints what is searched for, and what it costs.
+    /// Prints the target of the search, and its cost.
     fn plan(&self, file: &DesignFile, runs: usize, threads: usize) -> Result<(), Failure> {
         let plan = file.plan(runs, threads).map_err(Failure::input)?;
         if self.json {

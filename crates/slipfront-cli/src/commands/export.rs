@@ -94,7 +94,7 @@ impl ExportCommand {
     }
 }
 
-/// A change of the results, or a disk that cannot be written, is a failure of the work; all else is one of
+/// Changed results and disks that cannot be written are failures of the work; all other errors are errors of
 /// the input.
 fn failure(error: ExportError) -> Failure {
     if matches!(error, ExportError::Changed { .. } | ExportError::Write { .. }) {

@@ -1,4 +1,4 @@
-//! `slipfront family`: holds the options of the engine against exact answers.
+//! `slipfront family`: compares the options of the engine with exact answers.
 
 use std::path::PathBuf;
 

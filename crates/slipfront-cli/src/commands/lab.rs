@@ -58,12 +58,12 @@ pub(crate) struct LabCommand {
     single: Option<PathBuf>,
 }
 
-/// Beginning of the part of a link that holds the case.
+/// Marks the part of a link that contains the case.
 const LINK: &str = "#case=";
 
 impl LabCommand {
     pub(crate) fn execute(self, module_folder: Option<&Path>) -> Result<(), Failure> {
-        // First, since a large case is made on these threads.
+        // This comes first, because a large case is made on these threads.
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = set_worker_threads(Some(self.threads.unwrap_or((cores as u16 - 1).max(1))), 1)?;
         let link = self
@@ -96,8 +96,8 @@ impl LabCommand {
                 self.port
             ))
         })?;
-        // Whoever has the address can use the laboratory. The file goes with this value, when the server has
-        // ended.
+        // Anyone with the address can use the laboratory. The file is removed when this value is dropped,
+        // after the server has ended.
         let file = if others_read_output() {
             let file = laboratory.address_file(link);
             Some(file.map_err(|error| {
@@ -158,16 +158,16 @@ impl LabCommand {
     }
 }
 
-/// Folders in which the session as WebAssembly may stand: beside this program, and above that in `target/` of
-/// a checkout.
+/// Folders that may contain the session as WebAssembly: the folder of this program, and the one above it
+/// (`target/` in a checkout).
 fn places_of_module() -> Vec<PathBuf> {
     let program = std::env::current_exe().and_then(|program| program.canonicalize());
     let program = program.unwrap_or_default();
     program.ancestors().skip(1).take(2).map(Path::to_owned).collect()
 }
 
-/// Starts the browser on a page that leads to the address, which is not in the arguments: every user of the
-/// machine can read the arguments of a program.
+/// Opens a page in the browser that leads to the address. The address itself is not in the arguments, because
+/// every user of the machine can read the arguments of a program.
 fn start_browser(laboratory: &Laboratory, link: Option<&str>) -> Result<(), String> {
     if let Some(reason) = browser::hindrance() {
         return Err(reason);
@@ -196,7 +196,7 @@ fn others_read_output() -> bool {
 
 /// Waits for the signal that ends the command.
 async fn stopped(signals: &Signals) {
-    /// Time between two checks; short enough for a person who waits.
+    /// Time between two checks; short enough for a waiting user.
     const LOOK: Duration = Duration::from_millis(50);
     while signals.stopped().is_none() {
         tokio::time::sleep(LOOK).await;

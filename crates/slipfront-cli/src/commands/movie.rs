@@ -1,4 +1,4 @@
-//! `slipfront movie`: the snapshots of a run beside its friction curve, as a movie.
+//! `slipfront movie`: a movie of the snapshots of a run next to its friction curve.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -70,9 +70,9 @@ pub(crate) struct MovieCommand {
     force: bool,
 }
 
-/// Number of snapshots of a run that is made again for its movie, unless another is asked for.
+/// Number of snapshots of a run that is repeated for its movie, by default.
 const FRAMES: u16 = 100;
-/// Largest number of snapshots that can be asked for: beside them there are the start and the instants A-F.
+/// Largest number of snapshots that can be requested; the start and the instants A-F are added to them.
 const MOST_FRAMES: i64 = MAX_PICTURES as i64 - 7;
 
 /// Size of a movie in pixels.
@@ -94,7 +94,7 @@ fn per_second(text: &str) -> Result<f64, String> {
     within(text, 0.1, 50.0, "1/s")
 }
 
-/// Pictures per second of an MP4 file with these durations of pictures: no picture is left out.
+/// Pictures per second of an MP4 file with these durations of pictures, so that no picture is left out.
 fn rate(delays: &[u16]) -> usize {
     if delays.iter().any(|delay| *delay < 4) {
         50
@@ -161,7 +161,8 @@ impl MovieCommand {
             mp4(folder, &movie, self.size(), &delays)?
         } else {
             let bytes = movie::gif(&movie, self.size(), &delays).map_err(Failure::input)?;
-            // Not before: until here a signal ends the process, and nothing is left behind.
+            // Signals are caught only now: until here they may simply end the process, because nothing is
+            // left behind.
             Signals::catch().map_err(Failure::running)?;
             bytes
         };
@@ -180,7 +181,8 @@ impl MovieCommand {
 }
 
 impl MovieCommand {
-    /// The case of a run with more snapshots than it has kept, and their number, if the movie needs more.
+    /// The case of a run with more snapshots than the run has kept, and their number, if the movie needs
+    /// more.
     fn case_of_more(
         &self,
         run: &Inspection,
@@ -202,7 +204,7 @@ impl MovieCommand {
         let usual = mapped_field(&case);
         let field = self.field.unwrap_or(usual);
         case.output.fields = vec![field];
-        // The memory for drawing it counts, too; of another field a case has no movie.
+        // This also reserves the memory for drawing the movie. The case has a movie only of its usual field.
         case.output.movie = field == usual;
         Ok(Some((case, frames)))
     }
@@ -229,7 +231,7 @@ impl MovieCommand {
         seconds.or(self.fps.map(MoviePace::PerSecond)).unwrap_or_default()
     }
 
-    /// A sentence that the run has no snapshots of the field, with the fields of which it has.
+    /// Error message that the run has no snapshots of the field, with a list of the fields that it has.
     fn no_snapshots(&self, case: Option<&CaseFile>) -> String {
         let field = self
             .field
@@ -250,10 +252,10 @@ fn refused(sentence: String) -> Failure {
     Failure::input(anyhow::anyhow!(sentence))
 }
 
-/// The movie of a run folder as an MP4 file, made by ffmpeg.
+/// Makes an MP4 file of the movie of a run folder, with ffmpeg.
 fn mp4(run: &Path, movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec<u8>, Failure> {
     let failed = |error: std::io::Error| Failure::running(anyhow::anyhow!("cannot make the movie: {error}"));
-    // An MP4 file that begins with its index, which players want, cannot be written through a pipe.
+    // Players want the index at the beginning of an MP4 file, which cannot be written through a pipe.
     let signals = Signals::catch().map_err(failed)?;
     let folder = TemporaryFolder::new(run).map_err(failed)?;
     let path = folder.path().join("movie.mp4");
@@ -286,7 +288,7 @@ fn mp4(run: &Path, movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec
     std::fs::read(&path).map_err(failed)
 }
 
-/// Hands all pictures to ffmpeg, each as many times as its duration, and waits for its end.
+/// Passes all pictures to ffmpeg, each as many times as its duration requires, and waits for ffmpeg to end.
 fn feed(
     mut child: Child,
     movie: &Movie,
@@ -297,7 +299,7 @@ fn feed(
     let palette = pictures.palette();
     let mut pipe = child.stdin.take();
     let (rate, mut delays) = (rate(delays), delays.iter());
-    // Hundredths of a second before a picture; it begins at the nearest picture of the file.
+    // Hundredths of a second before a picture; the picture begins at the nearest frame of the file.
     let mut before = 0;
     let nearest = |hundredths: usize| (hundredths * rate + 50) / 100;
     let fed: Result<(), ()> = movie::draw(movie, pictures, |pixels| {
@@ -312,7 +314,7 @@ fn feed(
         let times = nearest(end) - nearest(before);
         before = end;
         for _ in 0..times {
-            // A program that ends early says why.
+            // If ffmpeg ends early, its own message says why.
             let written = pipe.as_mut().map(|pipe| pipe.write_all(&bytes));
             written.and_then(Result::ok).ok_or(())?;
         }

@@ -1,4 +1,4 @@
-//! `slipfront paper`: computes the figures of the paper and judges its claims.
+//! `slipfront paper`: computes the figures of the paper and checks its claims.
 
 use std::path::{Path, PathBuf};
 
@@ -99,7 +99,7 @@ impl PaperCommand {
     }
 }
 
-/// Refuses to replace pages that an earlier call has not written.
+/// Refuses to replace pages that were not written by an earlier call.
 fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
     let Some(path) = slipfront_paper::foreign_docs(docs) else {
         return Ok(());

@@ -53,7 +53,7 @@ impl TextureCommand {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        // A broken link is a file of the user as well, and `exists` does not see it.
+        // A broken link also counts as an existing file, although `exists` does not see it.
         if self.out.symlink_metadata().is_ok() && !self.force {
             let sentence = format!(
                 "{} exists: choose another name, or replace it with --force",

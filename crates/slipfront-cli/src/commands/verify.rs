@@ -1,4 +1,4 @@
-//! Command `slipfront verify`: the files of results folders, compared with what was written there.
+//! `slipfront verify`: compares the files of results folders with their records.
 
 use std::path::{Path, PathBuf};
 
@@ -68,8 +68,7 @@ pub(crate) struct VerifyCommand {
 impl VerifyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(self.threads)?;
-        // A signal ends the work and not the process, so that nothing of it is left in the folder for
-        // temporary files.
+        // A signal ends the work, not the process, so no file is left in the folder for temporary files.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut found = Vec::new();
         for folder in &self.folders {
@@ -91,8 +90,8 @@ impl VerifyCommand {
         outcome(&found)
     }
 
-    /// Verifies a folder. That it cannot be verified is a finding, so that the others are looked at all the
-    /// same.
+    /// Verifies a folder. A folder that cannot be verified is a finding, not a failure, so the other folders
+    /// are still verified.
     fn look_at(&self, folder: &Path, signals: &Signals) -> Result<Finding, Failure> {
         if holds_pictures_alone(folder) {
             let verdict = Verdict {
@@ -147,13 +146,13 @@ impl VerifyCommand {
         self.repeat(&run, signals, verdict)
     }
 
-    /// Runs the case of a folder again beside it, and adds the differences.
+    /// Runs the case of a folder again in a temporary folder, and adds the differences to the verdict.
     fn repeat(&self, run: &Inspection, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         let (started, folder) = (clock::now(), run.path.as_path());
         let case = case_to_run(folder, signals, self.quiet, |watch| match &run.case {
             Ok(file) => of_file(file.clone(), folder, watch),
             Err(CaseDefect::NotResolved(file)) => of_file(*file.clone(), folder, watch),
-            // It says why there is none.
+            // `load` reports why there is no case.
             Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => {
                 Case::load(&folder.join("case.toml"), &[], watch, Ranks::ALONE)
             }
@@ -215,7 +214,7 @@ impl VerifyCommand {
     }
 }
 
-/// Fails unless all folders are as they were written.
+/// Fails unless all folders are unchanged.
 fn outcome(found: &[Finding]) -> Result<(), Failure> {
     let n = |status: Status| found.iter().filter(|found| found.status == status).count();
     let of_all = format!("of {}", count(found.len(), "folder"));
@@ -243,7 +242,7 @@ fn outcome(found: &[Finding]) -> Result<(), Failure> {
 struct Finding {
     status: Status,
     verdict: Verdict,
-    /// Reason for which the folder cannot be verified.
+    /// Reason why the folder cannot be verified.
     error: Option<String>,
 }
 
@@ -271,11 +270,11 @@ impl Finding {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Status {
-    /// All is as it was written.
+    /// All files are as they were written.
     Unchanged,
-    /// All is as it was written, but could not be derived again from the recorded runs.
+    /// All files are as they were written, but could not be derived again from the recorded runs.
     NotDerived,
-    /// Something is not as it was written.
+    /// Some file is not as it was written.
     Different,
     /// The folder holds only pictures, without recorded results.
     Pictures,
@@ -296,7 +295,7 @@ impl Status {
     }
 }
 
-/// Whether a folder holds pictures or movies and nothing else, as `slipfront plot` writes it.
+/// Whether a folder contains only pictures or movies, as `slipfront plot` writes it.
 fn holds_pictures_alone(folder: &Path) -> bool {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return false;
@@ -311,7 +310,7 @@ fn holds_pictures_alone(folder: &Path) -> bool {
     names.peek().is_some() && names.all(|name| is_picture(&name))
 }
 
-/// Completes the folder of a repeated run, with pictures unless the first run has drawn none.
+/// Completes the folder of a repeated run, with pictures unless the first run was without them.
 fn complete_as(
     before: Option<&Manifest>,
     case: &Case,

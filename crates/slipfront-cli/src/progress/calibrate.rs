@@ -24,7 +24,7 @@ impl CalibrateProgress {
     }
 }
 
-/// Text of the progress: runs done, the time left, and the purpose of the runs.
+/// Progress line: runs done, time left, and purpose of the runs.
 fn text(now: &CalibrationProgress, passed: Duration) -> String {
     let stage = match now.stage {
         CalibrationStage::Training => "training",

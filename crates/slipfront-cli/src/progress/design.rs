@@ -30,8 +30,8 @@ impl DesignProgress {
     }
 }
 
-/// Text of the progress: runs done of this stage, the time left for search and verdict, the stage, and the
-/// best value so far.
+/// Progress line: runs done of this stage, time left for search and verdict, the stage, and the best value so
+/// far.
 fn text(now: &SearchProgress, passed: Duration) -> String {
     let left = duration_left(now.work.left, now.work.here, passed);
     let left = left.map_or_else(String::new, |left| format!("  at most {left} left"));
@@ -54,7 +54,7 @@ mod tests {
 
     use super::*;
 
-    /// The time left is that of runs as they cost, not as they are many.
+    /// The time left follows from the cost of the runs, not from their number.
     #[test]
     fn the_best_so_far_and_the_time_left_are_shown() {
         let now = |here: f64| SearchProgress {
@@ -71,7 +71,7 @@ mod tests {
             text(&now(1e8), Duration::from_secs(4)),
             "50 of 100 runs  at most 40 seconds left  one surface  best 31.25"
         );
-        // All runs are those of an earlier call.
+        // All runs were made by an earlier call.
         assert_eq!(
             text(&now(0.0), Duration::from_secs(4)),
             "50 of 100 runs  one surface  best 31.25"

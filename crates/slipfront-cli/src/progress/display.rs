@@ -1,4 +1,4 @@
-//! Display of progress: a bar on a terminal, else plain lines.
+//! Display of progress: a bar on a terminal, otherwise plain lines.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -23,7 +23,7 @@ enum Sink {
 }
 
 impl ProgressDisplay {
-    /// A display; `template` is the template of its bar, in the format of indicatif.
+    /// Makes a display; `template` is the template of its bar, in the format of indicatif.
     pub(crate) fn new(template: &str, quiet: bool) -> Self {
         let began = Instant::now();
         let sink = if quiet || is_silent() {
@@ -65,14 +65,15 @@ impl ProgressDisplay {
         }
     }
 
-    /// Prints a line where lines are shown.
+    /// Prints a line if progress is shown as lines.
     pub(crate) fn print_line(&self, text: impl FnOnce() -> String) {
         if let Sink::Lines(_) = self.sink {
             print_stderr(&text());
         }
     }
 
-    /// Prints a line beside the progress, also where none is shown: for requested output, and for warnings.
+    /// Prints a line in addition to the progress, even if that is not shown: for requested output and for
+    /// warnings.
     pub(crate) fn note(&self, text: &str) {
         let text = for_stderr(text);
         match &self.sink {
@@ -89,22 +90,20 @@ impl ProgressDisplay {
     }
 }
 
-/// The time left for `more` things of which `here` were done in the time that has `passed`; empty where none
-/// was done.
+/// Time left for `more` items, when `here` items took the time `passed`; empty if `here` is 0.
 pub(crate) fn time_left(more: u64, here: u64, passed: Duration) -> String {
     let left = duration_left(more as f64, here as f64, passed);
     left.map_or_else(String::new, |left| format!("  {left} left"))
 }
 
-/// The time left for `more` work of which `here` was done in the time that has `passed`; none where none was
-/// done.
+/// Time left for `more` work, when `here` work took the time `passed`; none if `here` is 0.
 pub(super) fn duration_left(more: f64, here: f64, passed: Duration) -> Option<HumanDuration> {
     let seconds = more * passed.as_secs_f64() / here;
     let left = Duration::try_from_secs_f64(seconds).ok()?;
     (here > 0.0).then_some(HumanDuration(left))
 }
 
-/// Time between two plain lines after `passed`: 5 seconds at first, a minute in the log of hours.
+/// Time between two plain lines after `passed`: 5 seconds at first, a minute in a log of hours.
 fn pause(passed: Duration) -> Duration {
     (passed / 12).clamp(Duration::from_secs(5), Duration::from_secs(60))
 }

@@ -1,15 +1,15 @@
-//! Progress of a case that is made: of files that are read, and of a texture that is laid over the blocks.
+//! Progress of the building of a case: reading of files, and meshing of the texture.
 
 use std::time::{Duration, Instant};
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Time before any progress is shown: most cases take less.
+/// Time before any progress is shown; most cases take less.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// Time between two updates of the display, for which there are millions of calls.
+/// Time between two updates of the display, which is called millions of times.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Display of the share of a part of the work that is done, if the case takes long.
+/// Display of the completed fraction of a part of the work, if the case takes long.
 pub(crate) struct MeshProgress {
     quiet: bool,
     began: Instant,

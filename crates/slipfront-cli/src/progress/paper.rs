@@ -5,7 +5,7 @@ use slipfront_paper::{Stage, StepRule};
 
 use super::display::ProgressDisplay;
 
-/// Display of the figure that is being made: a bar on a terminal, else a line for each figure.
+/// Display of the figure being made: a bar on a terminal, otherwise a line for each figure.
 pub(crate) struct PaperProgress(ProgressDisplay);
 
 impl PaperProgress {

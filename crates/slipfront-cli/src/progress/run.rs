@@ -15,9 +15,9 @@ pub(crate) struct RunProgress {
 
 /// The steps of a run.
 struct Steps {
-    /// Place at which this process began.
+    /// Progress at which this process began.
     first: Place,
-    /// Number of steps in which the drive moves: all, unless it is held.
+    /// Number of steps in which the drive moves: all steps, unless the drive is held at times.
     last: u64,
     n_blocks: usize,
 }
@@ -29,7 +29,7 @@ struct Place {
     step: u64,
     /// Steps in which the drive moved.
     drive_steps: u64,
-    /// Name of the measure of progress: t*, or the path of a drive that is held.
+    /// Name of the measure of progress: t*, or the path of a held drive.
     name: &'static str,
     value: f64,
 }
@@ -52,7 +52,7 @@ impl Place {
 }
 
 impl RunProgress {
-    /// The display for a run that begins, or is resumed, at its present step.
+    /// Makes the display for a run that begins or is resumed at its present step.
     pub(crate) fn new(running: &Running, quiet: bool) -> Self {
         let case = running.case();
         Self {
@@ -73,7 +73,7 @@ impl RunProgress {
         });
     }
 
-    /// Prints a line beside the progress, also where none is shown.
+    /// Prints a line in addition to the progress, even if that is not shown.
     pub(crate) fn note(&self, text: &str) {
         self.display.note(text);
     }
@@ -84,7 +84,7 @@ impl RunProgress {
 }
 
 impl Steps {
-    /// The state of a run. Its rate is that of the steps of this process, which has run for the time
+    /// Progress line of a run. The rate counts only the steps of this process, which has run for the time
     /// `passed`.
     fn text(&self, now: Place, mu_star: f64, passed: Duration) -> String {
         let percent = 100.0 * now.drive_steps as f64 / self.last as f64;
@@ -115,8 +115,8 @@ mod tests {
         }
     }
 
-    /// A resumed run counts its own steps: half of the rest took a minute, so that a minute is left, however
-    /// much an earlier process had done.
+    /// A resumed run counts its own steps: half of the rest took a minute, so a minute is left, regardless of
+    /// the steps of an earlier process.
     #[test]
     fn a_resumed_run_counts_its_own_steps() {
         let steps = Steps {
@@ -134,7 +134,7 @@ mod tests {
         );
     }
 
-    /// A held drive shows its path: the drive has stood in 2000 of 3000 steps.
+    /// A held drive shows its path: the drive was at rest in 2000 of 3000 steps.
     #[test]
     fn a_held_drive_shows_its_path() {
         let steps = Steps {

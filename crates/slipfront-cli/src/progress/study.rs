@@ -25,8 +25,8 @@ impl StudyProgress {
     }
 }
 
-/// Runs done, their rate in this process, which has run for the time `passed`, the time left, failed runs,
-/// and the widest interval of a study that goes on until intervals are narrow.
+/// Progress line: runs done, their rate in this process, which has run for the time `passed`, time left,
+/// failed runs, and the widest interval of a study that continues until intervals are narrow.
 fn text(now: &Progress, passed: Duration) -> String {
     let failed = match now.failed {
         0 => String::new(),
@@ -35,7 +35,7 @@ fn text(now: &Progress, passed: Duration) -> String {
     let worst = now
         .worst
         .map_or(String::new(), |worst| format!("  widest \u{b1} {worst:.1e}"));
-    // Runs recorded before say nothing of the rate.
+    // Runs recorded earlier do not count for the rate.
     let rate = match now.here {
         0 => String::new(),
         here => format!("  {}", rate(here as f64 / passed.as_secs_f64())),
@@ -48,7 +48,7 @@ fn text(now: &Progress, passed: Duration) -> String {
     )
 }
 
-/// A rate in a unit in which it is easy to read.
+/// A rate in the unit in which it is easy to read.
 fn rate(per_second: f64) -> String {
     if per_second >= 1.0 {
         format!("{per_second:.1} runs/s")
@@ -72,7 +72,7 @@ mod tests {
             failed: 0,
             worst: None,
         };
-        // All were recorded before: there is no rate.
+        // All runs were recorded earlier: there is no rate.
         assert_eq!(text(&now, Duration::from_secs(1)), "7 of 7 runs");
         now = Progress {
             done: 100,
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(rate(1.0 / 600.0), "6.0 runs/h");
     }
 
-    /// The longest text fits a terminal, for the most runs that need no confirmation.
+    /// The longest line fits a terminal, for the largest number of runs without confirmation.
     #[test]
     fn the_longest_text_fits_a_terminal() {
         let now = Progress {

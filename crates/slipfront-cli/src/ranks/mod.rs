@@ -15,10 +15,10 @@ use slipfront_run::resume_command::resume_command;
 use self::traffic::Traffic;
 use crate::failure::Failure;
 
-/// The ranks of a command, as one of them sees them.
+/// The ranks of a command, from the view of one of them.
 ///
-/// The ranks agree on the findings of each before they need each other, so that no rank waits for one that
-/// has given up. Functions that end with [`RankFailure`] end so on every rank.
+/// The ranks agree on the outcome of each before they depend on each other, so that no rank waits for one
+/// that has failed. A function that fails with [`RankFailure`] does so on every rank.
 #[derive(Clone)]
 pub(crate) struct CommandRanks {
     program: &'static str,
@@ -40,12 +40,12 @@ impl CommandRanks {
         }
     }
 
-    /// Connection by which the ranks talk.
+    /// The connection between the ranks.
     pub(crate) fn communicator(&self) -> Arc<dyn Communicator> {
         Arc::clone(&self.communicator) as Arc<dyn Communicator>
     }
 
-    /// Number of ranks on this machine, by its name.
+    /// Number of ranks on this machine, identified by its name.
     pub(crate) fn on_node(&self) -> usize {
         let own = machine_number();
         let machines = of_all(&*self.communicator, own).into_iter();
@@ -57,23 +57,23 @@ impl CommandRanks {
         self.communicator.size()
     }
 
-    /// Whether this rank prints, and makes the folder, the manifest and the pictures, of which there is one.
+    /// Whether this rank prints and writes the folder, the manifest and the pictures.
     pub(crate) fn is_first(&self) -> bool {
         self.communicator.rank() == 0
     }
 
-    /// Outcome of this rank, if all have succeeded.
+    /// Returns the outcome of this rank, if all ranks have succeeded.
     pub(crate) fn agree<T>(&self, outcome: Result<T, Failure>) -> Result<T, RankFailure> {
         agree(&*self.communicator, outcome.map_err(RankFailure::from))
     }
 
-    /// Fails unless all ranks were given the same inputs.
+    /// Fails unless all ranks have the same inputs.
     pub(crate) fn expect_same(&self, given: impl FnOnce() -> NamedInputs) -> Result<(), RankFailure> {
         let same = expect_same(&*self.communicator, given);
         same.map_err(|difference| Failure::input(difference).into())
     }
 
-    /// Work of the first rank alone; none on the others.
+    /// Does work on the first rank only; returns none on the others.
     pub(crate) fn first<T>(
         &self,
         work: impl FnOnce() -> Result<T, Failure>,
@@ -88,18 +88,17 @@ impl CommandRanks {
         largest[0] > 0.0
     }
 
-    /// Replaces every value by the largest that any rank has in its place.
+    /// Replaces every value by its maximum over the ranks.
     pub(crate) fn largest(&self, values: &mut [f64]) {
         self.communicator.largest(values);
     }
 
-    /// The command that goes on with the run in a folder.
+    /// The command that resumes the run in a folder.
     pub(crate) fn resume_command(&self, folder: &Path) -> String {
         resume_command(self.program, folder)
     }
 
-    /// Description of the messages of this rank to the others per step, over `steps` steps; none for one
-    /// rank.
+    /// Description of the messages that this rank sends per step, over `steps` steps; none for a single rank.
     pub(crate) fn traffic(&self, steps: u64) -> Option<String> {
         (self.size() > 1 && steps > 0).then(|| self.communicator.per_step(steps))
     }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use slipfront::Communicator;
 use slipfront_base::number_format::byte_size;
 
-/// A connection with other ranks that counts its messages.
+/// A connection to other ranks that counts its messages.
 #[derive(Debug)]
 pub(super) struct Traffic {
     inner: Arc<dyn Communicator>,
@@ -30,7 +30,7 @@ impl TrafficCount {
             .fetch_add(size_of_val(values) as u64, Ordering::Relaxed);
     }
 
-    /// Number of messages and size per step, over `steps` steps.
+    /// Number of messages and their size per step, over `steps` steps.
     fn per_step(&self, steps: u64) -> (f64, String) {
         let [number, bytes] =
             [&self.number, &self.bytes].map(|count| count.load(Ordering::Relaxed) as f64 / steps as f64);
@@ -90,7 +90,7 @@ mod tests {
     use slipfront::communicator::Alone;
 
     /// Messages are counted: of 3 and 5 numbers in every step, an empty one in the other direction, and a sum
-    /// in every other step.
+    /// in every second step.
     #[test]
     fn what_is_given_is_counted() {
         let traffic = Traffic::count(Arc::new(Alone));

@@ -6,12 +6,12 @@ use slipfront_study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, an
 
 use crate::wrap::note;
 
-/// Largest number of rows that are printed, and of notes on omissions.
+/// Largest numbers of printed rows, and of notes on omissions.
 const MAX_ROWS: usize = 40;
 const MAX_NOTES: usize = 8;
 
-/// A row for static and for kinetic friction at all levels of the other axes; empty if no axis is one of
-/// directions.
+/// Rows for static and kinetic friction at all levels of the other axes; empty if no axis varies the
+/// direction.
 pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
     let all = anisotropies(plan, results);
     let Some(first) = all.first() else {
@@ -51,7 +51,7 @@ pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
     table + &notes(&all)
 }
 
-/// Notes on omissions, and on why there are no numbers where there are none.
+/// Notes on omissions, and on missing numbers.
 fn notes(all: &[Anisotropy]) -> String {
     let sentence = |row: &Anisotropy| {
         let parts = [row.left_out.as_ref(), row.found.as_ref().err()];
@@ -104,7 +104,7 @@ fn cells(row: &Anisotropy, found: &OverDirections) -> Vec<String> {
     levels.chain(cells).collect()
 }
 
-/// A probability to three places, or its power of ten where it is smaller.
+/// A probability to three decimals, or only its power of ten if it is smaller.
 fn probability(p: f64) -> String {
     match p {
         p if p >= 0.001 => format!("{p:.3}"),

@@ -1,4 +1,4 @@
-//! Additions of `slipfront check` to the physics of a case.
+//! Parts of the report of `slipfront check` that follow the physics of a case.
 
 use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
@@ -11,8 +11,8 @@ use super::speeds::Speeds;
 use super::summary::notes;
 use super::times::duration;
 
-/// The expected onset, the stability of the step, the cost, the speeds and the warnings; a step takes
-/// `per_step`.
+/// The expected onset, the stability of the step, the cost, the speeds and the warnings; `per_step` is the
+/// time of a step.
 pub(crate) fn cost(case: &Case, per_step: &StepTime) -> String {
     let (loading, _) = loading(case);
     let speeds = Speeds::of(case).map_or(String::new(), |speeds| speeds.text(case, per_step));
@@ -26,9 +26,9 @@ pub(super) fn warnings(case: &Case) -> Vec<String> {
     case.warnings().into_iter().chain(note).collect()
 }
 
-/// The time in which a slip front crosses the slider, about a block per t*, over the time in which the drive
-/// loads it, about 1/V*: the line of the report, and a note where the drive is the faster. A drive that is
-/// held waits for the front, and a single block has no mesh error.
+/// Ratio of the time in which a slip front crosses the slider, about one block per t*, to the time in which
+/// the drive loads it, about 1/V*: the line of the report, and a note if the drive is faster. A held drive
+/// waits for the front, and a single block has no mesh error.
 fn loading(case: &Case) -> (String, Option<String>) {
     if case.model.n_blocks() == 1 {
         return (String::new(), None);
@@ -101,7 +101,7 @@ fn onset(case: &Case) -> String {
     text + &whole_slider(case)
 }
 
-/// Expected static friction of the slider as a whole, where it is known and less than that of its blocks.
+/// Expected static friction of the whole slider, if it is known and less than that of its blocks.
 fn whole_slider(case: &Case) -> String {
     let given = case.scales.mu_static_mean;
     let expected = case
@@ -133,7 +133,7 @@ fn scales(case: &Case) -> String {
     )
 }
 
-/// Remark on the cost of a drive that is held, which leaves out the unknown time in which it stands.
+/// Remark on the cost of a held drive, which excludes the unknown time in which the drive is at rest.
 pub(super) fn standing(is_held: bool) -> &'static str {
     if is_held {
         ", not counting steps in which the drive stops"

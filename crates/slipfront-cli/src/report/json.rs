@@ -9,14 +9,14 @@ use slipfront_run::running::useful_threads;
 use super::cost::warnings;
 use super::speeds::Speeds;
 
-/// The text of a report as it is printed.
+/// The printed text of a report.
 pub(crate) fn text_of(report: &Value) -> String {
     format!("{report:#}\n")
 }
 
-/// The physics and the cost of a case, with the names of `summary.json` where that has the same number;
-/// a step takes `per_step`. A number that is not finite, such as the critical size of slip
-/// that is stable at any size, is null.
+/// The physics and the cost of a case, with the key names of `summary.json` for the same numbers; `per_step`
+/// is the time of a step. A number that is not finite, such as the critical size if slip of any size is
+/// stable, is null.
 pub(crate) fn check(case: &Case, per_step: &StepTime) -> Value {
     let (groups, lattice, plan) = (&case.groups, &case.model.lattice, &case.time_plan);
     let budget = &case.budget;

@@ -5,8 +5,8 @@ use slipfront_case::case::{Case, CaseLength};
 
 use slipfront_study::text_table::table;
 
-/// The table of the lengths of a case with the number of blocks that is enough for each, and the length that
-/// decides.
+/// The table of the lengths of a case, with the number of blocks that is sufficient for each, and the length
+/// that decides on the mesh.
 pub(crate) fn lengths(case: &Case) -> String {
     let rows: Vec<Vec<String>> = case.lengths().iter().map(|length| row(case, length)).collect();
     let decides = case.deciding_length();
@@ -31,7 +31,7 @@ fn row(case: &Case, length: &CaseLength) -> Vec<String> {
     row
 }
 
-/// Remark behind a row.
+/// Remark at the end of a row.
 fn remark(case: &Case, length: &CaseLength) -> Option<String> {
     if length.blocks.is_infinite() {
         return Some("slip of any size is stable on this mount".to_owned());

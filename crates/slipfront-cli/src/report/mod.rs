@@ -1,5 +1,5 @@
-//! Reports of the commands: the physics of a case as a tree, its cost, the summary of a run, the plan of a
-//! design, the plan and the answer of a study.
+//! Reports of the commands: physics and cost of a case, summary of a run, plan of a design, and plan and
+//! results of a study.
 
 mod anisotropy;
 mod cost;

@@ -58,7 +58,7 @@ fn slider(case: &Case) -> String {
     format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
 }
 
-/// The stack that stands for a bulk body.
+/// The stack of sheets that represents a bulk body.
 fn body(case: &Case) -> Option<String> {
     let Some(bulk) = case.bulk_body() else {
         return case.file.slider.sheets.as_deref().map(|sheets| {
@@ -93,7 +93,7 @@ fn body(case: &Case) -> Option<String> {
     ))
 }
 
-/// Remark behind a property of the material that is not uniform.
+/// Remark on a property of the material that is not uniform.
 fn local(field: &Option<String>, grade: &Option<Grade>) -> String {
     match (field, grade) {
         (Some(file), _) => format!(" times {file}"),
@@ -146,7 +146,7 @@ fn load(case: &Case) -> String {
     )
 }
 
-/// The dead shear load, and what it takes of static friction.
+/// The dead shear load, and its share of static friction.
 fn shear(case: &Case) -> String {
     let [along, _] = case.model.mean_dead_load();
     let share = case.share_of_shear().map_or(String::new(), |share| {
@@ -203,7 +203,7 @@ fn drive(case: &Case) -> String {
     format!("{speed} {motion}{at}{stiffness}{held}")
 }
 
-/// The share of the blocks that is textured, the share asked for, and the roughness of height maps.
+/// Percentage of textured blocks, the requested percentage, and the roughness of height maps.
 pub(crate) fn texture(case: &Case) -> String {
     if case.file.texture.is_empty() {
         return "none".to_owned();
@@ -219,7 +219,7 @@ pub(crate) fn texture(case: &Case) -> String {
     )
 }
 
-/// The size and roughness of a height map, and its height of contact.
+/// Size and roughness of a height map, and its height of contact.
 fn topography(topography: &Topography) -> String {
     let in_metres = |length: f64| with_si_prefix(length, "m");
     let roughness = &topography.roughness;
@@ -241,8 +241,8 @@ fn topography(topography: &Topography) -> String {
     )
 }
 
-/// The smallest lengths of the texture, on lines of their own, with remarks on them and the remarks `said` on
-/// a file.
+/// The smallest lengths of the texture, each on its own line with remarks, and with the remarks `said` on a
+/// file.
 pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> String {
     let mut lines = String::new();
     for (name, length) in [("feature", smallest.feature), ("gap", smallest.gap)] {

@@ -1,4 +1,4 @@
-//! Speeds at which a drive can load a case, with the time that each takes and what it adds to friction.
+//! Drive speeds at which a case can be loaded, with the time of each and what it adds to friction.
 
 use serde_json::{Value, json};
 use slipfront::lattice::K_DRIVE;
@@ -10,27 +10,27 @@ use slipfront_study::text_table::table;
 
 use super::times::duration;
 
-/// Speeds of the table, over that which is slow enough.
+/// Speeds in the table, relative to the speed that is slow enough.
 const LISTED: [f64; 4] = [100.0, 10.0, 1.0, 0.1];
-/// Time in which a front crosses the slider over that of loading, above which no speed is listed: mu_s* is
-/// then a matter of speed alone.
+/// Largest ratio of the time in which a front crosses the slider to the loading time for which a speed is
+/// listed; above it mu_s* depends only on the speed.
 const FASTEST: f64 = 3.0;
-/// Rise of mu* in a step of a held drive that is proposed.
+/// Rise of mu* per step of a held drive that is proposed.
 const HELD_RISE: f64 = 1e-3;
-/// Steps of a drive of constant speed over those in which a held drive moves, from which the latter is
-/// proposed: it stands for some thirty times as many steps as it moves.
+/// Smallest ratio of the steps of a drive of constant speed to the steps in which a held drive moves, for
+/// which the held drive is proposed: it is at rest for some thirty times as many steps as it moves.
 const HELD_IS_CHEAPER: f64 = 50.0;
 
-/// The speeds of a case, the slow one among them, and the held drive that is cheaper still.
+/// The speeds of a case, including the slow one, and a held drive if that is even cheaper.
 pub(super) struct Speeds {
     given: LoadingSpeed,
     slow: LoadingSpeed,
-    /// Factor of the speed of a held drive, and the steps in which it moves.
+    /// Factor of the speed of a held drive, and the number of steps in which it moves.
     held: Option<(f64, f64)>,
 }
 
 impl Speeds {
-    /// The speeds of a case; none where its speed is part of its physics.
+    /// The speeds of a case; none if its speed is part of its physics.
     pub(super) fn of(case: &Case) -> Option<Self> {
         let given = case.loading_speed()?;
         let slow = given.times(rounded_down(case, given.factor_to_slow()));
@@ -61,7 +61,7 @@ impl Speeds {
         all
     }
 
-    /// The table and the line that names the slow speed; a step takes `per_step`.
+    /// The table, and the line that names the slow speed; `per_step` is the time of a step.
     pub(super) fn text(&self, case: &Case, per_step: &StepTime) -> String {
         let rows: Vec<Vec<String>> = self
             .all()
@@ -119,7 +119,7 @@ impl Speeds {
         row
     }
 
-    /// Keys of a speed, with that of a duration that is given in time and not by the path.
+    /// Keys that set a speed, and the duration if it is given as a time and not as a path.
     fn setting(&self, case: &Case, factor: f64) -> String {
         let (key, _) = key_and_unit(case);
         let mut text = match case.file.drive.speed {
@@ -135,7 +135,7 @@ impl Speeds {
         text
     }
 
-    /// The speeds for programs.
+    /// The speeds as JSON.
     pub(super) fn json(&self, case: &Case, per_step: &StepTime) -> Value {
         let speed = |speed: &LoadingSpeed| {
             json!({
@@ -156,8 +156,8 @@ impl Speeds {
     }
 }
 
-/// Whether a held drive is an answer: not on soft springs or where slip is stable, since slip then goes on
-/// while the drive stands.
+/// Whether a held drive is possible: not on soft springs or where slip is stable, because slip then continues
+/// while the drive is at rest.
 fn can_be_held(case: &Case) -> bool {
     let friction = &case.file.friction;
     let drives_all = case.file.drive.attached == Attached::At(AttachedEdge::All);
@@ -165,7 +165,7 @@ fn can_be_held(case: &Case) -> bool {
     drives_all && is_stiff && friction.can_be_held() && case.model.weakening().is_none()
 }
 
-/// The key of the speed as the case has it, and its value in the unit of that.
+/// The key that sets the speed in the case, and its value in the unit of that key.
 fn key_and_unit(case: &Case) -> (&'static str, f64) {
     match &case.file.drive.speed {
         DriveSpeed::Speed(speed) => ("drive.speed", speed.si()),
@@ -173,7 +173,7 @@ fn key_and_unit(case: &Case) -> (&'static str, f64) {
     }
 }
 
-/// A multiple of the speed of the case, as its key takes it.
+/// A multiple of the speed of the case, in the format of its key.
 fn value(case: &Case, factor: f64) -> String {
     match key_and_unit(case) {
         ("drive.speed", speed) => with_si_prefix(factor * speed, "m/s"),
@@ -181,10 +181,10 @@ fn value(case: &Case, factor: f64) -> String {
     }
 }
 
-/// A factor of the speed, rounded down so that the speed itself has one digit, as its key takes it.
+/// A factor of the speed, rounded down so that the value of the speed in its key has one digit.
 fn rounded_down(case: &Case, factor: f64) -> f64 {
     let (_, given) = key_and_unit(case);
-    // What misses a digit by rounding has it.
+    // A value just below a digit because of rounding counts as that digit.
     let text = format!("{:e}", factor * given * (1.0 + 1e-9));
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let first = digits.chars().next().unwrap_or('1');
@@ -192,7 +192,7 @@ fn rounded_down(case: &Case, factor: f64) -> f64 {
     speed / given
 }
 
-/// A number to its first digit and some after that.
+/// Rounds a number to its first digit and `after` more.
 fn to_digits(number: f64, after: usize) -> f64 {
     format!("{number:.after$e}").parse().unwrap_or(number)
 }

@@ -1,4 +1,4 @@
-//! The plan of a study, and its answer.
+//! The plan of a study, and its results.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -16,10 +16,10 @@ use super::cost::standing;
 use super::times::duration;
 use crate::wrap::note;
 
-/// Largest number of levels of an axis that are printed.
+/// Largest number of printed levels of an axis.
 const MAX_LEVELS: usize = 10;
 
-/// Largest number of points that are printed.
+/// Largest number of printed points.
 const MAX_POINTS: usize = 40;
 
 /// The plan of a study and its cost.
@@ -68,7 +68,7 @@ pub(crate) fn plan(plan: &Plan, time: TimeRange, threads: usize) -> String {
     )
 }
 
-/// The axes with their levels: a line each, or a table where several keys change together.
+/// The axes with their levels: a line each, or a table if several keys change together.
 fn axes(plan: &Plan) -> String {
     let mut text = String::new();
     for axis in &plan.axes {
@@ -88,12 +88,12 @@ fn axes(plan: &Plan) -> String {
     text
 }
 
-/// Coverages that are meshed to one.
+/// Note on coverages that give the same mesh.
 fn merged(plan: &Plan) -> Option<String> {
     MeshedCoverage::of(plan)?.merged(plan)
 }
 
-/// Warnings about the cases of a study as notes.
+/// Warnings about the cases of a study, as notes.
 fn case_warnings(plan: &Plan) -> String {
     warning_texts(plan)
         .iter()
@@ -101,7 +101,7 @@ fn case_warnings(plan: &Plan) -> String {
         .collect()
 }
 
-/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures,
+/// The results of a study: its main quantity at every point, notes, and the folder of tables and pictures,
 /// with the reasons for omissions.
 pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     let missing = why_no_pictures(&plan.axes).into_iter();
@@ -118,7 +118,7 @@ pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> Strin
     )
 }
 
-/// The main quantity at every point, a row each.
+/// The main quantity at every point, one row each.
 fn points(plan: &Plan, results: &StudyResults) -> String {
     let shown = plan.points.len().min(MAX_POINTS);
     let axes = plan.axes.iter().flat_map(|axis| &axis.columns);
@@ -155,8 +155,7 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
     text + "\n"
 }
 
-/// The coverage of the texture as meshed at the points that are shown, if an axis asks for another one at any
-/// of them.
+/// The meshed coverage at the points shown, if an axis requests another coverage at any of them.
 fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
     let coverage = MeshedCoverage::of(plan)?;
     let levels: Vec<Vec<usize>> = plan.points[..shown]
@@ -175,7 +174,7 @@ fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
         .then_some(meshed)
 }
 
-/// The main quantity at a point with its interval, the number of values, and remarks for a reader.
+/// The main quantity at a point with its interval, the number of values, and remarks.
 fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String> {
     let has_failed = || results.failures().any(|(run, _)| run.point == point);
     let without = results.runs_without_transition(point, plan.main_quantity());
@@ -191,7 +190,7 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String>
     }
     if without > 0 {
         let replicates = results.points[point].replicates;
-        // A reduction is lost with the run of the point or with its reference.
+        // A reduction is missing if the run of the point or its reference failed.
         let of = if plan.main_quantity() == REDUCTION {
             "pair"
         } else {
@@ -205,10 +204,10 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String>
     cells
 }
 
-/// Notes for a reader on the study as a whole.
+/// Notes on the study as a whole.
 fn notes(plan: &Plan, results: &StudyResults) -> String {
     let mut text = String::new();
-    // Points share references: each counts once.
+    // Points share references, and each reference counts once.
     let without: HashSet<String> = results
         .without_transition()
         .map(|run| plan.identity(run))

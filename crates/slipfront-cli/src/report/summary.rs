@@ -1,4 +1,4 @@
-//! The summary of a run, to be read at a glance.
+//! The summary of a run, readable at a glance.
 
 use slipfront_base::number_format::{count, four_digits, with_si_prefix, with_uncertainty};
 use slipfront_case::case::Case;
@@ -9,7 +9,7 @@ use slipfront_run::times::instant;
 
 use crate::wrap::note;
 
-/// The summary of a run, a line for each number, and its warnings.
+/// The summary of a run, with one line per number, and its warnings.
 pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     let mut lines = vec![("static friction", static_friction(case, summary))];
     if let Some(first) = summary.first_slip_time_star {
@@ -34,7 +34,7 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
 }
 
 fn static_friction(case: &Case, summary: &Summary) -> String {
-    // A peak that no fall has followed may still be exceeded.
+    // Without a fall after it, a peak may still be exceeded.
     let bound = if summary.transition { "" } else { "at least " };
     format!(
         "{bound}mu_s* = {:.4}   mu_s = {:.4}   at {}",
@@ -69,7 +69,7 @@ fn sliding_blocks(case: &Case, summary: &Summary) -> String {
     let kinetic = kinetic.map_or(String::new(), |kinetic| {
         format!(", {kinetic:.1} % in the kinetic window")
     });
-    // Where contacts that break are what slides, a block without one does not count.
+    // If sliding means that contacts break, a block without a contact does not count.
     let breaks = case.model.friction.needs().stores_energy;
     let textured = if summary.texture_percent > 0.0 && !breaks {
         format!(
@@ -98,7 +98,7 @@ fn energy(summary: &Summary) -> String {
     )
 }
 
-/// Warnings, a note for each.
+/// Warnings, one note each.
 pub(super) fn notes(warnings: &[String]) -> String {
     warnings.iter().map(|warning| note(warning)).collect()
 }

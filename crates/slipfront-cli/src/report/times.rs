@@ -1,4 +1,4 @@
-//! Durations as they are printed for a reader.
+//! Durations in printed form.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! The memory and disk space of a run are those that were stated before it began. The allocator counts for a
-//! whole process: every test has its own.
+//! Compares the memory and disk space of runs with their estimates. The allocator counts for a whole process,
+//! so every test runs in its own process.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -28,7 +28,7 @@ use slipfront_run::{pictures, results, running};
 use slipfront_study as study;
 use slipfront_study::{Plan, RunJournal, StudyFile};
 
-/// The system's allocator, counting bytes of all threads.
+/// The system's allocator, which counts the bytes of all threads.
 struct Counting;
 
 static LIVE: AtomicUsize = AtomicUsize::new(0);
@@ -73,21 +73,23 @@ fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (PEAK.load(Ordering::Relaxed) as f64, done)
 }
 
-/// Largest ratio of the stated memory to the taken one, beside what does not grow with a run: what takes less
-/// is not refused.
+/// Largest ratio of estimated to used memory, apart from memory that does not depend on the run: an estimate
+/// above it could refuse a run that fits.
 const MARGIN: f64 = 1.5;
 
-/// Memory that is stated whatever a run is: the program itself, which no allocator sees, and pictures.
+/// Part of the estimate that does not depend on the run: the program itself, which the allocator does not
+/// see, and pictures.
 const FIXED: f64 = PROGRAM + PICTURES + 2e6;
 
-/// Memory that is stated whatever a design or a calibration is: both draw their pictures in the end.
+/// Part of the estimate that does not depend on the design or calibration: both draw their pictures at the
+/// end.
 const FIXED_WITHOUT_PICTURES: f64 = PROGRAM + 5e6;
 
 fn is_near(said: f64, taken: f64, fixed: f64) -> bool {
     said - fixed <= MARGIN * taken
 }
 
-/// Asserts that the stated memory is no less than the taken one, and within the margin of it.
+/// Asserts that the estimated memory is at least the used memory, and within the margin.
 fn assert_honest(what: &str, said: f64, taken: f64, fixed: f64) {
     let [shown_said, shown_taken] = [said, taken].map(|bytes| bytes / 1e6);
     println!("{what}: {shown_said:.1} MB said, {shown_taken:.1} MB taken");
@@ -110,8 +112,8 @@ fn npy(descr: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
     bytes
 }
 
-/// Files that are read: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, half
-/// of each.
+/// Writes input files: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, both
+/// half textured.
 fn write_inputs(folder: &Path) {
     let blocks = 400 * 400;
     let mu = npy("<f8", (0..blocks).flat_map(|_| 0.9f64.to_le_bytes()));
@@ -123,13 +125,14 @@ fn write_inputs(folder: &Path) {
     encoder.set_color(ColorType::Grayscale);
     encoder.set_depth(BitDepth::One);
     let mut writer = encoder.write_header().unwrap();
-    // The top row comes first, of the largest y: bright above, dark below, where the array is textured too.
+    // The top row, with the largest y, comes first: bright above and dark below, in the half where the array
+    // is textured too.
     let rows = [vec![255; 500 * 2000], vec![0; 500 * 2000]].concat();
     writer.write_image_data(&rows).unwrap();
     writer.finish().unwrap();
 }
 
-/// Does this work of the test `name` in a process of its own, in a folder with the files that are read.
+/// Does this work of the test `name` in its own process, in a folder with the input files.
 fn alone_in_folder(name: &str, work: impl FnOnce(&Path)) {
     alone(name, || {
         let folder = tempfile::tempdir().unwrap();
@@ -198,7 +201,7 @@ fn pictures_of_a_large_lattice_take_what_is_said() {
     );
 }
 
-/// Whole runs: pictures, rows of a series, lattices and fronts.
+/// Whole runs that test pictures, rows of a series, lattices and fronts.
 const RUNS: [&str; 7] = [
     // Pictures, and the rows of a long series.
     "slider.blocks=[1,1]",
@@ -212,9 +215,9 @@ const RUNS: [&str; 7] = [
     "slider.blocks=[300,75];drive.v_star=0.1;output.snapshots=[]",
 ];
 
-/// Whole runs of other laws, in the other kernel, with events and snapshots, and of cases that read files.
+/// Whole runs with other laws, in the other kernel, with events and snapshots, and of cases that read files.
 const OTHER_RUNS: [&str; 17] = [
-    // Laws of friction that remember more.
+    // Laws of friction with more state variables.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
      friction.contact_stiffness_star=0.1",
     "slider.blocks=[300,300];time.duration_star=1;output.snapshots=[];friction.law='rate_and_state';friction.a=0.01;\
@@ -222,7 +225,7 @@ const OTHER_RUNS: [&str; 17] = [
     "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
      friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
-    // Blocks that differ, in another kernel.
+    // Blocks with different properties, in the other kernel.
     "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
     "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
      time.duration_star=1;output.snapshots=[]",
@@ -239,10 +242,10 @@ const OTHER_RUNS: [&str; 17] = [
     "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
     "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
     "slider.blocks=[256,256];time.duration_star=20;output.snapshots={every=0.1};output.fields=['contact_stress_star'];output.movie=true",
-    // What is read.
+    // Input files.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
      friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
-    // What a run begins with, and what it leaves.
+    // Initial and final states.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];output.final_state=true;load.shear_star=0.5;\
      load.shear_field='mu.npy';initial={displacement_x='mu.npy',velocity_y='mu.npy'}",
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];slider.viscosity_time_star=0.1;load.shear_star=0.5;\
@@ -278,7 +281,7 @@ const MODELS: [&str; 20] = [
      friction.ageing={law='logarithmic',beta=0.1,time_star=1};friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
 ];
 
-/// Whole runs of cases with these keys.
+/// Computes whole runs of cases with these keys, and compares memory and disk space.
 fn runs(all: &[&str], folder: &Path) {
     for sets in all.iter().copied() {
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
@@ -301,7 +304,7 @@ fn runs(all: &[&str], folder: &Path) {
     }
 }
 
-/// Models with every option, on one thread and on as many as have bands of their own.
+/// Models with every option, on one thread and on as many threads as there are bands.
 fn models(folder: &Path) {
     for sets in MODELS {
         let sets = format!("slider.blocks=[496,496];time.duration_star=0.5;output.snapshots=[]{sets}");
@@ -318,13 +321,13 @@ fn models(folder: &Path) {
             (said, taken - before)
         };
         let [(said, on_one), (_, on_many)] = [1, 16].map(taken_on);
-        // The number of threads is not known to the estimate.
+        // The estimate does not know the number of threads.
         assert_honest(&sets, said, on_one.max(on_many), FIXED);
     }
 }
 
-/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of
-/// those that read.
+/// Ranks that build a case together use no more memory than a single process, apart from the buffers of the
+/// ranks that read.
 fn ranks(folder: &Path) {
     let text = "slider.blocks = [400, 400]\nfriction = { mu_static_field = 'mu.npy', mu_kinetic_field = 'mu.npy' }\n\
                 texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
@@ -346,8 +349,7 @@ fn ranks(folder: &Path) {
         taken - before
     };
     let (alone, one, four) = (alone - before, on_ranks(1), on_ranks(4));
-    // The decoder of an image, the reader of a file and the texts of a case, which hardly grow with the
-    // lattice.
+    // The decoder of an image, the reader of a file and the texts of a case hardly grow with the lattice.
     let buffers = 256.0 * 1024.0;
     assert!(
         four <= alone + 4.0 * buffers,
@@ -359,7 +361,7 @@ fn ranks(folder: &Path) {
     );
 }
 
-/// A run that goes on from a checkpoint, and saves the next one, takes no more than a run that begins.
+/// A run that is resumed from a checkpoint and saves the next one uses no more memory than a new run.
 fn checkpoints(folder: &Path) {
     for sets in [
         "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
@@ -368,7 +370,7 @@ fn checkpoints(folder: &Path) {
          friction.contact_stiffness_star=0.1",
     ] {
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
-        // `Case::parse` would reserve the memory of a run, to see whether it is available.
+        // `Case::parse` would reserve the memory of a run, to check whether it is available.
         let made = || {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap())
@@ -385,7 +387,7 @@ fn checkpoints(folder: &Path) {
         running.advance(case.time_plan.last_step - 1).unwrap();
         save(&case, &running);
         drop((case, running));
-        // The fonts of the pictures before, which a run has not yet when it goes on.
+        // The fonts of earlier pictures do not count: a resumed run has not loaded them yet.
         let before = LIVE.load(Ordering::Relaxed) as f64;
         let (taken, said) = peak(|| {
             let case = made();
@@ -402,7 +404,7 @@ fn checkpoints(folder: &Path) {
     }
 }
 
-/// Maps are averaged while they are read, so that their memory does not depend on the lattice.
+/// Maps are averaged while they are read, so their memory does not depend on the size of the lattice.
 fn pictures_of_a_large_lattice(folder: &Path) {
     let sets = [
         "slider.blocks=[1500,1200]",
@@ -421,12 +423,12 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     let (taken, drawn) = peak(|| pictures::draw(RunFiles::Folder(&out), &PictureLook::default()).unwrap());
     assert_eq!(drawn.len(), 2);
     let said = pictures::memory(std::slice::from_ref(&out)).unwrap();
-    // Pictures may be of any size.
+    // The estimate allows for pictures of any size.
     assert_honest("pictures of a large lattice", said, taken - before, FIXED + 100e6);
     std::fs::remove_dir_all(out).unwrap();
 }
 
-/// Textures of one image take the memory of one mask of the lattice.
+/// Several textures of one image use the memory of a single mask of the lattice.
 fn masks(folder: &Path) {
     let text = "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\n".repeat(40);
     let before = LIVE.load(Ordering::Relaxed) as f64;
@@ -434,9 +436,10 @@ fn masks(folder: &Path) {
         let file = CaseFile::parse(&text, "case", &[]).unwrap();
         Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap()
     });
-    // The centres of 13 of 25 rows of blocks lie in the dark half: the middle one on its first row of pixels.
+    // The centres of 13 of 25 rows of blocks are in the dark half; the middle row is on its first row of
+    // pixels.
     assert_eq!((case.texture.meshed_percent, case.inputs.len()), (52.0, 1));
-    // A sixteenth of the pixels of the image, one byte each: the decoder, the file and its copy are in it.
+    // A sixteenth of the number of pixels, one byte each: this includes the decoder, the file and its copy.
     let taken = taken - before;
     assert!(taken < 1e6, "{taken} bytes for 625 blocks");
 }
@@ -454,7 +457,7 @@ fn bytes_in(folder: &Path) -> f64 {
 fn assert_room(what: &str, said: f64, out: &Path) {
     let taken = bytes_in(out);
     assert!(said >= taken, "{what}: {said} bytes said, {taken} taken");
-    // Pictures of few colours are small; maps are counted where none is drawn.
+    // Pictures with few colours are small, and the estimate counts maps even if none is drawn.
     assert!(
         said <= MARGIN * taken + 4.5e6,
         "{what}: {said} bytes said, only {taken} taken"
@@ -526,14 +529,14 @@ fn calibrations(folder: &Path) {
     }
 }
 
-/// Does work on this many threads; the thread that waits for it is one more.
+/// Does work on this many threads, plus the thread that waits for it.
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
     pool.unwrap().install(work)
 }
 
-/// Measures the memory of work on one thread and on two, and asserts that what is `said` of each is honest.
-/// The memory of the work is that of its pieces, which threads do each for itself.
+/// Measures the memory of work on one thread and on two, and compares it with the estimate `said`. Each
+/// thread works on its own pieces, so their memory adds up.
 fn assert_honest_on_threads(
     what: &str,
     fixed: f64,
@@ -542,14 +545,14 @@ fn assert_honest_on_threads(
 ) {
     let mut alone = 0.0;
     for threads in [1, 2] {
-        // What an earlier part of the test has left, such as the fonts of pictures, is not counted.
+        // Memory left by an earlier part of the test, such as the fonts of pictures, does not count.
         let before = LIVE.load(Ordering::Relaxed) as f64;
         let (taken, ()) = peak(|| work(threads));
         let taken = taken - before;
         if threads == 1 {
             alone = taken;
         }
-        // Whether the largest pieces of two threads meet is up to the system: they may.
+        // The largest pieces of two threads may or may not coincide: the estimate must allow for it.
         let most = taken.max(threads as f64 * alone);
         assert_honest(
             &format!("{what} on {threads} threads"),
@@ -560,7 +563,7 @@ fn assert_honest_on_threads(
     }
 }
 
-/// Runs at once, of two sizes.
+/// A study of runs of two sizes.
 fn study(base: &str, folder: &Path) {
     let text = format!(
         "{base}base.time.duration_star = 2\n[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\n\

@@ -1,4 +1,4 @@
-//! A slider that is driven at the blocks that a file names.
+//! A slider that is driven at the blocks listed in a file.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -6,14 +6,14 @@ use std::time::Duration;
 use crate::support::process::{send, stderr, stdout};
 use crate::support::workspace::Workspace;
 
-/// A case with these lines in its table `[drive]`. Around a second: long enough to be stopped.
+/// A case with these lines in its table `[drive]`. It takes around a second: long enough to be stopped.
 fn case(drive: &str) -> String {
     format!("[slider]\nblocks = [60, 50]\n[drive]\nv_star = 1\n{drive}\n[time]\nduration_star = 500\n")
 }
 
 const TOTAL: &str = "total_stiffness_star = 20";
 
-/// A `.npy` file of 60 x 50 blocks; those for which `value` is 1 are attached.
+/// A `.npy` file of 60 x 50 blocks; blocks with the `value` 1 are attached.
 fn npy(value: impl Fn(usize, usize) -> i8) -> Vec<u8> {
     let mut bytes =
         b"\x93NUMPY\x01\x00\x46\x00{'descr': '|i1', 'fortran_order': False, 'shape': (50, 60), }".to_vec();
@@ -33,8 +33,8 @@ fn workspace() -> Workspace {
     workspace
 }
 
-/// The blocks of an edge that a file names are driven as those of `attach` are, to the last bit, and a
-/// stiffness with its unit is the same as without. The run goes on from its own copy of the file.
+/// A file that lists the blocks of an edge gives the same bits as that edge in `attach`, and a stiffness with
+/// a unit the same bits as without one. The run is resumed with its own copy of the file.
 #[cfg(unix)]
 #[test]
 fn a_file_attaches_as_an_edge_does() {
@@ -46,7 +46,7 @@ fn a_file_attaches_as_an_edge_does() {
     workspace.succeed("run left.toml -o left");
     assert_eq!(series("whole"), series("left"));
     assert!(!workspace.exists("whole/precursors.csv"), "a file names no edge");
-    // E l = 100 GPa times 1 um.
+    // E l is 100 GPa times 1 um.
     workspace.write(
         "unit.toml",
         case("attach_file = 'edge.npy'\ntotal_stiffness = '2000 kN/m'"),

@@ -1,4 +1,4 @@
-//! Runs that cannot end well: diverged, interrupted, on a full disk, without a reader of their output.
+//! Runs that cannot end well: diverged, interrupted, on a full disk, or with nobody to read their output.
 
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
@@ -7,7 +7,7 @@ use crate::fixtures::RUN_FILES;
 use crate::support::process::{program, send, stderr, wait_for};
 use crate::support::workspace::Workspace;
 
-/// A step just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
+/// The step is just below the limit of the linear lattice, and the strains stiffen its springs beyond it.
 pub(super) const DIVERGING: &str = "[slider]\nomega_star = 0\n[load]\npressure = '50 GPa'\n[drive]\nv_star = 10\n\
     [friction]\nr_star = 0\nsigma_static_star = 1\n[time]\nstep = 0.9\nduration_star = 2000\n";
 
@@ -50,8 +50,8 @@ fn a_closed_pipe_is_no_failure() {
     assert!(workspace.exists("results/small/manifest.json"));
 }
 
-/// A full disk behind stdout loses messages and nothing else; a command whose only product is its output
-/// reports it.
+/// With a full disk behind stdout, messages are lost and nothing else; a command that only prints reports the
+/// error.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_stdout_stops_no_work() {
@@ -114,7 +114,7 @@ fn a_full_stdout_stops_no_work() {
     workspace.assert_same_run("whole", "b");
 }
 
-/// A limit of addresses ends in a sentence, or in less work at once, and never in an abort.
+/// A limit on address space ends in an error message, or in fewer threads, and never in an abort.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_limit_of_addresses_ends_nothing_in_an_abort() {
@@ -129,7 +129,7 @@ fn a_limit_of_addresses_ends_nothing_in_an_abort() {
     let limited = |mib: u64, line: &str| {
         workspace.shell(&format!("ulimit -v {}; exec {} {line}", 1024 * mib, program()))
     };
-    // With less, the system cannot load the program.
+    // Below this limit, the system cannot load the program.
     let loads = |mib: &u64| limited(*mib, "--version").status.success();
     let least = (16..512).step_by(4).find(loads).unwrap();
     let mut statuses = BTreeSet::new();
@@ -160,13 +160,13 @@ fn a_limit_of_addresses_ends_nothing_in_an_abort() {
             statuses.insert((mib, status));
         }
     }
-    // Some were refused, and with a GiB nothing was.
+    // Some commands were refused, and none with a GiB.
     assert!(statuses.contains(&(least, Some(2))), "{statuses:?}");
     let of_a_gib: Vec<_> = statuses.iter().filter(|(mib, _)| *mib == 1024).collect();
     assert_eq!(of_a_gib, [&(1024, Some(0))]);
 }
 
-/// No more threads than cores, whatever is asked for, and fewer where the system refuses some.
+/// There are no more threads than cores, whatever number is requested, and fewer if the system refuses some.
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_had_are_done_without() {
@@ -183,15 +183,15 @@ fn threads_that_cannot_be_had_are_done_without() {
     let mut process = workspace.process("plot a -o drawn");
     let output = process.env("RAYON_NUM_THREADS", "99999").output().unwrap();
     assert!(output.status.success() && stderr(&output).is_empty());
-    // A user who has no other process and may have one: to become it takes rights that few have, and nothing
-    // is tested then.
+    // A user with no other process and a limit of one. Becoming this user takes rights that few users have;
+    // without them this part is skipped.
     let anyone = "chmod 777 . && cp -R a of-anyone && chmod -R a+rwX of-anyone";
     assert!(workspace.shell(anyone).status.success());
     let as_other = "setpriv --reuid 64321 --clear-groups prlimit --nproc=1";
     if !workspace.shell(&format!("{as_other} true")).status.success() {
         return;
     }
-    // Where the program lies, that user may not look.
+    // That user may have no access to the folder of the program.
     std::fs::copy(program(), workspace.path("slipfront")).unwrap();
     for (line, status) in [
         ("plot of-anyone -o drawn-by-one", 0),
@@ -234,7 +234,7 @@ fn an_interrupt_ends_the_run_and_leaves_it_incomplete() {
     assert!(!workspace.exists("a/manifest.json"));
 }
 
-/// Every file is either not there, or whole.
+/// Asserts that every file is either missing or complete.
 fn assert_incomplete_but_sound(workspace: &Workspace, whole: &str, broken: &str) {
     let whole = workspace.files(whole);
     for (name, bytes) in workspace.files(broken) {
@@ -249,19 +249,19 @@ fn assert_incomplete_but_sound(workspace: &Workspace, whole: &str, broken: &str)
     }
 }
 
-/// Files may not grow beyond a size, whatever writes them: where each file of the run stops, in turn.
+/// A limit on file size stops the run at each of its files in turn, whatever code writes the file.
 #[cfg(unix)]
 #[test]
 fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
     let workspace = Workspace::small();
-    // With a short series, so that it is not always the one file that grows too large.
+    // The series is short, so that it is not always the file that grows too large.
     let run = "run small.toml --quiet --set output.series=1000 -o";
     workspace.succeed(&format!("{run} whole"));
     let mut sizes: Vec<usize> = workspace.run_files("whole").values().map(Vec::len).collect();
     sizes.sort_unstable();
     let mut failed = Vec::new();
     for (number, size) in sizes.iter().enumerate() {
-        // In units of 512 bytes.
+        // The limit is in units of 512 bytes.
         let limit = (size - 1) / 512;
         let script = format!("ulimit -f {limit}; exec {} {run} broken{number}", program());
         let output = workspace.shell(&script);
@@ -283,11 +283,11 @@ fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
     assert!(failed.len() >= 5, "only {failed:?} were hit");
 }
 
-/// Runs a line in a folder `disk` of its own size and number of files; returns the status and the messages.
-/// Mounting one takes rights that few have: nothing is tested then.
+/// Runs a line in a folder `disk` with its own limits on size and number of files; returns the status and the
+/// messages. Mounting such a disk takes rights that few users have; without them nothing is tested.
 #[cfg(target_os = "linux")]
 fn on_a_small_disk(workspace: &Workspace, options: &str, line: &str) -> Option<(i32, String)> {
-    // A mount in a name space of its own goes away by itself.
+    // A mount in its own namespace disappears by itself.
     let script = format!(
         "mkdir disk && mount -t tmpfs -o {options} tmpfs disk || exit 77
          {} {line} 2> said
@@ -345,13 +345,14 @@ fn a_study_without_room_is_said_before_its_runs() {
     assert!(workspace.read("left/a/runs.jsonl").is_empty());
 }
 
-/// A disk that takes so many bytes, but not so many files.
+/// A disk with enough bytes but too few inodes.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_no_half_results() {
     let workspace = Workspace::small();
     workspace.succeed("run small.toml -o whole");
-    // Its own folder, that of the run, the hidden one in it with a folder and the journal, and four files.
+    // Inodes: the root, the run folder, the hidden folder in it with a subfolder and the journal, and four
+    // files.
     let run = "run small.toml --quiet -o disk/a";
     let Some((status, said)) = on_a_small_disk(&workspace, "size=8m,nr_inodes=9", run) else {
         return;

@@ -1,4 +1,4 @@
-//! The command `slipfront calibrate` from outside.
+//! Tests of the command `slipfront calibrate`.
 
 use crate::support::process::{send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
@@ -15,14 +15,14 @@ pub(crate) fn workspace() -> Workspace {
         "truth.toml",
         "slider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime = { step = 0.4, duration_star = 120 }\noutput.series = 1\n",
     );
-    // One of the surfaces that the check takes for its own.
+    // This is one of the surfaces that the check itself uses.
     workspace.succeed("run truth.toml --seed 2 -o truth --no-pictures --quiet");
     workspace.write("record.csv", workspace.read("truth/series.csv"));
     workspace
 }
 
-/// The printed text is the written one, the case runs, and the files are those of any other call and of
-/// `verify`.
+/// The printed text equals the written one, the case can be run, and other calls and `verify` give the same
+/// files.
 #[test]
 fn a_calibration_is_told_and_found_again() {
     let workspace = workspace();
@@ -54,19 +54,19 @@ fn a_calibration_is_told_and_found_again() {
     );
     let differs = workspace.output("verify found");
     assert!(differs.status.code() == Some(1) && stdout(&differs).contains("posterior.csv differs"));
-    // Once more nothing is run, and nothing changes.
+    // A second call runs nothing and changes nothing.
     let before = workspace.files("twice");
     let printed = workspace.succeed("calibrate fit.toml record.csv -o twice --json");
     assert!(workspace.files("twice") == before);
     assert_eq!(printed.trim_end(), workspace.read_text("twice/calibration.json"));
-    // The copies in the folder are a calibration of its name.
+    // The copies in the folder are a calibration with the name of the folder.
     std::fs::create_dir(workspace.path("results")).unwrap();
     std::fs::rename(workspace.path("twice"), workspace.path("results/twice")).unwrap();
     workspace.succeed("calibrate results/twice/calibration.toml results/twice/record-1.csv --quiet");
     assert!(workspace.files("results/twice") == before && !workspace.exists("results/calibration"));
 }
 
-/// Records that are planned need none that was measured, and leave nothing.
+/// A planned record needs no measured record, and no file is written.
 #[test]
 fn a_planned_record_says_what_it_would_show() {
     let workspace = Workspace::new();
@@ -92,7 +92,7 @@ fn a_planned_record_says_what_it_would_show() {
     }
 }
 
-/// Runs are kept where the next record at the same times finds them.
+/// Training runs are kept where a calibration of another record at the same times finds them.
 #[test]
 fn another_record_needs_no_runs() {
     let workspace = workspace();
@@ -113,7 +113,7 @@ fn another_record_needs_no_runs() {
     assert!(said.contains("contains another calibration"), "{said}");
 }
 
-/// A record that cannot be meant is refused before any run, and before a folder is made.
+/// A record with an obvious mistake is refused before any run, and before a folder is made.
 #[test]
 fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
     let workspace = workspace();
@@ -125,7 +125,7 @@ fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
         assert!(said.contains(words), "{words}: {said}");
         assert!(!workspace.exists("new"), "{words}");
     };
-    // Longer than its copy could be: nothing of it is read.
+    // This file is longer than the limit for copies: no part of it is read.
     let file = std::fs::File::create(workspace.path("long.csv")).unwrap();
     file.set_len(1 << 40).unwrap();
     let said = workspace.fail("calibrate fit.toml long.csv -o new", 2);
@@ -137,7 +137,7 @@ fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
         &format!("{header}\n{}", rows.replacen('\n', "\nNaN\n", 3)),
         "line 3 of wrong.csv, \"NaN\", has no number in column",
     );
-    // Times of the series begin at 0, in the first column of two that are asked for.
+    // The times of the series begin at 0; the time is shifted in the first of the two requested columns.
     let place = header.split(',').position(|name| name == "time_s").unwrap();
     let before = rows.lines().map(|row| {
         let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
@@ -157,8 +157,8 @@ fn a_record_that_cannot_be_meant_is_refused_before_any_run() {
     );
 }
 
-/// A record that the model does not make has status 1, with all results and, also where nothing else is
-/// printed, a sentence.
+/// For a record that the model cannot reproduce, the status is 1, all results are written, and an error
+/// message is printed even with `--quiet`.
 #[test]
 fn a_foreign_record_is_refused_aloud() {
     let workspace = workspace();
@@ -192,7 +192,7 @@ fn folders_of_others_are_left_alone() {
     assert!(said.contains("notes.txt") && !workspace.exists("new"), "{said}");
 }
 
-/// A signal keeps the finished runs, and the same command goes on.
+/// A signal keeps the finished runs, and the same command continues with them.
 #[cfg(unix)]
 #[test]
 fn a_signal_keeps_what_was_run() {

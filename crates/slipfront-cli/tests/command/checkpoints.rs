@@ -1,5 +1,5 @@
-//! Runs that are stopped and resumed: the same bytes as without a stop, and never from a checkpoint that is
-//! not theirs.
+//! Runs that are stopped and resumed write the same bytes as without a stop, and never resume from another
+//! run's checkpoint.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -14,22 +14,22 @@ use crate::broken::DIVERGING;
 use crate::support::process::{ignores_hangup, program, send, stderr, try_send, wait_for_signal_handlers};
 use crate::support::workspace::{Files, Workspace};
 
-/// Around a second: long enough to be stopped several times.
+/// Takes around a second: long enough to be stopped several times.
 const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.01\n\
                     [friction]\ncorrelation_length = '2.5 um'\n[[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
-/// The general kernel, and snapshots by the step.
+/// Uses the general kernel, with frequent snapshots.
 const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[friction]\nlaw = 'reversal'\n\
                        [output]\nsnapshots = { every = 75 }\n";
 
-/// A law that remembers something of every block.
+/// Uses a law with a state variable for every block.
 const SPRINGS: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[friction]\ncontact = 'springs'\n\
                        contact_stiffness_star = 0.3\nredraw = true\n";
 
 /// Enough blocks for two threads, until the onset.
 const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.05\n[time]\nstop = 'after_onset'\n";
 
-/// A drive that stands for many steps while blocks slip.
+/// A drive that is at rest for many steps while blocks slip.
 const HELD: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.02\nloading = 'held'\n[time]\nduration_star = 160\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
 
 fn slow_workspace() -> Workspace {
@@ -55,15 +55,15 @@ static SPOT: LazyLock<Vec<u8>> = LazyLock::new(|| {
     workspace.read("spot.png")
 });
 
-/// The folder of a run of `slow.toml` without a stop, made once: results compared with it have the same
-/// bytes.
+/// The folder of a run of `slow.toml` without a stop, computed once: stopped and resumed runs must have the
+/// same bytes.
 static WHOLE: LazyLock<Files> = LazyLock::new(|| {
     let workspace = slow_workspace();
     workspace.succeed("run slow.toml -o whole");
     workspace.files("whole")
 });
 
-/// Begins a run and stops it so many times, each of which saves a checkpoint.
+/// Begins a run and stops it `times` times; each stop saves a checkpoint.
 fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
     let mut line = line.to_owned();
     for _ in 0..times {
@@ -87,7 +87,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(case: &str, signal: &str
     let mut stops = 0;
     let mut line = format!("run {case} -o stopped");
     loop {
-        // Any number of threads, each time another one.
+        // Each call uses a different number of threads.
         let child = workspace.start_run(&format!("{line} --threads {}", 1 + stops % 3));
         sleep(Duration::from_millis(40 + 37 * (stops % 4)));
         try_send(&child, signal);
@@ -109,7 +109,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(case: &str, signal: &str
     workspace.succeed("verify stopped");
 }
 
-/// Signals with which queues warn before they kill.
+/// Signals by which queues warn before they kill.
 #[cfg(target_os = "linux")]
 #[test_case("-USR2", 140)]
 #[test_case("-XCPU", 152)]
@@ -128,8 +128,7 @@ fn a_warning_of_the_queue_stops_it(signal: &str, status: i32) {
     workspace.succeed("verify warned");
 }
 
-/// The case is read from a pipe in which nobody writes, so that the command never comes to look at the first
-/// signal.
+/// The case is read from a pipe without a writer, so the command never checks for the first signal.
 #[cfg(unix)]
 #[test]
 fn a_second_signal_ends_it_at_once() {
@@ -142,12 +141,12 @@ fn a_second_signal_ends_it_at_once() {
         send(&child, signal);
     }
     let status = child.wait().unwrap().code();
-    // The first is still on its way where the second overtakes it.
+    // The second signal may overtake the first.
     assert!(matches!(status, Some(130 | 143)), "{status:?}");
 }
 
-/// Messages that cannot be printed are no failure: a full disk under the log, or a terminal that has gone,
-/// costs nothing else.
+/// Messages that cannot be printed are no failure: a full disk under the log or a closed terminal has no
+/// other effect.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_said_is_no_failure() {
@@ -198,7 +197,7 @@ fn by_the_clock_it_saves_now_and_then() {
     workspace.wait_for("clocked/.slipfront/checkpoint-previous.bin");
     child.kill().unwrap();
     child.wait().unwrap();
-    // Without them, a signal has nothing to save.
+    // Without checkpoints, a signal cannot save the state.
     let mut child = workspace.start("run slow.toml -o off --checkpoint off --set time.duration_star=20000");
     workspace.wait_for("off/case.toml");
     send(&child, "-USR1");
@@ -225,7 +224,7 @@ fn what_is_complete_or_has_not_begun() {
     let summary = workspace.succeed("run --resume whole --json");
     assert_eq!(summary.as_bytes(), before["summary.json"]);
     assert!(workspace.files("whole") == before);
-    // Killed before its first checkpoint, or while it wrote its results.
+    // A run that was killed before its first checkpoint, or while it wrote its results.
     let case = String::from_utf8(before["case.toml"].clone()).unwrap();
     workspace.write("begun/case.toml", &case);
     workspace.write("begun/.slipfront/journal.jsonl", "");
@@ -233,7 +232,7 @@ fn what_is_complete_or_has_not_begun() {
     let said = workspace.succeed("run --resume begun");
     assert!(said.contains("goes on from the start"), "{said}");
     workspace.assert_same_run("whole", "begun");
-    // Where no run was begun there is none to resume, and nothing is touched.
+    // In a folder without a run there is nothing to resume, and no file is touched.
     workspace.write("other/notes.txt", "mine");
     for (folder, why) in [
         (
@@ -248,19 +247,19 @@ fn what_is_complete_or_has_not_begun() {
     }
     assert_eq!(workspace.files("other").len(), 1);
     assert!(!workspace.exists("nowhere"));
-    // Numbers that are not those of the run are not given out as such.
+    // Changed numbers are not printed as results of the run.
     let summary = summary.replacen("\": 0.", "\": 9.", 1);
     workspace.write("whole/summary.json", summary);
     let said = workspace.fail("run --resume whole --json", 2);
     assert!(said.contains("whole/summary.json differs"), "{said}");
     workspace.write("whole/summary.json", &before["summary.json"]);
-    // Whoever wants more of it may have changed its case.
+    // A user who wants a longer run may have changed its case.
     workspace.write("whole/case.toml", case.replace("v_star = 0.1", "v_star = 0.2"));
     let said = workspace.fail("run --quiet --resume whole", 2);
     assert!(said.contains("whole/case.toml differs"), "{said}");
     assert!(said.contains("is complete"), "{said}");
     workspace.write("whole/case.toml", &case);
-    // A run that was complete is not taken for one that was not.
+    // A complete run with a damaged manifest is not taken for an unfinished run.
     workspace.write("whole/manifest.json", "{}");
     assert!(
         workspace
@@ -311,18 +310,18 @@ fn one_process_at_a_time_goes_on_with_a_run() {
     assert!(child.wait().unwrap().success());
 }
 
-/// A checkpoint with its checksum made to fit again.
+/// Gives a changed checkpoint a valid checksum.
 fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes.truncate(bytes.len() - blake3::OUT_LEN);
-    // Of its only piece.
+    // The checkpoint has a single piece.
     assert!(bytes.len() < 4 << 20);
     let seal = blake3::hash(blake3::hash(&bytes).as_bytes());
     bytes.extend(seal.as_bytes());
     bytes
 }
 
-/// Everything that can be wrong with the latest checkpoint, each refused with its sentence; the one before it
-/// goes on.
+/// Every possible defect of the latest checkpoint is refused with its own message; the run can be resumed
+/// from the previous checkpoint.
 #[test]
 fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let workspace = slow_workspace();
@@ -350,7 +349,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     }
     refused(&[&latest[..], b"more"].concat(), "is damaged");
     refused(&workspace.read("whole/fields.nc"), "is damaged");
-    // Whole, and not its own.
+    // These checkpoints are complete, but belong to another run.
     let text = |from: &str, to: &str| {
         let line = latest.iter().position(|&byte| byte == b'\n').unwrap();
         let header = String::from_utf8(latest[..line].to_vec()).unwrap();
@@ -384,7 +383,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     refused(&latest, "does not belong to the case.toml");
     workspace.write("halted/case.toml", &case);
 
-    // A damaged one does not take the place of the one before, however often the run is stopped.
+    // A damaged checkpoint does not replace the previous one, however often the run is stopped.
     workspace.write("halted/.slipfront/checkpoint.bin", &latest[..n / 2]);
     let before = workspace.read("halted/.slipfront/checkpoint-previous.bin");
     let child = workspace.start_run("run --resume halted --previous");
@@ -395,15 +394,14 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     workspace.assert_same_run("whole", "halted");
 }
 
-/// A run that diverges does so again: there is nothing to go on with, and nothing of what others wrote is
-/// removed.
+/// A run that diverges would diverge again: there is nothing to resume, and no file from others is removed.
 #[test]
 fn a_resumed_run_that_diverges_leaves_its_case() {
     let workspace = Workspace::small();
     workspace.write("wild.toml", DIVERGING);
     workspace.fail("run wild.toml --quiet -o gone", 1);
     assert!(workspace.files("gone").is_empty());
-    // As a study leaves a failed run that it keeps.
+    // A study leaves a failed run like this if it keeps it.
     workspace.write(
         "study.toml",
         "base = 'wild.toml'\n[study]\nkeep = 'failed'\nreplicates = 1\n",
@@ -416,7 +414,7 @@ fn a_resumed_run_that_diverges_leaves_its_case() {
     assert!(workspace.files("out/runs") == kept);
 }
 
-/// Where a kill between the two renames leaves only the checkpoint before, it counts as the latest.
+/// A kill between the two renames leaves only the previous checkpoint, which then counts as the latest.
 #[test]
 fn where_only_the_one_before_is_left_it_is_taken() {
     let workspace = slow_workspace();
@@ -433,7 +431,7 @@ fn where_only_the_one_before_is_left_it_is_taken() {
     assert!(said.is_empty(), "{said}");
 }
 
-/// The manifest says what made the results: it is not written over another case than was run.
+/// The manifest says which case made the results: it is not written if the case was changed during the run.
 #[test]
 fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
     let workspace = slow_workspace();
@@ -457,7 +455,7 @@ fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
     }
 }
 
-/// A terminal that closes saves the run, unless it was told not to mind.
+/// A run saves its state if its terminal closes, unless it was started to ignore that signal.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_terminal_that_closes_loses_nothing() {
@@ -494,7 +492,8 @@ fn a_terminal_that_closes_loses_nothing() {
     workspace.assert_same_run("whole", "ignored");
 }
 
-/// A job script must not take a run that could not be saved for one that has only to be repeated.
+/// The status of a run that could not save its state must differ from the status of a saved one, so that a
+/// job script does not simply resume it.
 #[test]
 fn a_stop_that_saves_nothing_is_a_failure() {
     let workspace = slow_workspace();

@@ -6,7 +6,7 @@ use crate::fixtures::{list_as_written, unwrapped};
 use crate::support::process::stdout;
 use crate::support::workspace::Workspace;
 
-/// All lengths are those of the material; small enough for a test.
+/// All lengths are properties of the material; small enough for a test.
 pub(crate) const SHEET: &str = "[slider]\nblocks = [20, 20]\nblock_size = '50 um'\nthickness = '20 um'\n\
     [drive]\nv_star = 0.02\nstiffness_per_area = '1875 MPa/um'\n\
     [friction]\nsigma_static_star = 0\nsigma_kinetic_star = 0\nslip_weakening = { length_star = 0.4 }\n\
@@ -17,7 +17,8 @@ fn found(workspace: &Workspace, folder: &str) -> Value {
     serde_json::from_slice(&workspace.read(&format!("{folder}/convergence.json"))).unwrap()
 }
 
-/// The number of a mesh is that of the case on its blocks, and the error of the mesh follows from the three.
+/// The value on each mesh is the one of the case with its blocks, and the mesh error follows from the three
+/// values.
 #[test]
 fn a_sheet_is_told_with_the_error_of_its_mesh() {
     let workspace = Workspace::new();
@@ -35,7 +36,7 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
     let quantities = found["quantities"].as_array().unwrap();
     let of = |name: &str| quantities.iter().find(|one| one["quantity"] == name).unwrap();
     let static_friction = of("static_friction_star");
-    // The second mesh is that of the case itself.
+    // The second mesh is the mesh of the case itself.
     let summary = workspace.succeed("run sheet.toml -o run --json");
     let summary: Value = serde_json::from_str(&summary).unwrap();
     assert_eq!(static_friction["means"][1], summary["static_friction_star"]);
@@ -45,15 +46,15 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
             .read_text("meshes/convergence.txt")
             .contains("static_friction_star")
     );
-    // Once more, all runs are there, and the files the same; the answer for programs is that of the folder.
+    // A second call finds all runs and writes the same files; the JSON output equals the file in the folder.
     let before = workspace.files("meshes");
     let printed = workspace.succeed("converge sheet.toml -o meshes --json");
     assert!(workspace.files("meshes") == before);
     assert_eq!(serde_json::from_str::<Value>(&printed).unwrap(), found);
-    // A case of results has the name of their folder.
+    // A case from a results folder has the name of this folder.
     workspace.succeed("converge run/case.toml --replicates 1 --quiet");
     assert!(workspace.exists("results/run-meshes/convergence.json"));
-    // The plan names every mesh, and runs nothing.
+    // The plan lists every mesh, and nothing is run.
     let plan = workspace.succeed("converge sheet.toml -o plan --dry-run");
     for words in ["100 um   [10, 10]", "25 um   [40, 40]", "at most 6 runs"] {
         assert!(plan.contains(words), "{plan}");
@@ -61,7 +62,7 @@ fn a_sheet_is_told_with_the_error_of_its_mesh() {
     assert!(!workspace.exists("plan"));
 }
 
-/// The comparison of the meshes follows from the records, as tables do.
+/// The comparison of the meshes follows from the records, like the tables.
 #[test]
 fn verify_holds_what_meshes_found_against_the_records() {
     let workspace = Workspace::new();
@@ -81,7 +82,7 @@ fn verify_holds_what_meshes_found_against_the_records() {
     };
     for (name, text) in &written {
         let path = format!("meshes/{name}");
-        // A digit of a mean.
+        // Changes a digit of a mean.
         let place = text.rfind("1.00").unwrap();
         let mut digit = text.clone();
         digit.replace_range(place..=place, "2");
@@ -97,13 +98,13 @@ fn verify_holds_what_meshes_found_against_the_records() {
         list_as_written(&workspace, "meshes", name);
     }
     workspace.succeed("verify meshes");
-    // `slipfront study` on the study file computes tables alone, of which the folder is complete.
+    // `slipfront study` on the study file computes only tables, and that folder is complete.
     workspace.succeed("study meshes/study.toml -o again");
     assert!(!workspace.exists("again/convergence.json"));
     workspace.succeed("verify again");
 }
 
-/// A study over anything else gives no such file.
+/// A study without meshes has no such file.
 #[test]
 fn verify_notes_a_convergence_in_a_study_without_meshes() {
     let workspace = Workspace::new();
@@ -117,7 +118,7 @@ fn verify_notes_a_convergence_in_a_study_without_meshes() {
     assert!(unwrapped(&workspace.succeed("verify speeds")).contains("convergence.json is not slipfront's"));
 }
 
-/// The guide shows what the command prints of the case.
+/// The output in the guide is what the command prints for the case.
 #[test]
 fn the_guide_shows_what_is_printed() {
     let workspace = Workspace::new();
@@ -127,7 +128,7 @@ fn the_guide_shows_what_is_printed() {
     let shown = printed.split("note:").next().unwrap();
     let guide = std::fs::read_to_string(format!("{repository}/docs/guide/experiment.md")).unwrap();
     assert!(guide.contains(shown), "docs/guide/experiment.md lacks:\n{shown}");
-    // Without a length over which strength is lost.
+    // The same case without a length for slip weakening.
     let sheet = std::fs::read_to_string(format!("{repository}/cases/sheet.toml")).unwrap();
     let lines: Vec<&str> = sheet
         .lines()
@@ -147,7 +148,7 @@ fn the_guide_shows_what_is_printed() {
     assert!(guide.contains(&shown), "docs/guide/experiment.md lacks: {shown}");
 }
 
-/// A mask lies where its case places it, and is copied into the folder as in any study.
+/// A mask is placed by its case on every mesh, and copied to the folder as in any study.
 #[test]
 fn a_mask_is_laid_over_every_mesh() {
     let workspace = Workspace::new();
@@ -162,13 +163,13 @@ fn a_mask_is_laid_over_every_mesh() {
         let coverages = meshes
             .iter()
             .map(|mesh| mesh["coverage_percent"].as_f64().unwrap());
-        // Neither bare nor all textured.
+        // The slider is neither bare nor fully textured.
         assert!(coverages.clone().all(|percent| (10.0..90.0).contains(&percent)));
         assert_eq!(coverages.count(), 3);
     }
 }
 
-/// A limit would look like a number of the material.
+/// Without lengths of the material no limit is given, because it would look like a material property.
 #[test]
 fn no_limit_is_given_where_a_block_is_a_length_of_the_material() {
     let workspace = Workspace::new();
@@ -191,7 +192,7 @@ fn no_limit_is_given_where_a_block_is_a_length_of_the_material() {
     }
 }
 
-/// A case that cannot be put on meshes is refused before the first run, and before a folder is made.
+/// A case that cannot be put on several meshes is refused before the first run, and before a folder is made.
 #[test]
 fn what_cannot_be_put_on_meshes_is_refused() {
     let workspace = Workspace::new();
@@ -214,7 +215,7 @@ fn what_cannot_be_put_on_meshes_is_refused() {
     }
 }
 
-/// Runs that end before anything has slipped have nothing that meshes could be compared by.
+/// Runs that end before any slip give no value to compare between meshes.
 #[test]
 fn meshes_without_a_number_have_status_1() {
     let workspace = Workspace::new();

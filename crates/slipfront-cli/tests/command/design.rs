@@ -13,8 +13,8 @@ fn verdict(workspace: &Workspace, folder: &str) -> Value {
     serde_json::from_slice(&workspace.read(&format!("{folder}/design.json"))).unwrap()
 }
 
-/// The printed text is the written one, the case runs with the texture, and the files are those of any other
-/// call.
+/// The printed text equals the written one, the case can be run with the texture, and other calls give the
+/// same files.
 #[test]
 fn a_design_is_a_texture_that_other_commands_read() {
     let workspace = Workspace::new();
@@ -29,7 +29,7 @@ fn a_design_is_a_texture_that_other_commands_read() {
     assert!(text.starts_with("reduction of static friction: "), "{text}");
     let loss = found["design"]["loss"].as_f64().unwrap();
     assert!(loss < 0.9, "{found}");
-    // On the surface of the search the case gives about what the verdict tells of others.
+    // On the surface of the search, the case gives about the same value as the verdict on other surfaces.
     workspace.succeed("run found/case.toml -o run --no-pictures");
     let summary: Value = serde_json::from_slice(&workspace.read("run/summary.json")).unwrap();
     let mean = &found["design"]["cases"][0]["static_friction_star"];
@@ -37,7 +37,7 @@ fn a_design_is_a_texture_that_other_commands_read() {
     let largest = summary["mu_star_max"].as_f64().unwrap();
     assert!((largest / told - 1.0).abs() < 0.1, "{largest} {told}");
     assert_eq!(summary["texture_percent"], found["as_meshed"]["coverage_percent"]);
-    // The picture of the mask is the mask.
+    // The picture of the mask can be read as the same mask.
     workspace.write(
         "again.toml",
         workspace
@@ -50,9 +50,9 @@ fn a_design_is_a_texture_that_other_commands_read() {
         workspace.read("again/summary.json"),
         workspace.read("run/summary.json")
     );
-    // It is laid over other meshes, too.
+    // The mask can also be meshed on other meshes.
     workspace.succeed("converge found/case.toml --replicates 1 -o meshes --quiet");
-    // Its pictures come in any size; the mask is none of them.
+    // Its pictures can be drawn in any size, except the mask, which is no diagram.
     workspace.succeed("plot found --width 89 --font-size 8 --format pdf -o figures");
     let figures = workspace.files("figures");
     assert!(
@@ -60,7 +60,7 @@ fn a_design_is_a_texture_that_other_commands_read() {
         "{:?}",
         figures.keys()
     );
-    // The design in the folder repeats it, on two threads.
+    // The design in the folder can be repeated, on two threads.
     workspace.succeed("design found/design.toml -o twice --threads 2 --quiet");
     for name in [
         "design.json",
@@ -84,18 +84,18 @@ fn a_design_is_a_texture_that_other_commands_read() {
     );
     let differs = workspace.output("verify found");
     assert!(differs.status.code() == Some(1) && stdout(&differs).contains("design.json differs"));
-    // Once more, nothing is run, and nothing changes.
+    // A second call runs nothing and changes nothing.
     let before = workspace.files("twice");
     workspace.succeed("design wish.toml -o twice");
     assert!(workspace.files("twice") == before);
-    // The copy in the folder is a design of its name.
+    // The copy in the folder is a design with the name of the folder.
     std::fs::create_dir(workspace.path("results")).unwrap();
     std::fs::rename(workspace.path("twice"), workspace.path("results/twice")).unwrap();
     workspace.succeed("design results/twice/design.toml --quiet");
     assert!(workspace.files("results/twice") == before && !workspace.exists("results/design"));
 }
 
-/// A search without time for runs reports the best named pattern as one.
+/// A search without time for runs reports the best named pattern, marked as such.
 #[test]
 fn a_search_without_time_is_none() {
     let workspace = Workspace::new();
@@ -126,7 +126,7 @@ fn folders_of_others_are_left_alone() {
     assert!(said.contains("no texture satisfies these limits"), "{said}");
 }
 
-/// A front shows that more texture never gives less of the wish, since smaller coverages are legal too.
+/// A front never gets worse with more texture, because smaller coverages are also allowed.
 #[test]
 fn a_front_tells_what_less_texture_gives() {
     let workspace = Workspace::new();
@@ -150,7 +150,7 @@ fn a_front_tells_what_less_texture_gives() {
     assert!(workspace.exists("found/front.png") && workspace.exists("found/front.svg"));
 }
 
-/// A signal keeps the best texture so far, which can be run, and the same command goes on.
+/// A signal keeps the best texture so far, which can be run, and the same command continues.
 #[cfg(unix)]
 #[test]
 fn a_signal_keeps_the_best() {
@@ -180,7 +180,7 @@ fn a_signal_keeps_the_best() {
     assert!(stderr(&said).contains("of an earlier call, which are not repeated"));
 }
 
-/// A wished curve is no instrument's file: every line of it is meant.
+/// A target curve does not come from an instrument: lines without numbers are refused.
 #[test]
 fn lines_without_numbers_are_no_wish() {
     let workspace = Workspace::new();
@@ -197,7 +197,7 @@ fn lines_without_numbers_are_no_wish() {
     assert!(!workspace.exists("found"));
 }
 
-/// The plan names what is searched for and its cost, and writes nothing; the verdict is printed as its file.
+/// The plan shows the target and the cost, and writes nothing; the printed verdict equals its file.
 #[test]
 fn a_design_is_planned_and_read_by_programs() {
     let workspace = Workspace::new();
@@ -225,11 +225,11 @@ fn a_design_is_planned_and_read_by_programs() {
     let printed = workspace.succeed("design numbers.toml --json -o found");
     let printed: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!(printed, verdict(&workspace, "found"));
-    // The runs are as many as the plan says: a generation of the search may go beyond.
+    // The number of runs is the planned one, except that a generation of the search may exceed it.
     let made = workspace.read_text("found/design.jsonl").lines().count() as f64;
     let planned = (plan["search_runs"].as_f64().unwrap()) + plan["verdict_runs"].as_f64().unwrap();
     assert!(made < 1.1 * planned, "{made} runs, {planned} planned");
-    // How long a held drive stands is not known.
+    // The duration of the rests of a held drive is unknown.
     let held = numbers.replace("drive.v_star = 0.1", "drive = { v_star = 0.1, loading = 'held' }");
     workspace.write("held.toml", held);
     let said = unwrapped(&workspace.succeed("design held.toml --dry-run"));

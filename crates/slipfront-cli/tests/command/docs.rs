@@ -1,5 +1,5 @@
-//! Every case in the book can be read, every command line is understood by the command, every link leads
-//! somewhere, every `unsafe` is listed, and no number is left to the mathematical library of the system.
+//! Checks of the book and the code: every case can be read, every command line is valid, every link leads
+//! somewhere, every `unsafe` is listed, and no number depends on the system's mathematical library.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,7 +12,7 @@ use crate::support::book::{blocks, pages, repository};
 use crate::support::process::program;
 use crate::support::workspace::Workspace;
 
-/// The words of a shell line up to a pipe, a redirection or a comment.
+/// Splits a shell line into words, up to a pipe, a redirection or a comment.
 fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -34,8 +34,8 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Arguments of `slipfront`, of `cargo run --release --` and, with any way to start it, of `slipfront-mpi`,
-/// whose `run` takes the same, in the `$` lines of the console blocks.
+/// Arguments in the `$` lines of the console blocks: of `slipfront`, of `cargo run --release --`, and of
+/// `slipfront-mpi` with any launcher, because its `run` takes the same options.
 fn commands(page: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let consoles = blocks(page).into_iter().filter(|(info, _)| info == "console");
@@ -50,8 +50,8 @@ fn commands(page: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// Cases, or parts of cases, whose other keys have their defaults: the site opens them in the laboratory, but
-/// for those that name a file.
+/// Cases, or parts of cases with defaults for all other keys: the site opens them in the laboratory, except
+/// those that name a file.
 #[test]
 fn every_case_in_the_book_can_be_read_and_shown() {
     let (mut read, mut shown, mut refused) = (0, 0, String::new());
@@ -100,8 +100,8 @@ fn every_command_in_the_book_is_understood() {
     let mut count = 0;
     for page in pages() {
         for arguments in commands(&std::fs::read_to_string(&page).unwrap()) {
-            // With --help at its end a line is parsed up to there and nothing is run: what is wrong is told
-            // first.
+            // With --help at its end, a line is parsed but nothing is run, and errors before --help are
+            // reported first.
             let parsed = Command::new(program())
                 .args(&arguments)
                 .arg("--help")
@@ -128,7 +128,7 @@ fn lines_are_split_as_a_shell_does() {
     assert_eq!(words("run --json | jq ."), ["run", "--json"]);
 }
 
-/// The lines of a page outside of its fenced blocks.
+/// Lines of a page outside of fenced blocks.
 fn prose(page: &str) -> impl Iterator<Item = &str> {
     let mut fenced = false;
     page.lines().filter(move |line| {
@@ -138,7 +138,7 @@ fn prose(page: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The anchor of a heading: small letters, a hyphen for each blank, nothing else but digits, hyphens and
+/// The anchor of a heading: lower case, hyphens for blanks, and otherwise only letters, digits, hyphens and
 /// underscores.
 fn anchor(heading: &str) -> String {
     heading
@@ -206,7 +206,7 @@ fn every_page_of_the_book_is_in_its_contents() {
     assert!(missing.is_empty(), "docs/README.md has no link to {missing:?}");
 }
 
-/// The guides show the output of `run` and `check`, but for lines that depend on the machine.
+/// The output in the guides is what `run` and `check` print, except for lines that depend on the machine.
 #[test]
 fn the_guides_show_what_run_and_check_print() {
     let guide = |name: &str| std::fs::read_to_string(repository().join("docs/guide").join(name)).unwrap();
@@ -241,7 +241,7 @@ fn the_guides_show_what_run_and_check_print() {
     }
 }
 
-/// Adds the files of Rust in a folder to those found, but for those of tests.
+/// Adds the Rust files in a folder to `found`, except those of tests.
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
         let (path, name) = (entry.path(), entry.file_name());
@@ -257,7 +257,7 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The numbers of the lines, from 0 on, in which the code and not its comment says `unsafe`.
+/// Numbers of the lines, from 0 on, that have `unsafe` in the code and not only in a comment.
 fn unsafe_lines(code: &str) -> Vec<usize> {
     let is_unsafe = |line: &str| {
         let code = line.split("//").next().unwrap_or_default();
@@ -271,7 +271,7 @@ fn unsafe_lines(code: &str) -> Vec<usize> {
         .collect()
 }
 
-/// Every `unsafe` in the programs of users has its reason above it, and is listed in the book with its file.
+/// Every `unsafe` in the programs of users has a SAFETY comment, and is listed in the book with its file.
 #[test]
 fn every_unsafe_has_its_reason_and_stands_in_the_book() {
     let repository = repository();
@@ -285,7 +285,7 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
         let code = std::fs::read_to_string(file).unwrap();
         let name = file.strip_prefix(&repository).unwrap().display().to_string();
         for k in unsafe_lines(&code) {
-            // Between the reason and the block there is room for the line that allows it.
+            // A line that allows `unsafe` may be between the comment and the block.
             let above: Vec<_> = code.lines().take(k).collect();
             let has_reason = above[k.saturating_sub(2)..]
                 .iter()
@@ -332,15 +332,15 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
     );
 }
 
-/// Functions of the standard library that the mathematical library of the system computes: their last digits
-/// depend on the machine.
+/// Functions of the standard library that use the system's mathematical library: their last digits depend on
+/// the machine.
 const OF_THE_SYSTEM: [&str; 25] = [
     "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh", "exp", "exp2",
     "exp_m1", "hypot", "ln", "ln_1p", "log", "log10", "log2", "powf", "sin", "sin_cos", "sinh", "tan",
     "tanh",
 ];
 
-/// The numbers of the lines, from 0 on, that call one of these functions, in the code before its tests.
+/// Numbers of the lines, from 0 on, that call one of these functions in the code before its tests.
 fn lines_of_the_system(code: &str) -> Vec<usize> {
     let calls = |line: &str| {
         let code = line.split("//").next().unwrap_or_default();
@@ -359,8 +359,8 @@ fn lines_of_the_system(code: &str) -> Vec<usize> {
     (0..end).filter(|&k| calls(lines[k])).collect()
 }
 
-/// Sines, logarithms and the like of all that slipfront computes and writes come from libm, which is the same
-/// everywhere.
+/// All sines, logarithms and similar functions in the results of slipfront come from libm, which is the same
+/// on every system.
 #[test]
 fn no_number_is_left_to_the_system() {
     let repository = repository();
@@ -384,7 +384,7 @@ fn functions_of_the_system_are_found_in_code_and_not_in_tests() {
     assert_eq!(lines_of_the_system(code), [1, 4, 7]);
 }
 
-/// Blocks in comments for documentation that `cargo test` may take for examples: all but texts.
+/// Code blocks in documentation comments that `cargo test` may compile as examples: all blocks except texts.
 fn examples(code: &str) -> Vec<String> {
     let comments = code.lines().map(str::trim_start);
     let comments = comments.filter_map(|line| line.strip_prefix("///").or_else(|| line.strip_prefix("//!")));
@@ -395,7 +395,8 @@ fn examples(code: &str) -> Vec<String> {
     examples.map(|(_, lines)| lines.join("\n")).collect()
 }
 
-/// `cargo test` would compile every library once more in order to find that its comments have no example.
+/// Libraries without examples are excluded from doctests, because `cargo test` would compile each of them
+/// again.
 #[test]
 fn libraries_whose_examples_are_not_run_have_none() {
     let repository = repository();

@@ -1,5 +1,5 @@
-//! The command `slipfront export`: what a Process Run Crate must have, and what becomes of the folder.
-//! `tests/ro_crate` has crates validated.
+//! The command `slipfront export`: contents that a Process Run Crate must have, and effects on the folder.
+//! `tests/ro_crate` validates crates.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,7 +33,7 @@ impl Crate {
     }
 }
 
-/// Identifiers in a property that links to one entity or to several.
+/// Identifiers in a property that links to one or several entities.
 pub(crate) fn links(property: &Value) -> BTreeSet<String> {
     let linked = property
         .as_array()
@@ -45,7 +45,8 @@ pub(crate) fn links(property: &Value) -> BTreeSet<String> {
         .collect()
 }
 
-/// Every property that the profile and RO-Crate 1.1 require, every link, and every file with its length.
+/// Checks every property that the profile and RO-Crate 1.1 require, every link, and every file with its
+/// length.
 pub(crate) fn expect_complete(workspace: &Workspace, folder: &str) -> Crate {
     let described = Crate::read(workspace, folder);
     let descriptor = described.entity(DESCRIPTION);
@@ -70,7 +71,7 @@ pub(crate) fn expect_complete(workspace: &Workspace, folder: &str) -> Crate {
             assert_eq!(program["@type"], "SoftwareApplication");
             assert_eq!(program["softwareVersion"], env!("CARGO_PKG_VERSION"));
         }
-        // Of many runs no times are recorded.
+        // Times are recorded only for single runs.
         let has_manifest = links(&action["result"])
             .iter()
             .any(|id| id.ends_with("manifest.json"));
@@ -89,7 +90,7 @@ pub(crate) fn expect_complete(workspace: &Workspace, folder: &str) -> Crate {
             described.entity(&id);
         }
     }
-    // What is part of the root, or of a folder that is.
+    // Parts of the root, or of a folder that is part of it.
     let mut parts = links(&root["hasPart"]);
     for dataset in described.of_type("Dataset") {
         parts.extend(links(&dataset["hasPart"]));
@@ -140,7 +141,7 @@ fn a_run_is_described_in_its_folder() {
         (&1e-6.into(), &"m".into(), &"MTR".into())
     );
 
-    // The results are as they were, and go on as they did.
+    // The results are unchanged, and can be verified as before.
     let mut after = workspace.files("a");
     assert!(after.remove(DESCRIPTION).is_some());
     assert!(after == before);
@@ -149,14 +150,14 @@ fn a_run_is_described_in_its_folder() {
     assert!(!said.contains(DESCRIPTION), "{said}");
     assert!(workspace.succeed("run --resume a").contains("is complete"));
 
-    // Nothing is replaced that was not to be.
+    // Existing descriptions are not replaced without --force.
     let refused = workspace.fail("export a --ro-crate", 2);
     assert!(refused.contains("exists: replace it with --force"), "{refused}");
     workspace.succeed("export a --ro-crate --force --licence CC-BY-4.0");
     let licence = expect_complete(&workspace, "a").entity("./")["license"].clone();
     assert_eq!(licence["@id"], "https://spdx.org/licenses/CC-BY-4.0");
 
-    // Another run in its place is not what it describes.
+    // The description does not match another run in its place.
     workspace.succeed("run masked.toml -o a --force --seed 2");
     let (status, said, _) = verified(&workspace, "a");
     assert_eq!(status, 0);
@@ -189,7 +190,7 @@ fn several_runs_are_one_crate() {
     assert!(refused.contains("the folder all is not empty"), "{refused}");
     let refused = workspace.fail("export b/run --ro-crate -o .", 2);
     assert!(refused.contains("the command runs in the folder ."), "{refused}");
-    // An empty folder gets the name of the crate that takes its place.
+    // The crate may take the place of an empty folder.
     std::fs::create_dir(workspace.path("empty")).unwrap();
     workspace.succeed("export b/run --ro-crate -o empty");
     expect_complete(&workspace, "empty");
@@ -227,8 +228,8 @@ fn only_whole_runs_are_exported() {
     assert!(refused.contains("https://spdx.org/licenses"), "{refused}");
 }
 
-/// The fields of entries of BibTeX as BibTeX reads them: a value ends with the brace that closes its first
-/// one, and a backslash before a brace counts for nothing.
+/// The fields of BibTeX entries as BibTeX parses them: a value ends with the brace that closes its first
+/// brace, even after a backslash.
 pub(crate) fn entries(bibtex: &str) -> Vec<BTreeMap<String, String>> {
     let mut found = Vec::new();
     for entry in bibtex.split_inclusive("\n}\n") {
@@ -251,8 +252,8 @@ pub(crate) fn entries(bibtex: &str) -> Vec<BTreeMap<String, String>> {
     found
 }
 
-/// Names of folders and authors are free; `tests/ro_crate/citations.py` has the entries read by other
-/// programs.
+/// Folders and authors may have any name; `tests/ro_crate/citations.py` checks that other programs can read
+/// the entries.
 #[test]
 fn any_name_can_be_cited() {
     let workspace = Workspace::small();

@@ -12,7 +12,7 @@ use crate::export::{DESCRIPTION, entries, expect_complete, links};
 use crate::support::workspace::Workspace;
 use crate::verify::verified;
 
-/// A study of which a run fails, and every run is kept.
+/// A study in which one run fails and all runs are kept.
 const STUDY: &str = "[base]\nslider = { blocks = [6, 5], omega_star = 0 }\ndrive = { v_star = 10 }\n\
     friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }\n\
     texture = [{ shape = 'mask', file = 'spot.png' }]\n[study]\nkeep = 'all'\n\
@@ -80,7 +80,7 @@ fn a_study_is_described_with_its_runs() {
     let cff = workspace.succeed("export first --cff --author A");
     assert!(cff.contains(&format!("title: \"{title}\"\n")), "{cff}");
 
-    // Other results in its place are not what it describes.
+    // The description does not match other results in its place.
     workspace.write("study.toml", STUDY.replace("0.9", "0.8"));
     workspace.output("study study.toml -o first");
     let (_, said, _) = verified(&workspace, "first");
@@ -93,7 +93,7 @@ fn a_study_is_described_with_its_runs() {
 #[test]
 fn studies_and_runs_are_one_crate() {
     let workspace = Workspace::masked();
-    // Without folders of their own, runs are rows of the table.
+    // Without run folders, runs are rows of the table.
     workspace.write(
         "study.toml",
         STUDY.replace("keep = 'all'", "").replace("'50 GPa', ", ""),

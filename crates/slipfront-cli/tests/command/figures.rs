@@ -1,5 +1,4 @@
-//! Figures for a journal: pictures of studies and of runs in the size, the letters and the format that are
-//! asked for.
+//! Figures for a journal: pictures of studies and runs in the requested size, font size and format.
 
 use crate::fixtures;
 use crate::study::results::SMALL;
@@ -10,8 +9,8 @@ fn names(workspace: &Workspace, folder: &str) -> Vec<String> {
     workspace.files(folder).into_keys().collect()
 }
 
-/// The pictures of a study are drawn again as they are, or in another look beside the folder, which stays as
-/// it was.
+/// The pictures of a study can be redrawn unchanged, or in another look in another folder, which leaves the
+/// study folder unchanged.
 #[test]
 fn a_study_is_drawn_in_the_look_that_is_asked_for() {
     let workspace = Workspace::with_study(SMALL);
@@ -36,7 +35,7 @@ fn a_study_is_drawn_in_the_look_that_is_asked_for() {
     workspace.succeed(asked);
     assert_eq!(names(&workspace, "inset"), ["static_friction_star.pdf"]);
     let pdf = String::from_utf8_lossy(&workspace.read("inset/static_friction_star.pdf")).into_owned();
-    // 60 mm x 45 mm in points.
+    // The size 60 mm x 45 mm in points.
     assert!(pdf.contains("/MediaBox [0 0 170.07874 127.55905]"), "{pdf:.600}");
     workspace.succeed("verify out inset");
     assert!(workspace.files("out") == before);
@@ -103,7 +102,7 @@ fn what_cannot_be_drawn_of_a_folder_is_refused() {
     assert!(!workspace.exists("none"));
 }
 
-/// All text of a picture has the size that is asked for, but for subscripts.
+/// All text of a picture has the requested font size, except subscripts.
 #[test]
 fn all_text_has_the_size_that_is_asked_for() {
     let workspace = Workspace::small();
@@ -118,7 +117,7 @@ fn all_text_has_the_size_that_is_asked_for() {
     let mut sizes: Vec<f64> = texts.map(|tag| attribute(tag, "font-size")).collect();
     sizes.sort_by(f64::total_cmp);
     sizes.dedup();
-    // Subscripts have 0.72 of it, rounded to whole units.
+    // Subscripts have 0.72 of this size, rounded to whole units.
     assert_eq!(sizes, [24.0, 33.0]);
     let (_, view) = svg.split_once("viewBox=\"0 0 ").unwrap();
     let units: f64 = view.split_once(' ').unwrap().0.parse().unwrap();
@@ -127,7 +126,7 @@ fn all_text_has_the_size_that_is_asked_for() {
     assert!((points - 9.0).abs() < 1e-3, "{points}");
 }
 
-/// A PDF is the same at any call, and its ending is that of a picture.
+/// Every call writes the same PDF, with its own extension.
 #[test]
 fn a_pdf_stands_beside_the_pictures_of_its_run() {
     let workspace = Workspace::small();

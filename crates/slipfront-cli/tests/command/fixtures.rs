@@ -29,7 +29,7 @@ pub(crate) const RUN_FILES: [&str; 12] = [
     "summary.json",
 ];
 
-/// Lists a file of a results folder with the checksum that it has now, as a forger would.
+/// Updates the checksum of a file in a results folder to its present contents, as a forger would.
 pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
     let bytes = workspace.read(&format!("{folder}/{name}"));
     let mut batch = ResultFiles::new(&workspace.path(folder), "study", true).begin();
@@ -38,14 +38,14 @@ pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
 }
 
 impl Workspace {
-    /// A workspace that holds `small.toml`.
+    /// A workspace with `small.toml`.
     pub(crate) fn small() -> Self {
         let workspace = Self::new();
         workspace.write("small.toml", SMALL);
         workspace
     }
 
-    /// A workspace that holds `small.toml`, and `masked.toml` with the mask `spot.png` that it reads.
+    /// A workspace with `small.toml`, and with `masked.toml` and its mask `spot.png`.
     pub(crate) fn masked() -> Self {
         let workspace = Self::small();
         workspace.succeed("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
@@ -57,15 +57,15 @@ impl Workspace {
         serde_json::from_slice(&self.read(&format!("{folder}/summary.json"))).unwrap()
     }
 
-    /// Every file of a run but the manifest, which may differ between repetitions.
+    /// Every file of a run except the manifest, which may differ between repetitions.
     pub(crate) fn run_files(&self, folder: &str) -> Files {
         let mut files = self.files(folder);
         assert!(files.remove("manifest.json").is_some(), "{folder} is incomplete");
         files
     }
 
-    /// Makes the folder of a complete run one of a run that was killed before it wrote its manifest: a
-    /// journal lists what the manifest did.
+    /// Turns the folder of a complete run into one of a run that was killed before it wrote its manifest: a
+    /// journal lists the files instead of the manifest.
     pub(crate) fn interrupt(&self, folder: &str) {
         let manifest = format!("{folder}/manifest.json");
         let listed: serde_json::Value = serde_json::from_slice(&self.read(&manifest)).unwrap();
@@ -75,7 +75,7 @@ impl Workspace {
         self.remove(&manifest);
     }
 
-    /// Demands that two runs have the same bytes, file by file.
+    /// Asserts that two runs have the same bytes, file by file.
     pub(crate) fn assert_same_run(&self, one: &str, other: &str) {
         let (one_files, other_files) = (self.run_files(one), self.run_files(other));
         let names: Vec<_> = one_files.keys().collect();
@@ -89,7 +89,7 @@ impl Workspace {
     }
 }
 
-/// Printed text with every note on one line again.
+/// Printed text with every wrapped note joined to one line.
 pub(crate) fn unwrapped(text: &str) -> String {
     text.replace("\n      ", " ")
 }

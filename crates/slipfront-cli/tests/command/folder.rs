@@ -1,4 +1,4 @@
-//! Replacement of files in the run folder: slipfront's own, and never others.
+//! Replacement of files in the run folder: only slipfront's own files are replaced.
 
 use crate::fixtures::{MASKED, SMALL};
 use crate::support::process::ended_with;
@@ -14,7 +14,7 @@ fn a_folder_that_holds_something_is_refused() {
         "{said}"
     );
     assert_eq!(workspace.files("full").len(), 1);
-    // An empty one is taken, and so is one that has to be made.
+    // An empty folder is used, and a missing one is made.
     std::fs::create_dir(workspace.path("empty")).unwrap();
     workspace.succeed("run small.toml -o empty");
     workspace.succeed("run small.toml -o not/yet/there");
@@ -37,7 +37,7 @@ fn force_replaces_own_files_only() {
     assert_eq!(workspace.read("a/inputs/old.png"), b"mine too");
     std::fs::remove_file(workspace.path("a/notes.txt")).unwrap();
     std::fs::remove_dir_all(workspace.path("a/inputs")).unwrap();
-    // Nothing of the first run is left, such as its maps.
+    // No file of the first run is left, such as its maps.
     workspace.assert_same_run("clean", "a");
 }
 
@@ -65,7 +65,7 @@ fn a_foreign_file_in_the_place_of_a_copy_is_refused_before_the_run() {
     );
     assert_eq!(workspace.files("a").len(), 1);
     assert_eq!(workspace.read("a/inputs/spot.png"), b"mine");
-    // Nor is a file taken for the folder of copies.
+    // A file is not taken for the folder of copies either.
     workspace.write("b/inputs", "mine");
     workspace.fail("run masked.toml --quiet -o b --force", 2);
     assert_eq!(workspace.read("b/inputs"), b"mine");
@@ -126,7 +126,7 @@ fn the_case_itself_is_never_replaced() {
     }
     assert_eq!(workspace.read("mine/case.toml"), SMALL.as_bytes());
     assert_eq!(workspace.files("mine").len(), 1);
-    // Beside it there is room: under a name of its own it is a foreign file.
+    // The folder may contain the case under another name: it is then a foreign file, which stays.
     workspace.write("beside/small.toml", SMALL);
     workspace.succeed("run beside/small.toml -o beside --force");
     assert_eq!(workspace.read("beside/small.toml"), SMALL.as_bytes());
@@ -143,7 +143,7 @@ fn a_folder_that_cannot_be_written_is_said_before_the_run() {
     assert_eq!(workspace.read("file"), b"mine");
 }
 
-/// A read-only folder is reported before the run. Nothing is tested for root, who may write anywhere.
+/// A read-only folder is reported before the run. For root, who may write anywhere, nothing is tested.
 #[cfg(unix)]
 #[test]
 fn a_read_only_folder_is_said_before_the_run() {
@@ -174,8 +174,8 @@ fn odd_names_are_names() {
     ended_with(workspace.process("plot -o over").args([run, run]), 0);
 }
 
-/// A kill leaves a case, copies of what it reads, and files that were being written, but no manifest that
-/// lists them.
+/// A kill leaves a case, copies of its inputs, and files that were being written, but no manifest that lists
+/// them.
 #[test]
 fn force_takes_the_copies_of_a_killed_run_along() {
     let workspace = Workspace::masked();
@@ -185,7 +185,7 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     workspace.write("a/.slipfront/tmp/123456", "half of");
     workspace.succeed("run masked.toml -o a --force");
     workspace.assert_same_run("clean", "a");
-    // A case that a user wrote may name the only copy that there is.
+    // A case of the user may refer to the only copy of a file.
     workspace.write("b/case.toml", MASKED.replace("spot.png", "inputs/spot.png"));
     workspace.write("b/inputs/spot.png", workspace.read("spot.png"));
     let said = workspace.fail("run masked.toml --quiet -o b --force", 2);
@@ -196,8 +196,8 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     assert_eq!(workspace.files("b").len(), 2);
 }
 
-/// Files that an interrupted run has not written stay, whatever their names: a file is the run's only if it
-/// has finished it, and if it is unchanged.
+/// Files that an interrupted run has not written stay, whatever their names: a file belongs to the run only
+/// if the run has finished it and it is unchanged.
 #[test]
 fn what_an_interrupted_run_has_not_written_stays() {
     let workspace = Workspace::small();
@@ -227,7 +227,7 @@ fn what_an_interrupted_run_has_not_written_stays() {
             assert!(said.contains(&format!("a/{name} {why}")), "{line}: {said}");
             assert!(workspace.files("a") == before, "{line} has changed the folder");
         }
-        // A name that a run does not write does not matter.
+        // A file with a name that the run does not use has no effect.
         std::fs::rename(workspace.path("a").join(name), workspace.path("a/mine.txt")).unwrap();
         workspace.succeed("run --resume a");
         assert_eq!(workspace.read("a/mine.txt"), b"mine");
@@ -236,7 +236,7 @@ fn what_an_interrupted_run_has_not_written_stays() {
     }
 }
 
-/// A kill while the journal is written leaves a part of a line, of a file that is not there yet.
+/// A kill while the journal is written leaves part of a line, for a file that does not exist yet.
 #[test]
 fn a_torn_line_of_the_journal_does_no_harm() {
     let workspace = Workspace::masked();
@@ -256,7 +256,7 @@ fn a_torn_line_of_the_journal_does_no_harm() {
     }
 }
 
-/// `--force` replaces slipfront's own files: one that was edited is somebody's work.
+/// `--force` replaces slipfront's own files, but an edited file is a user's work.
 #[test]
 fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
     let workspace = Workspace::masked();
@@ -291,7 +291,7 @@ fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
     );
 }
 
-/// Copies behind a link are somebody else's originals.
+/// Copies behind a link may be a user's originals.
 #[cfg(unix)]
 #[test]
 fn copies_behind_a_link_are_originals() {
@@ -309,7 +309,7 @@ fn copies_behind_a_link_are_originals() {
     assert_eq!(workspace.read("masks/spot.png"), workspace.read("spot.png"));
 }
 
-/// Files that only happen to have a name like those of slipfront stay.
+/// Files with a name similar to one of slipfront's stay.
 #[test]
 fn what_only_looks_like_ours_stays() {
     let workspace = Workspace::small();
@@ -333,17 +333,17 @@ fn what_only_looks_like_ours_stays() {
     for name in names {
         assert_eq!(workspace.read(&format!("a/{name}")), b"mine", "{name}");
     }
-    // What a kill has left is no more than nothing.
+    // Leftovers of a kill count as an empty folder.
     workspace.write("b/.slipfront/journal.jsonl", "");
     workspace.write("b/.slipfront/tmp/123abc", "half a file");
     workspace.succeed("run small.toml -o b");
     assert!(!workspace.exists("b/.slipfront"));
-    // What others put there stays.
+    // Files of others stay.
     workspace.write("c/.slipfront/journal.jsonl", "");
     workspace.write("c/.slipfront/notes.txt", "mine");
     workspace.succeed("run small.toml -o c");
     assert_eq!(workspace.read("c/.slipfront/notes.txt"), b"mine");
-    // Without a journal it may be anybody's.
+    // Without a journal the folder may belong to anybody.
     workspace.write("d/.slipfront/notes.txt", "mine");
     let said = workspace.fail("run small.toml --quiet -o d", 2);
     assert!(said.contains("d is not empty"), "{said}");
@@ -355,7 +355,7 @@ fn what_only_looks_like_ours_stays() {
     assert_eq!(workspace.read("d/.slipfront/notes.txt"), b"mine");
 }
 
-/// Names alone make no run: these files are somebody's.
+/// Names alone do not make a run: these files belong to a user.
 #[test]
 fn a_folder_that_never_held_a_run_loses_nothing() {
     let workspace = Workspace::small();
@@ -376,7 +376,7 @@ fn a_folder_that_never_held_a_run_loses_nothing() {
     }
     workspace.write("mine/notes.txt", "mine");
     workspace.succeed("run small.toml -o mine --force");
-    // Where there was a run, what it has not written is not its own either.
+    // In the folder of a run, files that the run has not written do not belong to it either.
     std::fs::remove_dir_all(workspace.path("mine")).unwrap();
     workspace.succeed("run small.toml -o mine --set output.snapshots=[]");
     workspace.write("mine/stress.png", "mine");
@@ -388,7 +388,7 @@ fn a_folder_that_never_held_a_run_loses_nothing() {
     assert_eq!(workspace.read("mine/stress.png"), b"mine");
 }
 
-/// The copy in the folder may be the only one that there is.
+/// The copy in the folder may be the only one.
 #[test]
 fn a_file_that_the_run_reads_is_not_replaced() {
     let workspace = Workspace::masked();

@@ -1,4 +1,4 @@
-//! Errors of a case are sentences with status 2, and nothing is written.
+//! Errors of a case give a message and status 2, and nothing is written.
 
 use crate::support::process::{program, send, stderr, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
@@ -52,7 +52,7 @@ fn bad_cases_are_refused_with_a_remedy() {
     assert_eq!(workspace.files(".").len(), 2, "something has been written");
 }
 
-/// Files that take a second, of which no command has read the last byte when the signal comes.
+/// Reading these files takes a second, and no command has finished when the signal arrives.
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_the_reading_of_any_file() {
@@ -115,8 +115,7 @@ fn a_case_that_is_no_file_is_refused() {
     assert!(workspace.fail("run binary.toml", 2).contains("not UTF-8"));
 }
 
-/// Text of editors that do not write UTF-8 is refused with the remedy, with and without a mark of its byte
-/// order.
+/// Text in UTF-16, with or without a byte order mark, is refused with the remedy.
 #[test]
 fn utf16_is_refused_by_its_name() {
     let workspace = Workspace::small();
@@ -138,7 +137,7 @@ fn utf16_is_refused_by_its_name() {
     }
 }
 
-/// A key and its value are one word: where a shell has divided them, the word that was meant is told.
+/// A key and its value are one word: if a shell has split them, the error names the word that was meant.
 #[test]
 fn divided_overrides_are_told() {
     let workspace = Workspace::small();
@@ -163,7 +162,7 @@ fn divided_overrides_are_told() {
             "{command}: {said}"
         );
     }
-    // A case, another option and nothing at all are no values.
+    // A case, another option and a missing word are not taken for a value.
     for command in [
         "check --set drive.v_star small.toml",
         "check --set drive.v_star --seed 2",
@@ -178,7 +177,7 @@ fn divided_overrides_are_told() {
     }
 }
 
-/// A case that is not named has no file: errors point at the command line, or name the key alone.
+/// Without a named case there is no file: errors refer to the command line, or only to the key.
 #[test]
 fn errors_of_the_baseline_show_no_line_of_a_file() {
     let workspace = Workspace::small();
@@ -197,7 +196,7 @@ fn errors_of_the_baseline_show_no_line_of_a_file() {
     assert!(!said.contains("baseline:"), "{said}");
 }
 
-/// A pipe would be waited for, and a device never ends.
+/// Inputs must be files: reading a pipe could wait for ever, and a device never ends.
 #[cfg(unix)]
 #[test]
 fn inputs_are_files() {
@@ -216,7 +215,7 @@ fn inputs_are_files() {
     }
 }
 
-/// The copy of an input takes no more than its lattice can need, whatever follows in the file.
+/// The copy of an input is limited to the bytes that its lattice can need, however long the file is.
 #[test]
 fn inputs_are_no_longer_than_their_lattice_needs() {
     let workspace = Workspace::small();
@@ -265,13 +264,14 @@ fn what_no_machine_holds_is_refused_in_a_sentence() {
     assert!(said.contains("check its units"), "{said}");
 }
 
-/// A limit of the process is refused in a sentence: the process may have less than the machine.
+/// A memory limit of the process is reported in an error message: the process may have less memory than the
+/// machine.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_limit_of_the_process_is_refused_in_a_sentence() {
     let workspace = Workspace::small();
-    // A million blocks take some 200 MB with their snapshots; the process itself less than 1 GB, its threads'
-    // stacks included.
+    // A million blocks take some 200 MB with their snapshots; the process itself takes less than 1 GB,
+    // including its threads' stacks.
     for (blocks, status) in [("[1000,1000]", 0), ("[16000,1000]", 2)] {
         let output = workspace.shell(&format!(
             "ulimit -v 2000000; RAYON_NUM_THREADS=2 exec {} check small.toml --set slider.blocks={blocks}",

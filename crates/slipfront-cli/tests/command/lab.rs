@@ -1,4 +1,4 @@
-//! The laboratory is opened and ended.
+//! Start and end of the laboratory.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Read, Write};
@@ -37,7 +37,7 @@ fn start(process: &mut Command) -> (Child, String) {
     (child, address)
 }
 
-/// Waits for the end of a process to which a signal was sent.
+/// Waits for the end of a process after a signal.
 fn ended(mut child: Child) -> Output {
     wait_for("end of the laboratory", || child.try_wait().unwrap().is_some());
     child.wait_with_output().unwrap()
@@ -71,7 +71,7 @@ fn it_serves_its_page_until_a_signal() {
             page.starts_with("HTTP/1.1 200 OK") && page.contains("<title"),
             "{page}"
         );
-        // Somebody who begins a request and never ends it.
+        // A client that begins a request and never ends it.
         let mut idle = TcpStream::connect(host).unwrap();
         idle.write_all(b"G").unwrap();
         let signal = if signal == "-HUP" && ignores_hangup() {
@@ -85,12 +85,12 @@ fn it_serves_its_page_until_a_signal() {
     }
 }
 
-/// A desktop of a test's own: programs by their names, before those of the system.
+/// A desktop for one test: programs by name, before those of the system.
 struct Desktop(Workspace);
 
 impl Desktop {
-    /// A desktop whose `xdg-open` notes the file that it should open, and stays as long as that note, as a
-    /// browser does that shows a page.
+    /// A desktop with an `xdg-open` that records the file to open and runs as long as that record exists,
+    /// like a browser that shows a page.
     fn new() -> Self {
         let desktop = Self(Workspace::small());
         let note = desktop.0.path("opened");
@@ -113,7 +113,7 @@ impl Desktop {
         fs::set_permissions(self.0.path(name), PermissionsExt::from_mode(0o755)).unwrap();
     }
 
-    /// Sets the programs that open HTML files, and addresses.
+    /// Sets the default programs for HTML files and for addresses.
     fn default_program(&self, pages: &str, addresses: &str) {
         let script = format!("case $3 in text/html) echo {pages} ;; *) echo {addresses} ;; esac");
         self.program("bin/xdg-mime", &script);
@@ -142,7 +142,7 @@ impl Desktop {
     }
 }
 
-/// Output of a program as the user `nobody`; none if this user may not become another one.
+/// Output of a program as the user `nobody`; none if this user may not become another user.
 fn as_nobody(script: &str) -> Option<String> {
     let mut shell = Command::new("sh");
     let output = shell.args(["-c", script]).uid(65534).gid(65534).output().ok()?;
@@ -179,7 +179,7 @@ fn no_other_user_can_read_the_token() {
     assert_eq!(fs::read_dir(&temporary).unwrap().count(), 0);
 }
 
-/// A snap or a Flatpak sees temporary files of its own alone.
+/// A snap or a Flatpak sees only its own temporary files.
 #[test]
 fn a_browser_that_cannot_read_the_page_is_not_started() {
     let desktop = Desktop::new();
@@ -205,7 +205,7 @@ fn a_browser_that_cannot_read_the_page_is_not_started() {
     refused(&|_| {}, "/snap/bin/firefox %u` is a snap or a Flatpak");
     desktop.entry("Exec=/usr/bin/flatpak run --file-forwarding org.mozilla.firefox @@u %u @@");
     refused(&|_| {}, "org.mozilla.firefox");
-    // Programs that are scripts, or links.
+    // Programs that are scripts or links.
     desktop.entry("Exec=firefox %u");
     desktop.program("bin/firefox", "exec /snap/bin/firefox \"$@\"");
     refused(&|_| {}, "`firefox %u`");
@@ -216,10 +216,10 @@ fn a_browser_that_cannot_read_the_page_is_not_started() {
         process.env("BROWSER", "firefox:web --new-window %s");
     };
     refused(&web, "`web --new-window %s`");
-    // An editor of HTML files shows them as they are.
+    // An editor of HTML files would show their source.
     desktop.default_program("editor.desktop", "firefox.desktop");
     refused(&|_| {}, "editor.desktop opens HTML files on this system");
-    // Nothing is known against the others.
+    // There is no objection to other programs.
     desktop.default_program("firefox.desktop", "firefox.desktop");
     assert_eq!(said(&|_| {}), "");
     desktop.0.wait_for("opened");
@@ -229,7 +229,7 @@ fn a_browser_that_cannot_read_the_page_is_not_started() {
     desktop.0.wait_for("opened");
 }
 
-/// A log that others can read names a file that they cannot read, and which is there as long as the server.
+/// A log that others can read names a private file, which exists as long as the server.
 #[test]
 fn the_address_is_not_printed_into_a_file_that_others_can_read() {
     let workspace = Workspace::small();
@@ -262,7 +262,7 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
             if let Some(seen) = as_nobody(&format!("cat {shown}")) {
                 assert!(!seen.contains("#token="), "another user has read the token");
             }
-            // What the server before has left is gone.
+            // Files of the previous server are gone.
             assert_eq!(in_temporary(), 1);
         }
         send(&child, signal);
@@ -281,7 +281,7 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
     }
 }
 
-/// The temporary folder of the start page of a killed laboratory is removed by the next one.
+/// The next laboratory removes the temporary folder of the start page of a killed one.
 #[test]
 fn what_a_killed_one_left_is_removed_by_the_next() {
     let desktop = Desktop::new();

@@ -24,7 +24,7 @@ fn help_names_every_subcommand_and_says_what_it_does() {
             "{own}"
         );
     }
-    // One table of exit statuses for all of them.
+    // All commands have the same table of exit statuses.
     let statuses = &help[help.find("\nExit status:\n").unwrap()..];
     for command in ["run", "study", "study merge", "verify", "lab"] {
         let own = workspace.succeed(&format!("{command} --help"));
@@ -37,7 +37,7 @@ fn help_names_every_subcommand_and_says_what_it_does() {
     workspace.succeed("run small.toml -o a");
     let manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
     for key in ["build", "revision", "simd_width"] {
-        // Built outside of git there is no revision.
+        // A build outside of git has no revision.
         let said = manifest[key].as_str().unwrap_or("not known");
         assert!(told.contains(said), "{key}: {said}: {told}");
     }
@@ -76,7 +76,7 @@ fn completions_know_subcommands_and_options() {
     assert!(workspace.fail("completions dos", 2).contains("bash"));
 }
 
-/// Manual pages are those of every subcommand, with its options and examples.
+/// Every subcommand has a manual page, with its options and examples.
 #[test]
 fn manual_pages_have_options_and_examples() {
     let workspace = Workspace::small();
@@ -115,8 +115,8 @@ fn manual_pages_have_options_and_examples() {
     );
 }
 
-/// The licences of slipfront and of its parts are printed; that they are those of every crate is tested by
-/// `tests/licences/run.sh`.
+/// Prints the licences of slipfront and its parts; `tests/licences/run.sh` checks that they cover every
+/// crate.
 #[test]
 fn licences_are_told_of_slipfront_and_of_what_it_contains() {
     let workspace = Workspace::small();
@@ -133,7 +133,7 @@ fn licences_are_told_of_slipfront_and_of_what_it_contains() {
     }
 }
 
-/// The report for programs has the numbers of the summary of the run, and of what is printed for a reader.
+/// The JSON report has the numbers of the run's summary and of the printed report.
 #[test]
 fn check_prints_json() {
     let workspace = Workspace::small();
@@ -162,7 +162,7 @@ fn check_prints_json() {
     ] {
         assert_eq!(report[key], summary["si"][key], "{key}");
     }
-    // A run may add some of its own.
+    // A run may have further warnings.
     let [before, of_run] = [&report, &summary].map(|of| of["warnings"].as_array().unwrap());
     assert!(
         !before.is_empty() && before.iter().all(|warning| of_run.contains(warning)),
@@ -179,14 +179,14 @@ fn check_prints_json() {
     }
     let [least, most] = [0, 1].map(|bound| report["seconds"][bound].as_f64().unwrap());
     assert!(0.0 < least && least <= most);
-    // 0.375 V* N_x = 0.005 is V* = 0.0022, rounded down.
+    // 0.375 V* N_x = 0.005 gives V* = 0.0022, rounded down.
     let speeds = &report["speeds"];
     assert_eq!(speeds["slow"]["v_star"], 0.002);
     assert!(speeds["all"].as_array().unwrap().contains(&speeds["slow"]));
     assert!(!workspace.succeed("check small.toml --json").contains('\u{251c}'));
 }
 
-/// A case from standard input is the case of the file, but for its name; errors name where it came from.
+/// A case from standard input is the same as from a file, except for its name; errors say where it came from.
 #[test]
 fn a_case_can_come_from_standard_input() {
     let workspace = Workspace::small();
@@ -241,11 +241,11 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
-    // How long a held drive stands is not known.
+    // The duration of the rests of a held drive is unknown.
     let said = unwrapped(&workspace.succeed("check small.toml --set drive.loading=held"));
     let least = "block-steps, not counting steps in which the drive stops, at least ";
     assert!(said.contains(least), "{said}");
-    // I^2 with a = 3, and the product of I with a = 3/6 and 3/5 along the axes.
+    // I^2 with a = 3, and the product of I with a = 3/6 and I with a = 3/5 along the axes.
     let said = unwrapped(&workspace.succeed("check small.toml --set friction.correlation_length=3um"));
     let alike = "correlation length 3 3 um 0.5 means over a block have 96.41 % of the variance, means over the slider 44.97 %";
     let words: Vec<&str> = said.split_whitespace().collect();
@@ -253,8 +253,8 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     assert_eq!(workspace.files(".").len(), 1, "check has written something");
 }
 
-/// The blocks are those along the drive, an edge drive loads as slowly as its springs are few, and stiff
-/// blocks are passed faster.
+/// Only blocks along the drive count, an edge drive loads more slowly with fewer springs, and a front crosses
+/// stiff blocks faster.
 #[test]
 fn check_compares_crossing_and_loading() {
     let workspace = Workspace::small();
@@ -274,7 +274,7 @@ fn check_compares_crossing_and_loading() {
         ("drive.direction=45", "V* N = 0.7778: ", None),
         ("drive.motion=rotation", "V* N = ", None),
         ("drive.attach=left", "V* N_x = 0.1: ", None),
-        // Four times the modulus is twice the V* of its own material.
+        // Four times the modulus means twice the V* of the material itself.
         (
             "slider.stiffness_grade={along=\"x\",from=4,to=4}",
             "V* N_x = 1.2: ",
@@ -313,8 +313,8 @@ fn check_warns_where_the_model_leaves_its_validity() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
-    // Textures that the blocks cannot show, or that lie beside them.
-    // Few blocks and the drag are told as well, and blocks that would show the first two.
+    // Textures that are too fine for the blocks, or off the slider. There are further notes on the small
+    // number of blocks and on the drag, and for the first two textures on sufficient block sizes.
     for (texture, notes) in [
         ("coverage=50,array=[1000,1000]", 4),
         ("lambda=\"1e-30m\"", 4),
@@ -333,7 +333,7 @@ fn check_warns_where_the_model_leaves_its_validity() {
         "check small.toml --set texture.0={shape=\"cavity\",coverage=60} --set texture.1={shape=\"cavity\",coverage=60}",
     ));
     assert!(said.contains("% of the blocks instead of 120.00 %"), "{said}");
-    // Friction that does not fall when a block slips, and coefficients that are not what is said of them.
+    // Friction that does not fall when a block slips, and coefficients that contradict their keys.
     for (set, means) in [
         ("r_star=1", "1.0000, is not below the static one, 1.0000"),
         ("r_star=10", "10.0000, is not below the static one, 1.0000"),
@@ -360,7 +360,7 @@ fn check_warns_where_the_model_leaves_its_validity() {
     let given = "check small.toml --set slider.blocks=[3,2] --set friction.mu_static_field=mu.csv";
     let said = unwrapped(&workspace.succeed(given));
     assert!(said.contains("a mean of 0.5000, but mu_static is 1:"), "{said}");
-    // Of these only the size remains where nothing is odd and the drive is slow.
+    // With none of these problems and a slow drive, only the note on the size remains.
     let calm = workspace.succeed("check small.toml --set drive.v_star=0.05");
     assert_eq!(calm.matches("note:").count(), 1, "{calm}");
 }
@@ -382,8 +382,8 @@ fn run_prints_physics_summary_and_where_everything_is() {
     }
 }
 
-/// Textured blocks slide from the start and a run says so; springs in contact do not count them, because they
-/// have none.
+/// Textured blocks slide from the start, and a run says so; with springs in contact they do not count,
+/// because they have no springs.
 #[test]
 fn a_run_says_that_textured_blocks_slide_from_the_start() {
     let workspace = Workspace::small();
@@ -418,8 +418,8 @@ fn a_run_says_that_textured_blocks_slide_from_the_start() {
     assert!(!said.contains(sentence), "{said}");
 }
 
-/// A total stiffness is reported as it is shared: springs of different stiffness are not counted by their
-/// relative stiffness.
+/// A total stiffness is reported as it is distributed: springs of different stiffness share it in proportion
+/// to the modulus of their blocks.
 #[test]
 fn a_total_stiffness_is_told_as_it_is_shared() {
     let workspace = Workspace::small();
@@ -450,14 +450,14 @@ fn a_run_says_what_its_numbers_are_worth() {
         !fine.contains("of the input energy is missing from the balance"),
         "{fine}"
     );
-    // The largest pull so far is a bound and no coefficient; after a transition it is one.
+    // The largest pull so far is only a bound of the coefficient; after a transition it is the coefficient.
     assert!(stuck.contains("static friction   at least mu_s* = "), "{stuck}");
     assert!(fine.contains("static friction   mu_s* = "), "{fine}");
     assert_eq!(workspace.summary("stuck")["transition"], false);
     assert!(workspace.summary("stuck")["first_slip_time_star"].is_null());
 }
 
-/// A file or a folder in the place of a subcommand, and a misspelt file, are understood.
+/// The command recognises a file or a folder in place of a subcommand, and a misspelt file.
 #[test]
 fn a_forgotten_subcommand_and_a_misspelt_file_are_understood() {
     let workspace = Workspace::small();
@@ -487,13 +487,13 @@ fn a_forgotten_subcommand_and_a_misspelt_file_are_understood() {
         let said = workspace.fail(line, 2);
         assert!(said.contains(meant), "{line}: {said}");
     }
-    // A seed is held against its key.
+    // A seed is checked like its key.
     for seed in ["-1", "soon"] {
         let said = workspace.fail(&format!("run small.toml --seed {seed}"), 2);
         let expected = format!("`friction.seed` is {seed}: it must be a whole number from 0 to");
         assert!(said.contains(&expected), "{said}");
     }
-    // Words that are neither stay what they are.
+    // Other words remain errors.
     assert!(workspace.fail("slide", 2).contains("unrecognized subcommand"));
 }
 
@@ -511,7 +511,7 @@ fn plot_says_what_it_takes() {
     );
 }
 
-/// A refused folder comes with the name of one that is free.
+/// The error for a refused folder names a free one.
 #[test]
 fn a_folder_that_is_free_is_named() {
     let workspace = Workspace::small();
@@ -527,8 +527,7 @@ fn a_folder_that_is_free_is_named() {
     );
 }
 
-/// Without a folder that is given a run takes the next one that is free, and says so; a run that was stopped
-/// is not passed over.
+/// Without a given folder, a run takes the next free one and says so; a run that was stopped is not skipped.
 #[test]
 fn the_next_free_folder_is_taken() {
     let workspace = Workspace::small();
@@ -549,7 +548,7 @@ fn the_next_free_folder_is_taken() {
     assert!(said.contains("results/small"), "{said}");
 }
 
-/// A case that is run again from its results has the name of their folder, wherever that is.
+/// A case that is run again from its results has the name of their folder, wherever that folder is.
 #[test]
 fn a_recorded_case_keeps_the_name_of_its_folder() {
     let workspace = Workspace::small();
@@ -567,7 +566,7 @@ fn a_recorded_case_keeps_the_name_of_its_folder() {
     std::fs::rename(workspace.path("results"), workspace.path("kept")).unwrap();
     workspace.succeed("run kept/circle/case.toml --quiet");
     workspace.assert_same_run("kept/circle", "results/circle");
-    // A file of the user's has its own name.
+    // A file of the user keeps its own name.
     workspace.write("mine/case.toml", workspace.read("small.toml"));
     workspace.succeed("run mine/case.toml --quiet");
     assert!(workspace.exists("results/case/manifest.json"));
@@ -592,7 +591,8 @@ fn one_block_is_no_blocks() {
     assert!(said.contains("note: 1 block is few"), "{said}");
 }
 
-/// The help of the command has its subcommands in groups, each on one line, and a misspelt one is named.
+/// The help of the command lists its subcommands in groups, each on one line, and a misspelt subcommand gets
+/// a suggestion.
 #[test]
 fn subcommands_are_found() {
     let workspace = Workspace::new();

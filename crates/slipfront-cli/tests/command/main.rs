@@ -1,6 +1,6 @@
-//! The command from outside: what a user types, sees, and finds on disk.
+//! Tests of the command as a user sees it: its arguments, its output, and its files.
 
-// Helpers of tests are not tests by themselves to clippy.
+// Clippy does not count helpers of tests as tests.
 #![allow(clippy::unwrap_used)]
 
 #[expect(dead_code, reason = "the page of the command line has no keys")]

@@ -6,7 +6,7 @@ use crate::fixtures::RUN_FILES;
 use crate::support::process::ended_with;
 use crate::support::workspace::Workspace;
 
-/// Keys that `summary.json` holds at least (design, section 3).
+/// Keys that `summary.json` must contain (design, section 3).
 const KEYS: [&str; 28] = [
     "static_friction_star",
     "static_friction",
@@ -69,9 +69,9 @@ fn the_baseline_needs_no_file_and_writes_these() {
         .map(|frame| frame.label.as_str())
         .collect();
     assert_eq!(instants, "ABCDEF");
-    // All but the header of the series, a row per step.
+    // The rows of the series without its header, one per step.
     assert_eq!(rows(&workspace, "results/baseline"), 2668);
-    // As readable as any file that the user makes, not private as temporary files are.
+    // The files are as readable as other files of the user, not private like temporary files.
     #[cfg(unix)]
     for name in RUN_FILES {
         use std::os::unix::fs::PermissionsExt;
@@ -137,7 +137,7 @@ fn the_manifest_says_how_the_run_came_about() {
     assert_eq!(manifest["kernel"], "fused");
     let width = manifest["simd_width"].as_str().unwrap();
     assert!(["AVX-512", "AVX2", "baseline"].contains(&width), "{width}");
-    // Built outside of git there is none.
+    // A build outside of git has no revision.
     if let Some(revision) = manifest["revision"].as_str() {
         let commit = revision.strip_suffix("-dirty").unwrap_or(revision);
         assert!(
@@ -149,7 +149,7 @@ fn the_manifest_says_how_the_run_came_about() {
     }
     let time = |key: &str| -> jiff::Timestamp { manifest[key].as_str().unwrap().parse().unwrap() };
     let passed = time("finished").duration_since(time("started")).as_secs_f64();
-    // To the digits that a number of seconds has in the file.
+    // Equal up to the digits of seconds in the file.
     assert!((manifest["wall_time_s"].as_f64().unwrap() - passed).abs() < 1e-6);
     assert!(!manifest["host"].as_str().unwrap().is_empty());
 }
@@ -207,8 +207,8 @@ fn stop_after_onset_ends_the_run_there() {
     );
 }
 
-/// Static friction below kinetic friction is none: the stiff edge of this slider slips first, mu* stops a
-/// little at 0.518, and goes on rising to 0.548 in sliding.
+/// Static friction below kinetic friction does not count: the stiff edge of this slider slips first, mu*
+/// pauses at 0.518, and then rises to 0.548 during sliding.
 #[test]
 fn a_peak_below_the_sliding_that_follows_is_no_transition() {
     let workspace = Workspace::small();
@@ -228,7 +228,7 @@ fn a_peak_below_the_sliding_that_follows_is_no_transition() {
     );
 }
 
-/// A chain pulled at its end goes on in stick-slip, of which a later peak is the highest.
+/// A chain pulled at its end shows stick-slip, and a later peak is the highest.
 #[test]
 fn a_later_mu_star_above_the_first_peak_is_told() {
     let workspace = Workspace::small();
@@ -249,8 +249,8 @@ fn a_later_mu_star_above_the_first_peak_is_told() {
     );
 }
 
-/// Drag of the damping, or a kinetic coefficient above the static one, makes steady sliding take more than
-/// the static strength of the blocks: a fall of mu* is then no loss of friction.
+/// With viscous drag, or a kinetic coefficient above the static one, steady sliding takes more than the
+/// static strength of the blocks: a fall of mu* is then no transition.
 #[test]
 fn where_friction_loses_nothing_there_is_no_transition() {
     let workspace = Workspace::small();
@@ -272,11 +272,11 @@ fn where_friction_loses_nothing_there_is_no_transition() {
     }
 }
 
-/// The numbers of the front, and its picture, belong to a transition; sliding is recorded in every run.
+/// The numbers of the front and its picture require a transition; sliding is recorded in every run.
 #[test]
 fn a_run_without_a_transition_has_no_front() {
     let workspace = Workspace::small();
-    // Slip runs from the rim of a cavity: on a rough slider so small blocks slip each by itself.
+    // Slip starts at the rim of a cavity: on such a small rough slider, blocks would slip one by one.
     let cavity =
         "--set friction.sigma_static_star=0 --set texture.0.shape=cavity --set texture.0.coverage=10";
     workspace.succeed(&format!(
@@ -300,7 +300,7 @@ fn a_run_without_a_transition_has_no_front() {
         whole["nucleations"].as_array().unwrap().len()
     );
     assert_eq!(whole["nucleation_x_m"], whole["nucleations"][0]["x_m"]);
-    // c_S is sqrt(3/8) blocks per l sqrt(rho/E), of the baseline 1e-6 m per 1e-6/sqrt(1e7) s.
+    // c_S is sqrt(3/8) blocks per l sqrt(rho/E), which is 1e-6 m per 1e-6/sqrt(1e7) s for the baseline.
     let [c_s, m_s] = ["front_speed_c_s", "front_speed_m_s"].map(|key| whole[key].as_f64().unwrap());
     assert!((m_s / c_s / (0.375 * 1e7_f64).sqrt() - 1.0).abs() < 1e-9);
     assert!(workspace.exists("whole/front.png") && !workspace.exists("short/front.svg"));
@@ -325,7 +325,7 @@ fn snapshots_at_times_at_a_spacing_or_none() {
     workspace.succeed("run small.toml -o every --set output.snapshots.every=30");
     workspace.succeed("run small.toml -o none --set output.snapshots=[]");
     assert_eq!(times(&fields(&workspace, "list")), [0.0, 123.0 * 0.1, 80.0]);
-    // Beside the spacing, the instants A-F as they are without it.
+    // In addition to the regular snapshots there are the instants A-F, as without a spacing.
     workspace.succeed("run small.toml -o auto");
     let (auto, every) = (fields(&workspace, "auto"), fields(&workspace, "every"));
     let is_instant = |frame: &&FieldFrame| !frame.label.is_empty();
@@ -341,11 +341,11 @@ fn snapshots_at_times_at_a_spacing_or_none() {
     assert!(workspace.exists("list/stress.png") && workspace.exists("every/stress.svg"));
     assert!(!workspace.exists("none/stress.png") && !workspace.exists("none/stress.svg"));
     assert!(workspace.exists("none/manifest.json"));
-    // The static fields are there all the same.
+    // The static fields are still there.
     assert_eq!(fields(&workspace, "none").mu_static.len(), 30);
 }
 
-/// Size and pictures of a GIF file, and how long all of them take together, in hundredths of a second.
+/// Size and number of pictures of a GIF file, and their total duration in hundredths of a second.
 fn shown(bytes: &[u8]) -> ([u16; 2], usize, u32) {
     let mut decoder = gif::DecodeOptions::new().read_info(bytes).unwrap();
     let size = [decoder.width(), decoder.height()];
@@ -365,9 +365,9 @@ fn a_movie_shows_every_snapshot() {
     let bytes = workspace.read("run/movie.gif");
     let (size, pictures, time) = shown(&bytes);
     assert_eq!((size, pictures), ([800, 400], snapshots));
-    // Sixteen seconds, and more for the instants.
+    // Sixteen seconds, plus the additional time of the instants.
     assert!((1500..3500).contains(&time), "{time}");
-    // A file is in the way before anything is drawn, and a field that there is not is found then.
+    // An existing file is reported before anything is drawn, and before an unknown field.
     for line in ["movie run", "movie run --field velocity_x"] {
         let said = workspace.fail(line, 2);
         assert!(
@@ -379,7 +379,7 @@ fn a_movie_shows_every_snapshot() {
     assert_eq!(workspace.read("run/movie.gif"), bytes);
     workspace.succeed("movie run --field displacement_x -o other.gif");
     assert_ne!(workspace.read("other.gif"), bytes);
-    // Length, pace and size are as asked for, and the length is told.
+    // Duration, pace and size are as requested, and the duration is printed.
     let told = workspace.succeed("movie run --force");
     let told_as = format!(
         "{snapshots} pictures in {} s, 800 x 400 pixels\nrun/movie.gif\n",
@@ -425,8 +425,8 @@ fn a_movie_shows_every_snapshot() {
     }
 }
 
-/// A run that has kept the instants alone is run again for its movie, which shows a hundred snapshots and
-/// leaves the folder as it was.
+/// A run that has kept only the instants is repeated for its movie, which shows a hundred snapshots, and its
+/// folder is unchanged.
 #[test]
 fn a_movie_has_a_hundred_snapshots() {
     let workspace = Workspace::small();
@@ -434,16 +434,16 @@ fn a_movie_has_a_hundred_snapshots() {
     let before = workspace.files("run");
     workspace.succeed("movie run -o usual.gif");
     let (_, usual, _) = shown(&workspace.read("usual.gif"));
-    // Beside the hundred there are the start and the instants.
+    // The start and the instants are added to the hundred.
     assert!((100..=108).contains(&usual), "{usual}");
-    // Fields that the run has not kept can be shown, too.
+    // Fields that the run has not kept can also be shown.
     let told = workspace.succeed("movie run --frames 30 --field velocity_x -o few.gif");
     let (_, few, _) = shown(&workspace.read("few.gif"));
     assert!(
         (30..=38).contains(&few) && told.starts_with(&format!("{few} pictures")),
         "{told}"
     );
-    // What the run has kept is enough.
+    // The snapshots that the run has kept are sufficient.
     workspace.succeed("movie run --frames 1 -o kept.gif");
     assert!(shown(&workspace.read("kept.gif")).1 <= 6);
     assert!(workspace.files("run") == before);
@@ -460,7 +460,7 @@ fn a_case_can_ask_for_its_movie() {
     let bytes = workspace.read("run/movie.gif");
     workspace.succeed("movie run -o again.gif");
     assert_eq!(workspace.read("again.gif"), bytes);
-    // It goes with the run, and a run without snapshots has none.
+    // The movie is removed with its run, and a run without snapshots has no movie.
     workspace.succeed("run small.toml -o run --force --set output.snapshots=[]");
     assert!(!workspace.exists("run/movie.gif"));
     let said = workspace.fail(
@@ -474,7 +474,7 @@ fn a_case_can_ask_for_its_movie() {
     assert!(!workspace.exists("other"));
 }
 
-/// ffmpeg makes an MP4 file; skipped where there is no ffmpeg.
+/// ffmpeg makes an MP4 file; skipped without ffmpeg.
 #[test]
 fn ffmpeg_makes_an_mp4_file() {
     if std::process::Command::new("ffmpeg")
@@ -490,7 +490,7 @@ fn ffmpeg_makes_an_mp4_file() {
     workspace.succeed("movie run -o run.mp4");
     let bytes = workspace.read("run.mp4");
     assert_eq!(&bytes[4..8], b"ftyp");
-    // The index stands before the pictures.
+    // The index comes before the pictures.
     let place = |tag: &[u8]| bytes.windows(4).position(|found| found == tag).unwrap();
     assert!(place(b"moov") < place(b"mdat"));
 }
@@ -508,9 +508,9 @@ fn a_stride_thins_the_fields_and_a_spacing_the_series() {
     let taken: Vec<f32> = [0, 4, 24, 28].map(|block| all.frames[2].values[0][block]).into();
     assert_eq!(thin.frames[2].values[0], taken);
     assert_eq!(rows(&workspace, "thin"), 9);
-    // What is measured does not depend on what is written.
+    // Measured numbers do not depend on the options of the output.
     assert_eq!(workspace.summary("thin"), workspace.summary("all"));
-    // A spacing beyond the end leaves the first row and the last.
+    // A spacing beyond the end leaves the first and the last row.
     workspace.succeed("run small.toml -o ends --set output.series=1000 --set output.stride=100");
     assert_eq!(rows(&workspace, "ends"), 2);
 }

@@ -1,4 +1,4 @@
-//! `slipfront paper` from outside, on the figures that cost least.
+//! Tests of `slipfront paper`, on the cheapest figures.
 
 use std::process::Output;
 
@@ -13,7 +13,7 @@ fn paper(workspace: &Workspace, figures: &str) -> Output {
 #[test]
 fn figures_are_made_judged_and_reported() {
     let workspace = Workspace::new();
-    // Twice: what is there is replaced.
+    // The second call replaces the files of the first.
     for _ in 0..2 {
         let output = paper(&workspace, "fig13 table1 --docs docs");
         let text = stdout(&output);
@@ -46,7 +46,7 @@ fn figures_are_made_judged_and_reported() {
     );
     let claims = workspace.read_text("paper/claims.csv");
     assert_eq!(claims.lines().count(), 4);
-    // A part of them leaves the rest in the report.
+    // A call for some figures keeps the others in the report.
     assert!(paper(&workspace, "table1").status.success());
     assert_eq!(workspace.read_text("paper/claims.csv"), claims);
 }
@@ -57,7 +57,7 @@ fn quiet_says_nothing() {
     assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
 }
 
-/// Demands that the figures are refused with this sentence and status 2.
+/// Asserts that the figures are refused with this message and status 2.
 fn refused(workspace: &Workspace, figures: &str, sentence: &str) {
     let output = paper(workspace, figures);
     let said = stderr(&output);
@@ -79,8 +79,8 @@ fn what_cannot_be_done_is_said_before_anything_is_written() {
     assert_eq!(std::fs::read_dir(workspace.path("paper")).unwrap().count(), 1);
 }
 
-/// Files of others stay: neither a page of somebody's nor a study is replaced by figures, nor figures by a
-/// study.
+/// Files of others stay: figures replace neither a page of the user nor a study, and a study replaces no
+/// figures.
 #[test]
 fn what_others_have_written_stays() {
     let workspace = Workspace::new();

@@ -1,4 +1,5 @@
-//! `slipfront plot`: pictures again, curves over each other, on axes with units, beside a measured record.
+//! `slipfront plot`: redrawn pictures, several curves in one picture, axes with units, and a measured record
+//! over the curves.
 
 use crate::support::workspace::Workspace;
 
@@ -19,7 +20,7 @@ fn plot_draws_the_pictures_of_the_run_again() {
     assert_eq!(workspace.read("pictures/stress.svg"), before["stress.svg"]);
 }
 
-/// A folder for pictures has not the name of one.
+/// An output folder must not have the name of a picture.
 #[test]
 fn plot_refuses_the_name_of_a_picture() {
     let workspace = Workspace::small();
@@ -31,7 +32,7 @@ fn plot_refuses_the_name_of_a_picture() {
         assert!(said.contains(&sentence), "{said}");
         assert!(!workspace.exists(out));
     }
-    // A folder of that name may be there.
+    // A folder of that name may exist already.
     std::fs::create_dir(workspace.path("old.png")).unwrap();
     workspace.succeed("plot a --field traction -o old.png");
     assert!(workspace.exists("old.png/traction.png"));
@@ -52,7 +53,7 @@ fn plot_lays_two_runs_over_each_other() {
     assert!(svg.contains(">slow<") && svg.contains(">fast<"));
 }
 
-/// Names that are cut to fit the legend still tell the runs apart.
+/// Long names are cut to fit the legend, but the runs remain distinguishable.
 #[test]
 fn long_names_of_runs_are_told_apart() {
     let workspace = Workspace::small();
@@ -63,7 +64,7 @@ fn long_names_of_runs_are_told_apart() {
     }
     workspace.succeed(&format!("plot {}", folders.join(" ")));
     let svg = svg(&workspace, "results/overlay");
-    // The folder that both have in common stands above them, and no whole name beside it.
+    // The common folder appears once above the names, and no full name appears.
     assert!(
         svg.contains(">slow/") && svg.contains(">fast/") && svg.matches(long).count() <= 1,
         "{svg}"
@@ -95,7 +96,7 @@ fn plot_draws_maps_of_a_field_that_was_kept() {
     );
     let said = workspace.fail("plot a a --field traction", 2);
     assert!(said.contains("--field draws the maps of one run"), "{said}");
-    // Of one block, two instants are one; the fields file joins their letters.
+    // With one block, two instants coincide; the fields file joins their letters.
     let equal = "--set friction.sigma_static_star=0 --set friction.sigma_kinetic_star=0";
     workspace.succeed(&format!(
         "run small.toml -o single --set slider.blocks=[1,1] {equal}"
@@ -148,7 +149,7 @@ fn curves_are_drawn_in_newtons_and_metres() {
     let workspace = Workspace::small();
     workspace.succeed("run small.toml -o a");
     workspace.succeed("plot a --units si -o si");
-    // 0.89 of 100 kPa times 30 um^2 in about 8 ns.
+    // 0.89 of 100 kPa times 30 um^2, in about 8 ns.
     assert!(
         svg(&workspace, "si").contains(">friction force (\u{b5}N)<")
             && svg(&workspace, "si").contains(">time (ns)<")
@@ -165,7 +166,7 @@ fn curves_are_drawn_in_newtons_and_metres() {
         said.contains("forces and torques cannot share an axis: turned"),
         "{said}"
     );
-    // The run's own pictures stay as they were.
+    // The run's own pictures are unchanged.
     workspace.succeed("verify a");
 }
 
@@ -188,7 +189,8 @@ fn runs_of_different_materials_are_drawn_where_they_can_be_compared() {
     );
 }
 
-/// A record made of a run is that run, shifted, with another sign, in other units and with decimal commas.
+/// A record made from a run fits that run after shifting, with another sign, in other units and with decimal
+/// commas.
 #[test]
 fn a_measured_record_finds_its_place() {
     let workspace = Workspace::small();
@@ -211,7 +213,7 @@ fn a_measured_record_finds_its_place() {
         .unwrap();
     let (misfit, points) = misfit.split_once(" over ").unwrap();
     assert_eq!(points, "500 of 500 points");
-    // Far below the friction of microns: what the search for the shift leaves.
+    // The misfit left by the search for the shift is far below the friction of micrometre-sized sliders.
     assert!(
         misfit.ends_with(" fN") || misfit.ends_with(" aN") || misfit.ends_with(" pN"),
         "{misfit}"
@@ -231,7 +233,7 @@ fn a_measured_record_finds_its_place() {
     assert!(said.contains("leave `--units star` out"), "{said}");
 }
 
-/// A record that a filter has smoothed is the curve as that filter writes it, and not the curve itself.
+/// A record smoothed by a filter matches the filtered curve, not the curve itself.
 #[test]
 fn a_filtered_record_is_compared_with_filtered_curves() {
     let workspace = Workspace::small();
@@ -241,8 +243,8 @@ fn a_filtered_record_is_compared_with_filtered_curves() {
         column(&workspace, "a", "friction_force_n"),
     );
     let (constant, offset) = (times.last().unwrap() / 20.0, 2e-6);
-    // Exact for a force that is straight between its values: F = f + g t gives
-    // x = F - constant g + C exp(-t/constant).
+    // Exact for a force that is linear between its values: F = f + g t gives x = F - constant g + C
+    // exp(-t/constant).
     let mut filtered = forces[0];
     let mut rows = format!("{:e},{:e}\n", times[0], filtered + offset);
     for k in 1..times.len() {
@@ -263,12 +265,12 @@ fn a_filtered_record_is_compared_with_filtered_curves() {
         misfit.to_owned()
     };
     let said = workspace.succeed(&format!("{line} --instrument rig.toml -o as_written"));
-    // Rounding of forces of some uN in some thousand steps.
+    // This is the rounding of forces of some uN over some thousand steps.
     assert!(misfit(&said).ends_with(" aN"), "{said}");
     let said = workspace.succeed(&format!("{line} -o as_it_is"));
-    // Most of it is the offset.
+    // Most of this misfit is the offset.
     assert!(misfit(&said).ends_with(" uN"), "{said}");
-    // Instants such as C are marked on friction itself.
+    // Instants such as C are marked only on unfiltered friction.
     assert!(svg(&workspace, "as_it_is").contains(">C<") && !svg(&workspace, "as_written").contains(">C<"));
 
     let said = workspace.fail("plot a --instrument rig.toml", 2);
@@ -294,8 +296,8 @@ fn a_filtered_record_is_compared_with_filtered_curves() {
     workspace.succeed(&format!("{held} --instrument offset.toml -o of_held"));
 }
 
-/// Size, letters, titles and names are as asked for: in the SVG in millimetres, in the PNG in pixels of 300
-/// dots per inch.
+/// Size, font size, titles and names are as requested: in millimetres in the SVG, and in pixels at 300 dots
+/// per inch in the PNG.
 #[test]
 fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     let workspace = Workspace::small();
@@ -307,7 +309,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
     };
     workspace.succeed("plot results/a results/b -o usual");
     let usual = svg(&workspace, "usual");
-    // What both names begin with stands there once.
+    // The common beginning of both names appears once.
     assert!(
         usual.contains(">results/<") && usual.contains(">a<") && usual.contains(">b<"),
         "{usual}"
@@ -325,7 +327,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
         "{sized:.300}"
     );
     assert_eq!(pixels("sized"), [1417, 1063]);
-    // Letters half as large again on the same width.
+    // The font is half as large again, at the same width.
     workspace.succeed("plot results/a results/b --font-size 12 -o large");
     let large = svg(&workspace, "large");
     assert!(
@@ -333,7 +335,7 @@ fn pictures_have_the_size_and_the_names_that_are_asked_for() {
         "{large:.300}"
     );
     assert!((1003..=1005).contains(&pixels("large")[0]));
-    // Of one run all pictures, and not in its folder.
+    // All pictures of one run are drawn, but not in its folder.
     workspace.succeed("plot results/a --width 60 --font-size 7 -o narrow");
     assert_eq!(workspace.files("narrow").len(), 6);
     for name in workspace
@@ -383,8 +385,8 @@ fn the_kymograph_is_a_field() {
     );
 }
 
-/// A record beside the curves is refused, and so is one whose shift is not clear: it fits another run as
-/// well, elsewhere, or is a plateau.
+/// A record that does not overlap the curves is refused, and so is one with an ambiguous shift, because it
+/// also fits another run at another shift, or is a plateau.
 #[test]
 fn the_place_of_a_record_is_found_or_asked_for() {
     let workspace = Workspace::small();
@@ -413,7 +415,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
         "{said}"
     );
     assert!(!workspace.exists("both"));
-    // The first run decides where the other fits worse.
+    // The first run decides, although the other one fits worse.
     assert!(
         workspace
             .succeed(&format!("plot slow a {line}"))
@@ -429,7 +431,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
         ),
         "{said}"
     );
-    // On the last twentieth of its own curve, and on the last fifth of it.
+    // The record is shifted to the last twentieth of its own curve, and then to the last fifth.
     let times = column(&workspace, "slow", "time_s");
     let end = times.last().unwrap();
     let shifted = |share: f64| {
@@ -444,7 +446,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
         .and_then(|(_, rest)| rest.split_once(" of "));
     let (points, of) = points.unwrap_or_else(|| panic!("{said}"));
     assert!(of.starts_with(&format!("{} points\n", times.len())), "{said}");
-    // The steps of the series are equal, but for where a stride ends.
+    // The steps of the series are equal, except where a stride ends.
     let share = points.parse::<f64>().unwrap() / times.len() as f64;
     assert!((share - 0.2).abs() < 0.01, "{said}");
     let plateau = column(&workspace, "a", "friction_force_n").pop().unwrap();
@@ -460,7 +462,7 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     assert!(!workspace.exists("none"));
 }
 
-/// A line that cannot be read is refused within a record, and told at its end.
+/// A line that cannot be read is an error inside a record, and a note at its end.
 #[test]
 fn lines_without_numbers_are_not_passed_over_in_silence() {
     let workspace = Workspace::small();

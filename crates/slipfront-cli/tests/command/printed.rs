@@ -1,4 +1,4 @@
-//! Every output that the guides show is printed by the command beside it: each block of a console is run.
+//! Runs every console block of the guides, and compares the printed output with the block.
 
 use std::collections::BTreeMap;
 
@@ -6,27 +6,27 @@ use crate::support::book::{blocks, repository};
 use crate::support::process::{program, stderr, stdout};
 use crate::support::workspace::Workspace;
 
-/// Blocks of text in the guides that are formulas, or that a test of their own compares with results.
+/// Text blocks in the guides that are formulas, or that another test compares with results.
 const OTHER_TEXTS: [(&str, &str); 8] = [
-    // `the_guide_shows_what_is_printed` in `converge.rs`.
+    // Tested by `the_guide_shows_what_is_printed` in `converge.rs`.
     (
         "experiment.md",
         "block   textured   static_reduction_percent   static_friction_star   kinetic",
     ),
-    // `the_guides_have_the_reductions_of_their_studies` in `study/answers.rs`.
+    // Tested by `the_guides_have_the_reductions_of_their_studies` in `study/answers.rs`.
     (
         "experiment.md",
         "block   textured   static_reduction_percent   static_friction_star\n",
     ),
     ("experiment.md", "sigma*(l) = s a/l"),
     ("family.md", "max(mu_1, f R* mu_1 + (1 - f) mu_2)"),
-    // Arithmetic with numbers that are printed above it.
+    // Arithmetic with the numbers printed above it.
     ("getting-started.md", "100 (0.8763 - 0.6893)/0.8763 = 21.3 %"),
-    // `tests/same_run.rs` of slipfront-mpi.
+    // Tested by `tests/same_run.rs` of slipfront-mpi.
     ("long.md", "error: `drive.v_star` is 0.2 on rank 1"),
-    // `tests/fields/check.py`.
+    // Tested by `tests/fields/check.py`.
     ("results.md", "displacement_x*iHat + displacement_y*jHat"),
-    // `studies_show_what_is_printed` below.
+    // Tested by `studies_show_what_is_printed` below.
     ("studies.md", "friction.sigma_static_star  0.00  0.05"),
 ];
 
@@ -43,7 +43,7 @@ fn commands(lines: &[String]) -> Vec<(String, Vec<String>)> {
     commands
 }
 
-/// The part of a line that is the same on every machine.
+/// Part of a line that is the same on every machine.
 pub(crate) fn without_machine(line: &str) -> String {
     if line.starts_with("cost ") {
         line.split(',').next().unwrap_or_default().to_owned()
@@ -65,7 +65,7 @@ pub(crate) fn without_machine(line: &str) -> String {
     }
 }
 
-/// Whether lines are those shown, where a line `...` stands for any lines.
+/// Whether printed lines agree with the lines shown, in which a line `...` matches any lines.
 fn agrees(shown: &[String], printed: &[&str]) -> bool {
     match (shown.split_first(), printed.split_first()) {
         (None, None) => true,
@@ -95,8 +95,8 @@ fn with_cases() -> Workspace {
     workspace
 }
 
-/// Runs a line of a console in the shell; returns its results, or its errors where it has none. Progress,
-/// which depends on time, goes to stderr.
+/// Runs a line of a console in the shell; returns stdout, or stderr if stdout is empty. Progress, which
+/// depends on time, goes to stderr.
 fn run(workspace: &Workspace, line: &str) -> String {
     let output = workspace.shell(&format!("slipfront() {{ '{}' \"$@\"; }}\n{line}", program()));
     if output.stdout.is_empty() {
@@ -106,8 +106,8 @@ fn run(workspace: &Workspace, line: &str) -> String {
     }
 }
 
-/// Runs the consoles of a guide that show an output, or all of them, after the cases above them are written
-/// to the files that their first lines name; returns the number of outputs.
+/// Runs the consoles of a guide that show an output, or all of them, after writing the cases above them to
+/// the files named in their first lines; returns the number of outputs.
 fn check(name: &str, runs_all: bool) -> usize {
     check_in(&with_cases(), name, runs_all)
 }
@@ -122,7 +122,7 @@ fn check_in(workspace: &Workspace, name: &str, runs_all: bool) -> usize {
         if let Some(file) = file {
             workspace.write(file, lines.join("\n"));
         }
-        // A file of an instrument has its name, and its encoding where it is another, behind `text`.
+        // For a file of an instrument, its name and, if necessary, its encoding follow `text`.
         match info.split_whitespace().collect::<Vec<_>>()[..] {
             ["text", file] => workspace.write(file, lines.join("\n")),
             ["text", file, "utf-16"] => {
@@ -170,7 +170,7 @@ fn check_in(workspace: &Workspace, name: &str, runs_all: bool) -> usize {
 fn getting_started_shows_what_is_printed() {
     let workspace = with_cases();
     assert!(check_in(&workspace, "getting-started.md", true) >= 6);
-    // The example of the help of `verify`, on the folders that the page leaves behind.
+    // The example in the help of `verify`, on the folders that the page has made.
     let printed = run(&workspace, "slipfront verify results/*");
     assert!(
         printed.contains("results/cavity: ") && printed.contains("results/overlay holds only pictures"),
@@ -199,7 +199,7 @@ fn files_of_instruments_are_read_as_shown() {
     assert!(check("instruments.md", true) >= 12);
 }
 
-/// The five jobs, each from its first command to its last one.
+/// The five jobs, each from its first to its last command.
 #[test]
 fn jobs_show_what_is_printed() {
     let workspace = with_cases();
@@ -226,14 +226,14 @@ fn the_tutorial_of_a_thesis_shows_what_is_printed() {
     assert!(workspace.exists("orientation-as-crate/orientation") && workspace.exists("orientation.bib"));
 }
 
-/// The command that makes one file of the laboratory is not run: it needs a module that is built from the
+/// The command that makes the laboratory as one file is not run: it needs a module that is built from the
 /// sources.
 #[test]
 fn the_tutorial_of_a_lecture_shows_what_is_printed() {
     assert!(check("tutorials/lecture.md", false) >= 4);
 }
 
-/// Every other guide, most of which show no output.
+/// Every other guide; most of them show no output.
 #[test]
 fn other_guides_show_what_is_printed() {
     for entry in std::fs::read_dir(repository().join("docs/guide")).unwrap() {
@@ -252,7 +252,7 @@ fn other_guides_show_what_is_printed() {
     }
 }
 
-/// The first study and friction over directions, with the statistics that the guide makes of the first.
+/// The first study and friction over directions, with the guide's statistics of the first study.
 #[test]
 fn studies_show_what_is_printed() {
     let workspace = with_cases();

@@ -1,10 +1,10 @@
-//! The page of the command line has every subcommand and option, as help and manual pages do.
+//! The page of the command line lists every subcommand and option, like help and manual pages.
 
 use clap::{Arg, Command};
 
 use crate::reference_page::expect_page;
 
-/// Where the part of the page that is made begins.
+/// Beginning of the generated part of the page.
 const BEGINNING: &str = "\n## ";
 
 #[test]
@@ -18,7 +18,7 @@ fn the_page_of_the_command_line_has_every_option() {
     });
 }
 
-/// The section of a subcommand, with those of the subcommands below it.
+/// The section of a subcommand, followed by the sections of its own subcommands.
 fn section(command: &Command, level: usize) -> String {
     if command.get_name() == "help" {
         return String::new();
@@ -30,7 +30,7 @@ fn section(command: &Command, level: usize) -> String {
     let help = command
         .get_after_help()
         .map_or(String::new(), ToString::to_string);
-    // The statuses are those of all subcommands.
+    // The statuses are the same for all subcommands.
     let (help, _) = help.split_once("Exit status").unwrap();
     let help = match help.trim() {
         "" => String::new(),

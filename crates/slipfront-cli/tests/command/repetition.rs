@@ -1,9 +1,9 @@
-//! The same case gives the same bytes, however often, wherever and by however many threads it is run.
+//! The same case gives the same bytes, in every repetition, in every folder and with any number of threads.
 
 use crate::fixtures::SMALL;
 use crate::support::workspace::{Files, Workspace};
 
-/// A texture from a picture, coefficients from a table, in folders of their own.
+/// A texture from a picture and coefficients from a table, in separate folders.
 fn with_inputs(workspace: &Workspace) {
     workspace.write(
         "cases/given.toml",
@@ -36,7 +36,7 @@ fn the_baseline_repeats_to_the_byte() {
     }
 }
 
-/// Whether a file of a run is one that `--no-pictures` leaves out.
+/// Whether `--no-pictures` omits this file of a run.
 fn is_drawn(name: &str) -> bool {
     [".svg", ".png", ".gif"]
         .iter()
@@ -56,7 +56,7 @@ fn a_run_without_pictures_has_the_bytes_of_every_other_file() {
         .partition(|(name, _)| is_drawn(name));
     assert_eq!(pictures.len(), 7, "{:?}", pictures.keys());
     assert!(workspace.run_files("plain") == others);
-    // They are what can be drawn of it at any time.
+    // They can be drawn later at any time.
     workspace.succeed("plot plain --out later");
     workspace.succeed("movie plain --out later/movie.gif");
     assert!(workspace.files("later") == pictures);
@@ -89,7 +89,7 @@ fn a_run_folder_holds_its_inputs_and_repeats_from_them() {
         workspace.read("a/inputs/spot.png"),
         workspace.read("cases/masks/spot.png")
     );
-    // Elsewhere, and without the originals.
+    // The folder is moved, and the originals are removed.
     std::fs::remove_dir_all(workspace.path("cases")).unwrap();
     std::fs::remove_dir_all(workspace.path("data")).unwrap();
     std::fs::create_dir(workspace.path("moved")).unwrap();

@@ -1,5 +1,5 @@
-//! Folders of many runs: their files are compared with what was written and with what the runs give, and are
-//! not replaced once they were edited.
+//! Folders of many runs: their files are compared with the checksums and with the results of the runs, and
+//! edited files are not replaced.
 
 use std::process::Stdio;
 
@@ -24,7 +24,7 @@ const SHEET: &str = "slider.blocks = [8, 8]\nslider.block_size = '50 um'\ndrive.
 const STUDY: &str = "base.slider.blocks = [4, 4]\nbase.drive.v_star = 0.2\nbase.time.stop = 'after_onset'\n\
     [[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]\n";
 
-/// A command that writes a folder: its line, and a file of the results.
+/// Commands that write a folder: the line, and a file of the results.
 const WRITERS: [(&str, &str); 5] = [
     ("design wish.toml -o out --time 0s --quiet", "mask.dxf"),
     ("calibrate fit.toml record.csv -o out --quiet", "case.toml"),
@@ -60,7 +60,7 @@ fn edited_results_are_named_and_replaced_on_demand() {
         workspace.succeed(&format!("{line} --force"));
         assert!(workspace.files("out") == whole, "{line}");
         workspace.succeed("verify out");
-        // A file that somebody else has put in the place of a result that is gone.
+        // Another user's file in place of a missing result.
         workspace.remove("out/checksums.json");
         workspace.write(&path, "of somebody else");
         let said = workspace.fail(line, 2);
@@ -69,7 +69,7 @@ fn edited_results_are_named_and_replaced_on_demand() {
     }
 }
 
-/// A search that ran out of time is found again as every other, and no file of it can be exchanged.
+/// A search that ran out of time can be verified like any other, and each of its files is checked.
 #[test]
 fn a_design_that_ran_out_of_time_is_verified_to_the_last_file() {
     let workspace = workspace();
@@ -101,7 +101,7 @@ fn a_design_that_ran_out_of_time_is_verified_to_the_last_file() {
         }
         workspace.write(&format!("out/{name}"), bytes);
     }
-    // Whoever changes the list as well is found by the runs.
+    // If the list of checksums was changed too, the runs reveal it.
     for name in ["mask.dxf", "mask.npy", "design.txt", "evaluations.csv"] {
         let path = format!("out/{name}");
         let mut spoilt = files[name].clone();
@@ -118,8 +118,8 @@ fn a_design_that_ran_out_of_time_is_verified_to_the_last_file() {
     }
 }
 
-/// Figures that could not be derived again are named, and count as no success unless no more than checksums
-/// is asked for.
+/// Figures that could not be derived again are named, and are no success unless only checksums were
+/// requested.
 #[test]
 fn figures_whose_data_are_lost_are_not_taken_for_verified() {
     let workspace = Workspace::new();
@@ -141,7 +141,7 @@ fn figures_whose_data_are_lost_are_not_taken_for_verified() {
     assert_eq!((status, said.as_str()), (1, ""), "{problems}");
 }
 
-/// A pipe that nobody writes to is not waited for, and a file longer than the disk is not copied.
+/// Verification does not wait for a pipe without a writer, and does not copy a file longer than the disk.
 #[cfg(unix)]
 #[test]
 fn pipes_and_endless_files_end_no_verification() {
@@ -179,8 +179,7 @@ fn pipes_and_endless_files_end_no_verification() {
     }
 }
 
-/// An archive may have been made read-only, by a mode that the copy in the folder for temporary files does
-/// not have.
+/// An archive may be read-only, but its copy in the folder for temporary files must be writable.
 #[cfg(unix)]
 #[test]
 fn a_read_only_folder_is_verified_by_everybody() {
@@ -188,7 +187,7 @@ fn a_read_only_folder_is_verified_by_everybody() {
     use std::os::unix::process::CommandExt;
     const NOBODY: u32 = 65534;
     let workspace = workspace();
-    // Only root can become somebody else, whom modes bind.
+    // Only root can become another user, who is bound by file modes.
     let is_root = std::fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0);
     for (line, _) in WRITERS {
         workspace.remove("out");
@@ -232,7 +231,7 @@ fn a_read_only_folder_is_verified_by_everybody() {
     }
 }
 
-/// A signal ends a verification that makes runs again, and nothing of it is left.
+/// A signal ends a verification that repeats runs, and no file of it is left.
 #[cfg(unix)]
 #[test]
 fn a_signal_leaves_no_copy_behind() {
@@ -299,7 +298,7 @@ fn journals_of_another_kind_are_refused() {
     }
 }
 
-/// A line of a design that says of a run neither what it found nor why it failed is no line of a design.
+/// A line of a design for a run without result and without error is invalid.
 #[test]
 fn a_run_without_an_end_is_none() {
     let workspace = workspace();
@@ -332,7 +331,7 @@ fn the_folder_of_training_runs_is_not_that_of_the_results() {
     }
 }
 
-/// A folder of training runs that another calibration works in leaves nothing new behind.
+/// A folder of training runs that another calibration uses contains no new files.
 #[cfg(unix)]
 #[test]
 fn waiting_for_training_runs_leaves_no_folder() {

@@ -1,10 +1,11 @@
-//! `slipfront texture`: a mask written and read back is the same texture, and outlines are written beside it.
+//! `slipfront texture`: a mask that is written and read back is the same texture, and outlines can be written
+//! too.
 
 use crate::fixtures::{MASKED, SMALL};
 use crate::support::process::{send, stderr, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
 
-/// An array that takes minutes to mesh: a million outlines wind around a small slider many times.
+/// An array that takes minutes to mesh: a million outlines wrap around a small slider many times.
 const LONG: &str = "slider = { blocks = [200, 200], edges = ['periodic', 'periodic'] }\n[[texture]]\nshape = 'cavity'\n\
                     s = 64\nw = 0.015\nlambda = '9 mm'\narray = [1000, 1000]\n";
 
@@ -35,7 +36,7 @@ fn a_signal_ends_a_texture_that_takes_long() {
 #[test]
 fn a_mask_read_back_is_the_same_texture() {
     let workspace = Workspace::small();
-    // No symmetry that could hide a mirrored picture.
+    // The texture has no symmetry that could hide a mirrored picture.
     let cavity =
         "[[texture]]\nshape = 'cavity'\ncoverage = 20\ncenter = ['2 um', '1 um']\nw = 0.3\nrotate = 20\n";
     workspace.write("cavity.toml", format!("{SMALL}{cavity}"));
@@ -74,7 +75,7 @@ fn a_picture_is_replaced_only_by_force() {
     workspace.succeed("texture small.toml -o mask.png --force");
     assert_eq!(workspace.read("mask.png")[1..4], *b"PNG");
     workspace.fail("texture small.toml -o no/such/folder/mask.png", 1);
-    // Not even then a file that the case reads.
+    // Even --force does not replace a file that the case reads.
     workspace.write("masked.toml", MASKED.replace("spot.png", "mask.png"));
     let said = workspace.fail("texture masked.toml -o mask.png --force", 2);
     assert!(
@@ -88,7 +89,7 @@ fn a_picture_is_replaced_only_by_force() {
     );
 }
 
-/// Every format is written, with the smallest lengths and a note where blocks are too coarse for them.
+/// Every format can be written, with the smallest lengths and a note if blocks are too coarse for them.
 #[test]
 fn outlines_and_fields_are_written() {
     let workspace = Workspace::small();

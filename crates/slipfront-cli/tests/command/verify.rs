@@ -1,4 +1,4 @@
-//! The command `slipfront verify`: every change in a run folder is found, and a repeated run gives the same
+//! The command `slipfront verify` detects every change in a run folder, and a repeated run gives the same
 //! files.
 
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use crate::fixtures::{RUN_FILES, unwrapped};
 use crate::support::process::{send, wait_for};
 use crate::support::workspace::Workspace;
 
-/// Verifies; returns the status, stdout and stderr.
+/// Runs `verify`; returns the status, stdout and stderr.
 pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, String) {
     let output = workspace.process(&format!("verify {line}")).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
@@ -16,7 +16,7 @@ pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, Strin
     (output.status.code().unwrap(), unwrapped(&out), err)
 }
 
-/// A run with an input, so that every kind of file is there.
+/// A workspace with a run that has an input, so that every kind of file exists.
 fn workspace_with_a_run() -> Workspace {
     let workspace = Workspace::masked();
     workspace.succeed("run masked.toml -o a");
@@ -27,7 +27,7 @@ fn remove(workspace: &Workspace, name: &str) {
     std::fs::remove_file(workspace.path(name)).unwrap();
 }
 
-/// Changes the manifest, with the right checksum.
+/// Changes the manifest, and updates its checksum.
 fn reseal(workspace: &Workspace, change: impl Fn(&mut serde_json::Value)) {
     let mut manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
     change(&mut manifest);
@@ -55,7 +55,7 @@ fn a_run_is_what_was_written() {
     assert!(before == workspace.files("."), "verifying has changed something");
 }
 
-/// A script finds the folders that are not as they were written, with the reasons of each.
+/// The JSON output names the folders that have changed, with the reasons for each.
 #[test]
 fn json_has_what_was_found_of_each_folder() {
     let workspace = workspace_with_a_run();
@@ -99,8 +99,8 @@ fn every_changed_byte_is_seen() {
                 errors.contains("1 of 1 folder differs from what was written"),
                 "{errors}"
             );
-            // A case may be no case any more, besides; of a manifest that is not to be trusted nothing else
-            // is said.
+            // A changed case may also be invalid, which is a second finding; for an untrustworthy manifest
+            // there is no other finding.
             let lines: Vec<&str> = said.lines().collect();
             let expected = if name == "case.toml" { 1..=2 } else { 1..=1 };
             assert!(expected.contains(&lines.len()), "{said}");
@@ -135,7 +135,7 @@ fn what_has_changed_is_not_drawn() {
         workspace.write(&path, bytes);
     }
     assert!(!workspace.exists("drawn"));
-    // What pictures are not drawn from does not matter.
+    // Files that pictures are not drawn from do not matter.
     workspace.write("a/friction.svg", "changed");
     workspace.succeed("plot a --force");
     let seen = verified(&workspace, "a");
@@ -156,13 +156,13 @@ fn every_byte_of_the_manifest_is_under_its_seal() {
     }
 }
 
-/// A manifest that cannot be read is not called damaged: the rights or the disk may be wrong.
+/// A manifest that cannot be read is not called damaged: permissions or the disk may be the cause.
 #[cfg(unix)]
 #[test]
 fn a_manifest_that_cannot_be_read_is_not_called_damaged() {
     let workspace = workspace_with_a_run();
     remove(&workspace, "a/manifest.json");
-    // Rights do not bind root, a link to itself does.
+    // Permissions do not restrict root, but a link to itself cannot be read.
     std::os::unix::fs::symlink("manifest.json", workspace.path("a/manifest.json")).unwrap();
     let (status, said, _) = verified(&workspace, "a");
     assert_eq!(status, 1);
@@ -200,7 +200,7 @@ fn missing_and_cut_files_are_named() {
     assert!(status == 1 && said.contains("not a regular file"), "{said}");
 }
 
-/// Files of others are named; they do no harm, since a user may keep notes beside results.
+/// Files of others are listed, but cause no failure, because a user may keep notes next to results.
 #[test]
 fn files_of_others_are_named() {
     let workspace = workspace_with_a_run();
@@ -244,7 +244,7 @@ fn what_is_no_run_folder_is_said_with_status_2() {
         assert_eq!((status, said.as_str()), (2, ""), "{folder}");
         assert!(errors.contains(words), "{errors}");
     }
-    // The others are verified all the same.
+    // The other folders are still verified.
     let (status, said, errors) = verified(&workspace, "empty a nowhere");
     assert_eq!(status, 2);
     assert!(said.starts_with("a: 12 files"), "{said}");
@@ -255,8 +255,8 @@ fn what_is_no_run_folder_is_said_with_status_2() {
     workspace.fail("verify", 2);
 }
 
-/// Folders of pictures beside those of runs, which `slipfront plot` writes, are no reason to fail; alone
-/// there is nothing to verify, and a folder without a case is not one to be resumed.
+/// Folders of pictures from `slipfront plot` cause no failure next to run folders. On their own they contain
+/// nothing to verify, and a folder without a case cannot be resumed.
 #[test]
 fn folders_of_pictures_are_passed_over() {
     let workspace = workspace_with_a_run();
@@ -296,7 +296,7 @@ fn folders_of_pictures_are_passed_over() {
 #[test]
 fn a_manifest_of_another_version_is_understood() {
     let workspace = workspace_with_a_run();
-    // Another version may write other keys, and less.
+    // Another version may write other keys, and fewer.
     reseal(&workspace, |manifest| {
         manifest["version"] = "9.9.9".into();
         manifest["build"] = "slipfront 9.9.9, sources 00".into();
@@ -304,7 +304,7 @@ fn a_manifest_of_another_version_is_understood() {
         let keys = manifest.as_object_mut().unwrap();
         keys.remove("random");
         keys.remove("kernel");
-        // The seal stands last.
+        // The seal comes last.
         let seal = keys.remove("seal").unwrap();
         keys.insert("seal".to_owned(), seal);
     });
@@ -322,7 +322,7 @@ fn a_manifest_of_another_version_is_understood() {
             && said.contains("repeated by slipfront 0.1.0"),
         "{said}"
     );
-    // Programs of one version and commit may be built from other sources.
+    // Programs of the same version and commit may be built from different sources.
     reseal(&workspace, |manifest| manifest["version"] = "0.1.0".into());
     let (_, said, _) = verified(&workspace, "a --rerun");
     assert!(
@@ -331,7 +331,7 @@ fn a_manifest_of_another_version_is_understood() {
         ),
         "{said}"
     );
-    // It may lack its seal.
+    // The seal may be missing.
     reseal(&workspace, |manifest| {
         manifest["seal"] = "".into();
     });
@@ -354,7 +354,7 @@ fn a_manifest_speaks_of_its_own_folder_alone() {
     }
 }
 
-/// The sealed case of another version may be none for this one.
+/// A sealed case of another version may be invalid in this one.
 #[test]
 fn a_case_that_is_none_any_more_is_told() {
     let workspace = workspace_with_a_run();
@@ -389,7 +389,7 @@ fn a_case_that_is_none_any_more_is_told() {
     }
 }
 
-/// A temporary folder of one's own shows whether anything is left in it.
+/// Uses a separate temporary folder, which shows whether any file is left in it.
 fn rerun(workspace: &Workspace, folder: &str) -> (i32, String) {
     let temporary = workspace.path("temporary");
     std::fs::create_dir_all(&temporary).unwrap();
@@ -428,7 +428,7 @@ fn a_repeated_run_of_another_case_gives_another() {
             .collect::<Vec<_>>(),
         [&"a/case.toml"]
     );
-    // A file may have another length, too.
+    // The length of a file may also differ.
     for name in ["summary.json", "series.csv", "fields.nc", "friction.svg"] {
         let path = format!("a/{name} differs: ");
         assert!(
@@ -439,7 +439,7 @@ fn a_repeated_run_of_another_case_gives_another() {
     }
     // The mask is read, and not changed.
     assert!(!said.contains("spot.png"), "{said}");
-    // A case that cannot be run is bad input, and what differs is said all the same.
+    // A case that cannot be run is bad input, but differences are still reported.
     workspace.write("a/case.toml", "[drive]\nv_star = -1\n");
     let (status, said) = rerun(&workspace, "a");
     assert_eq!(status, 2);
@@ -488,13 +488,13 @@ fn an_interrupted_repetition_leaves_nothing_behind() {
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
 }
 
-/// A run is repeated twice at once: the second repetition neither waits for the first nor takes its folder
-/// away.
+/// A run is repeated twice at the same time: the second repetition neither waits for the first nor removes
+/// its folder.
 #[cfg(unix)]
 #[test]
 fn a_run_is_repeated_twice_at_once() {
     let workspace = Workspace::masked();
-    // Long enough to be stopped on the way.
+    // Long enough to be stopped before its end.
     workspace.succeed("run masked.toml -o a --set time.duration_star=20000 --set output.series=1000");
     std::fs::create_dir(workspace.path("temporary")).unwrap();
     let in_temporary = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
@@ -511,10 +511,10 @@ fn a_run_is_repeated_twice_at_once() {
         process.stdout(Stdio::null());
         process
     };
-    // On a busy machine it may have ended before the signal comes to it.
+    // On a busy machine it may have ended before the signal arrives.
     let stopped_on_the_way = |_| {
         let mut first = repetition().spawn().unwrap();
-        // What has not even a file in it may not be locked yet, and is taken for a leftover and made anew.
+        // A folder without a file may not be locked yet: it would be taken for a leftover and replaced.
         wait_for("file in the folder to work in", has_begun);
         send(&first, "-STOP");
         if in_temporary() == 1 {

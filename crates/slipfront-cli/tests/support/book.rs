@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// Folders without pages: of tools, of results, and of texts that become part of `docs/validation/family.md`,
-/// in which their links begin.
+/// Folders without pages: for tools, for results, and for texts that become part of
+/// `docs/validation/family.md`, to which their links are relative.
 const WITHOUT_PAGES: [&str; 5] = [".git", "target", "results", "node_modules", "text"];
 
 /// The folder of the repository.
@@ -35,7 +35,7 @@ fn add_pages(folder: &Path, pages: &mut Vec<PathBuf>) {
     }
 }
 
-/// Blocks of a page between fences: the words after the fence, and the lines.
+/// Fenced blocks of a page: the words after the opening fence, and the lines.
 pub(crate) fn blocks(page: &str) -> Vec<(String, Vec<String>)> {
     let mut blocks = Vec::new();
     let mut open: Option<(String, Vec<String>)> = None;

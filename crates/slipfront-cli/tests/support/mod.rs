@@ -1,6 +1,6 @@
-//! Shared parts of the tests of the command: a folder to work in, and the processes that work there.
+//! Shared helpers of the command tests: a folder to work in, and processes.
 
-// Every test binary uses a part of it.
+// Every test binary uses only some of these.
 #![allow(dead_code)]
 
 pub(crate) mod book;

@@ -1,4 +1,4 @@
-//! Processes of the command: started, signalled and waited for.
+//! Processes of the command: starting, signalling and waiting.
 
 use std::process::{Child, Command, Output};
 use std::thread::sleep;
@@ -9,17 +9,17 @@ pub(crate) fn program() -> &'static str {
     env!("CARGO_BIN_EXE_slipfront")
 }
 
-/// Text that a process has printed to stderr.
+/// Text printed by a process to stderr.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Text that a process has printed to stdout.
+/// Text printed by a process to stdout.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Runs a command, which must end with this status.
+/// Runs a command, and asserts that it ends with this status.
 pub(crate) fn ended_with(command: &mut Command, status: i32) -> Output {
     let output = command.output().unwrap();
     let said = format!("{command:?}\n{}{}", stdout(&output), stderr(&output));
@@ -27,12 +27,12 @@ pub(crate) fn ended_with(command: &mut Command, status: i32) -> Output {
     output
 }
 
-/// Sends a signal such as `-INT` to a process that has not been waited for.
+/// Sends a signal such as `-INT` to a process that was not waited for.
 pub(crate) fn send(child: &Child, signal: &str) {
     assert!(try_send(child, signal), "{signal} cannot be sent");
 }
 
-/// Sends a signal to a process that may have ended; returns whether it was still there.
+/// Sends a signal to a process that may have ended; returns whether it was still running.
 pub(crate) fn try_send(child: &Child, signal: &str) -> bool {
     let kill = Command::new("kill")
         .args([signal, &child.id().to_string()])
@@ -49,7 +49,7 @@ pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
-/// Waits until the command has installed its signal handlers: a signal that comes before ends it.
+/// Waits until the command has installed its signal handlers: an earlier signal would end it.
 pub(crate) fn wait_for_signal_handlers(child: &Child) {
     let process = child.id().to_string();
     // SIGXCPU, number 24, is caught last; a process that has ended has no mask.
@@ -61,13 +61,12 @@ pub(crate) fn wait_for_signal_handlers(child: &Child) {
     }
 }
 
-/// Whether these tests were started under `nohup`, which tells the commands in them as well not to mind a
-/// terminal that closes.
+/// Whether these tests run under `nohup`: then the commands in them also ignore the closing of a terminal.
 pub(crate) fn ignores_hangup() -> bool {
     signal_mask("self", "SigIgn:").is_some_and(|mask| mask & 1 == 1)
 }
 
-/// A set of signals in the status of a process, number n at bit n - 1; none for a process that has ended.
+/// A set of signals in the status of a process, with signal n at bit n - 1; none if the process has ended.
 fn signal_mask(process: &str, name: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let mask = status.lines().find_map(|line| line.strip_prefix(name))?;

@@ -1,4 +1,4 @@
-//! A temporary folder in which the command is run.
+//! A temporary folder in which the command runs.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -10,21 +10,21 @@ use tempfile::TempDir;
 
 use super::process::{ended_with, program, stderr, stdout, wait_for};
 
-/// Files by their names, with their bytes.
+/// Contents of files, by file name.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// Largest number of bytes of a file that is read: a larger file is one of the empty files of a TiB that
-/// tests make.
+/// Largest number of bytes read from a file: a larger file is one of the empty files of a TiB that tests
+/// create.
 const MAX_READ_BYTES: u64 = 1 << 30;
 
-/// The folder of Linux for files in memory. What commands write there is not forced to a disk, for which half
-/// of the time of these tests would be spent.
+/// The folder of Linux for files in memory. Files there are not forced to a disk, which would take half of
+/// the time of these tests.
 const IN_MEMORY: &str = "/dev/shm";
 
-/// The least number of bytes that must be free in memory: all tests together take less than a tenth of it.
+/// Smallest number of bytes that must be free in memory: all tests together use less than a tenth of it.
 const ROOM: f64 = 4e9;
 
-/// A temporary folder. Names of files are relative to it, and commands run in it.
+/// A temporary folder. File names are relative to it, and commands run in it.
 pub(crate) struct Workspace {
     folder: TempDir,
 }
@@ -47,7 +47,7 @@ impl Workspace {
         self.folder.path().join(name)
     }
 
-    /// Writes a file, and makes the folders above it.
+    /// Writes a file, and makes its parent folders.
     pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
         let path = self.path(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -67,12 +67,12 @@ impl Workspace {
         self.path(name).exists()
     }
 
-    /// Waits until a file or folder is there.
+    /// Waits until a file or folder exists.
     pub(crate) fn wait_for(&self, name: &str) {
         wait_for(name, || self.exists(name));
     }
 
-    /// Removes a file, link or folder, if it is there.
+    /// Removes a file, link or folder, if it exists.
     pub(crate) fn remove(&self, name: &str) {
         let path = self.path(name);
         match path.symlink_metadata() {
@@ -82,7 +82,7 @@ impl Workspace {
         }
     }
 
-    /// Makes a folder that holds exactly these files.
+    /// Makes a folder that contains exactly these files.
     pub(crate) fn fill(&self, folder: &str, files: &Files) {
         self.remove(folder);
         for (name, bytes) in files {
@@ -90,20 +90,20 @@ impl Workspace {
         }
     }
 
-    /// Every regular file below a folder with its bytes.
+    /// Every regular file below a folder, with its contents.
     pub(crate) fn files(&self, folder: &str) -> Files {
         let mut files = Files::new();
         collect(&self.path(folder), "", &mut files);
         files
     }
 
-    /// The command with its arguments in one line.
+    /// The command, with its arguments given in one line.
     pub(crate) fn process(&self, line: &str) -> Command {
         let mut process = Command::new(program());
         process
             .args(line.split_whitespace())
             .current_dir(self.folder.path());
-        // Tests may run in a task of Slurm themselves.
+        // The tests may themselves run in a Slurm task.
         for name in ["ID", "COUNT", "MIN"] {
             process.env_remove(format!("SLURM_ARRAY_TASK_{name}"));
         }
@@ -115,13 +115,13 @@ impl Workspace {
         self.process(line).output().unwrap()
     }
 
-    /// Runs the command, which must succeed; returns its stdout.
+    /// Runs the command and asserts that it succeeds; returns its stdout.
     pub(crate) fn succeed(&self, line: &str) -> String {
         let output = ended_with(&mut self.process(line), 0);
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs the command, which must fail with this status and without results; returns its stderr.
+    /// Runs the command and asserts that it fails with this status and prints no results; returns its stderr.
     pub(crate) fn fail(&self, line: &str, status: i32) -> String {
         let output = self.output(line);
         let errors = stderr(&output);
@@ -132,15 +132,15 @@ impl Workspace {
         errors
     }
 
-    /// Starts the command; its stderr can be read, its stdout is lost.
+    /// Starts the command; its stderr can be read, and its stdout is discarded.
     pub(crate) fn start(&self, line: &str) -> Child {
         let mut process = self.process(line);
         process.stdout(Stdio::null()).stderr(Stdio::piped());
         process.spawn().unwrap()
     }
 
-    /// Starts `run` and waits until it prints the physics of its case: from then on a signal stops it with a
-    /// checkpoint, and no longer while its texture is laid over the blocks.
+    /// Starts `run` and waits until it prints the physics of its case: from then on, when meshing is
+    /// complete, a signal stops it with a checkpoint.
     pub(crate) fn start_run(&self, line: &str) -> Child {
         let mut process = self.process(line);
         process.stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -150,7 +150,7 @@ impl Workspace {
         child
     }
 
-    /// Runs a script of the shell.
+    /// Runs a shell script.
     pub(crate) fn shell(&self, script: &str) -> Output {
         let mut shell = Command::new("sh");
         shell.args(["-c", script]).current_dir(self.folder.path());

@@ -1,4 +1,4 @@
-//! The command with bounds on its time and memory, and the checks of its end.
+//! The command with limits on its time and memory, and checks of its exit.
 
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc;
@@ -7,13 +7,13 @@ use std::time::Duration;
 use crate::support::process::{program, stderr, stdout};
 use crate::support::workspace::{Files, Workspace};
 
-/// The longest that a command may take: all of these end within a second on an idle machine.
+/// Time limit of a command: all of these end within a second on an idle machine.
 const MAX_SECONDS: u64 = 120;
-/// The most address space that a command may take, in KiB: 1 GiB, of which its threads reserve the greater
-/// part without using it.
+/// Limit on the address space of a command, KiB: 1 GiB, of which its threads reserve the larger part without
+/// using it.
 const MAX_MEMORY_KIB: u64 = 1 << 20;
 
-/// End of a command.
+/// Exit of a command.
 #[derive(Debug)]
 pub(crate) struct ExitedProcess {
     pub(crate) status: i32,
@@ -23,12 +23,12 @@ pub(crate) struct ExitedProcess {
 
 impl Workspace {
     /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a
-    /// sentence are findings.
+    /// message are findings.
     pub(crate) fn run_bounded(&self, line: &str) -> Result<ExitedProcess, String> {
         inspect(line, &self.bounded(&[], line))
     }
 
-    /// Runs a line under a watcher, which may let it be killed: then there is no end.
+    /// Runs a line under a watcher, which may kill it; none if it was killed.
     pub(crate) fn run_watched(&self, watcher: &[&str], line: &str) -> Result<Option<ExitedProcess>, String> {
         let output = self.bounded(watcher, line);
         match output.status.code() {
@@ -54,7 +54,7 @@ impl Workspace {
         process.spawn().unwrap()
     }
 
-    /// Every file below a folder with its bytes; nothing if there is no folder.
+    /// Every file below a folder, with its contents; empty if there is no folder.
     pub(crate) fn files_if_any(&self, folder: &str) -> Files {
         if self.path(folder).is_dir() {
             self.files(folder)
@@ -63,7 +63,7 @@ impl Workspace {
         }
     }
 
-    /// Runs a line of slipfront under `watcher`, with bounds on memory and time.
+    /// Runs a line of slipfront under `watcher`, with limits on memory and time.
     fn bounded(&self, watcher: &[&str], line: &str) -> Output {
         let child = Command::new("sh")
             .args(["-c", &format!("ulimit -v {MAX_MEMORY_KIB} && exec \"$@\""), "sh"])

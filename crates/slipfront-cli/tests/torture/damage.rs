@@ -1,6 +1,6 @@
-//! A command gives no wrong answer that looks right, whatever happens to the files that it reads.
+//! A command never gives a wrong answer that looks right, whatever happens to the files that it reads.
 //!
-//! Files with a checksum (results, records, findings) are refused or made again; files of a user (cases,
+//! Files with a checksum (results, records, findings) are refused or computed again; files of a user (cases,
 //! studies, masks, arrays) are read as they are now, and recorded as such.
 
 use std::process::Command;
@@ -17,7 +17,7 @@ const ENDLESS_BYTES: u64 = 1 << 40;
 
 #[derive(Clone, Debug)]
 enum Damage {
-    /// Only these bytes are left.
+    /// Only this many bytes are left.
     Cut(usize),
     /// A bit is flipped.
     Flip(usize),
@@ -25,11 +25,11 @@ enum Damage {
     Swap(usize, usize),
     /// Sixteen bytes from this one on are zero.
     Zero(usize),
-    /// Another file stands in the place of this one.
+    /// Another file replaces this one.
     Other(String),
     Gone,
     Folder,
-    /// A pipe that nobody writes to.
+    /// A pipe without a writer.
     Pipe,
     /// A link to itself.
     Circle,
@@ -37,11 +37,11 @@ enum Damage {
     Endless,
 }
 
-/// Files by their kinds.
+/// Names and contents of files of every kind.
 type Others = Vec<(String, Vec<u8>)>;
 
-/// Damage to a file: at most `most` cuts, flips and the like, and everything that can stand in its place, of
-/// which the short form also takes at most `most`.
+/// Damage to a file: at most `most` cuts, flips and the like, and every replacement of the file, of which the
+/// short form also takes at most `most`.
 fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
     let len = bytes.len();
     let mut all: Vec<Damage> = Vec::new();
@@ -72,7 +72,7 @@ fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
 }
 
 impl Damage {
-    /// The bytes after the damage, where bytes are left and differ.
+    /// The bytes after the damage; none if no bytes are left or they are unchanged.
     fn bytes(&self, whole: &[u8]) -> Option<Vec<u8>> {
         let mut bytes = whole.to_vec();
         match self {
@@ -114,20 +114,20 @@ impl Damage {
         true
     }
 
-    /// Whether a command waits for the file: a user may hand over a case through a pipe.
+    /// Whether a command waits for the file: a user may pass a case through a pipe.
     fn is_waited_for(&self) -> bool {
         matches!(self, Self::Pipe)
     }
 }
 
-/// A file to damage: `kind` in the tally, at most `most` cuts and flips.
+/// A file to damage, as `kind` in the tally, with at most `most` cuts and flips.
 struct Target<'a> {
     kind: &'a str,
     name: &'a str,
     most: usize,
 }
 
-/// Damages a file in every way, judges the outcome each time, and mends the file.
+/// Damages a file in every way, judges the outcome each time, and restores the file.
 fn torture(
     tally: &mut Tally,
     workspace: &Workspace,
@@ -153,7 +153,7 @@ fn torture(
     }
 }
 
-/// A file of every kind, to stand in for another: from the same case and study, and from others.
+/// A file of every kind, to replace another file: from the same case and study, and from others.
 fn others() -> &'static Others {
     static OTHERS: OnceLock<Others> = OnceLock::new();
     let make = || {
@@ -191,7 +191,7 @@ fn others() -> &'static Others {
     OTHERS.get_or_init(make)
 }
 
-/// A workspace with the sound results of a job in `out`.
+/// A workspace with the undamaged results of a job in `out`.
 fn with_results(job: &Job) -> (Workspace, Files) {
     let workspace = workspace();
     let whole = job.undisturbed();
@@ -312,7 +312,7 @@ fn of_a_study_file() {
     tally.close();
 }
 
-/// Nothing that differs from the written files may pass.
+/// Asserts that `line` notices every difference from the written files.
 fn seen(workspace: &Workspace, line: &str) -> Result<&'static str, String> {
     let ended = workspace.run_bounded(line)?;
     match ended.status {
@@ -360,7 +360,7 @@ fn of_a_run_folder() {
         };
         torture(&mut tally, &workspace, &target, &judge);
     }
-    // Without a manifest nobody knows what they were.
+    // Without a manifest, nothing records what the files were.
     workspace.remove("out/manifest.json");
     for (name, most) in read.iter().map(|name| of(name, cases(2, 500))) {
         let judge = |_: &Damage| {
@@ -381,7 +381,7 @@ fn of_a_run_folder() {
     tally.close();
 }
 
-/// A folder that is damaged, and made again or refused by the command that made it.
+/// A damaged folder: the command that made it restores or refuses it.
 fn mended(workspace: &Workspace, job: &Job, whole: &Files) -> Result<&'static str, String> {
     let ended = workspace.run_bounded(job.again)?;
     let outcome = match ended.status {
@@ -432,7 +432,7 @@ fn of_designs_and_calibrations() {
     for job in [&JOBS[10], &JOBS[12]] {
         let (workspace, whole) = with_results(job);
         for name in whole.keys() {
-            // Their lines are read one by one, and those that are damaged are made again.
+            // Lines of journals are read one by one, and runs of damaged lines are made again.
             if name.ends_with(".jsonl") {
                 continue;
             }
@@ -530,7 +530,7 @@ fn of_a_paper() {
     tally.close();
 }
 
-/// A run that was stopped after it had saved two checkpoints.
+/// Leaves a run that was stopped after it had saved two checkpoints.
 fn stopped(workspace: &Workspace) -> Files {
     let mut child = workspace.start_silent(JOBS[3].line);
     wait_for("two checkpoints", || {

@@ -1,4 +1,4 @@
-//! Every file-system call that a command makes fails in turn.
+//! Each file-system call of a command fails in turn.
 
 use crate::bounded::ExitedProcess;
 use crate::jobs::{JOBS, Job, expect_all, expect_nothing_unfinished, workspace};
@@ -6,7 +6,7 @@ use crate::support::workspace::Workspace;
 use crate::tally::{Chance, Tally, cases, long};
 use crate::watcher::watcher;
 
-/// A call that a command makes.
+/// A file-system call of a command.
 #[derive(Clone, Debug)]
 struct Call {
     number: usize,
@@ -14,11 +14,11 @@ struct Call {
     path: String,
 }
 
-/// Fate of a call.
+/// A fault to inject into a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fault {
     action: &'static str,
-    /// Whether all calls that follow fail, too.
+    /// Whether all later calls fail as well.
     lasts: bool,
 }
 
@@ -47,7 +47,7 @@ impl Fault {
         ["kill", "torn"].contains(&self.action)
     }
 
-    /// Whether a call can meet with the fault on a real system.
+    /// Whether the fault can occur at this call on a real system.
     fn can_hit(self, call: &Call) -> bool {
         let name = call.name.as_str();
         match self.action {
@@ -93,14 +93,14 @@ impl Fault {
 
 /// Outcome of a line with a fault.
 struct Hit {
-    /// End of the command; none if it was killed.
+    /// Exit of the command; none if it was killed.
     ended: Result<Option<ExitedProcess>, String>,
     /// The first call that failed, if one did.
     call: Option<Call>,
     calls: Vec<Call>,
 }
 
-/// Runs a line with a fault from the call of this number on.
+/// Runs a line with a fault from the call with this number on.
 fn hit(workspace: &Workspace, line: &str, fault: Fault, number: usize) -> Hit {
     let log = tempfile::NamedTempFile::new().unwrap();
     let (from, to) = (
@@ -128,10 +128,10 @@ fn hit(workspace: &Workspace, line: &str, fault: Fault, number: usize) -> Hit {
     Hit { ended, call, calls }
 }
 
-/// Function that describes the outcome of a fault at a call, or finds an error.
+/// Function that describes the outcome of a fault at a call, or reports a finding.
 type Judge<'a> = dyn Fn(Fault, Option<ExitedProcess>, &Call) -> Result<&'static str, String> + 'a;
 
-/// The words of an error of the system.
+/// The text of a system error.
 fn cause(action: &str) -> &'static str {
     match action {
         "EIO" => "Input/output error",
@@ -141,14 +141,14 @@ fn cause(action: &str) -> &'static str {
     }
 }
 
-/// Whether a sentence names a file: its name, or for one without a name yet its folder.
+/// Whether a message names a file: its name, or its folder if it has no final name yet.
 fn names(said: &str, path: &str) -> bool {
     let path = path.split("/.slipfront/tmp/").next().unwrap_or_default();
     let mut parts = path.rsplit('/').filter(|part| !part.starts_with('.'));
     parts.next().is_none_or(|part| said.contains(part))
 }
 
-/// Tries every fault at every call of a line, or a sample of them; `judge` describes the outcome of one.
+/// Tries every fault at every call of a line, or a sample of them; `judge` describes each outcome.
 fn every_fault(
     tally: &mut Tally,
     workspace: &Workspace,
@@ -195,7 +195,7 @@ fn every_fault(
     }
 }
 
-/// A command that failed must name a file and the cause.
+/// Checks that a failed command names a file and the cause.
 fn expect_sentence(said: &str, fault: Fault, call: &Call) -> Result<(), String> {
     if fault.lasts || (said.contains(cause(fault.action)) && names(said, &call.path)) {
         return Ok(());
@@ -219,7 +219,7 @@ fn torture(job: &Job, short: usize) {
                 "harmless"
             }
             Some(ended) => {
-                // What `verify` finds is what it was asked for.
+                // Differences that `verify` reports are the expected answer.
                 expect_sentence(&format!("{}{}", ended.stdout, ended.stderr), fault, call)?;
                 "refused"
             }
@@ -300,7 +300,7 @@ fn of_a_design() {
     torture(&JOBS[12], 3);
 }
 
-/// Killed at the worst moment: a file is whole, and has not got its name yet.
+/// A kill at the worst moment: a file is complete, but does not have its final name yet.
 #[test]
 fn a_file_that_was_not_renamed_goes_with_the_next() {
     if watcher().is_none() {
@@ -320,7 +320,7 @@ fn a_file_that_was_not_renamed_goes_with_the_next() {
     }
 }
 
-/// The answer of a command that only reads is the right one, or there is none.
+/// A command that only reads gives the right answer or none.
 #[test]
 fn of_those_who_read() {
     if watcher().is_none() {
@@ -366,8 +366,8 @@ fn of_those_who_read() {
     tally.close();
 }
 
-/// A failed look at a file is not taken for a missing file: a run that goes on reports the cause, or writes
-/// all of its files.
+/// A failed `stat` is not taken for a missing file: a resumed run reports the cause, or writes all of its
+/// files.
 #[test]
 fn of_a_look_of_a_run_that_goes_on() {
     if watcher().is_none() {
@@ -377,7 +377,7 @@ fn of_a_look_of_a_run_that_goes_on() {
     let whole = job.undisturbed();
     job.prepare(&workspace);
     let Hit { calls, .. } = hit(&workspace, job.line, fault, 0);
-    // The files before the results: the case, and those that it reads.
+    // Number of files before the results: the case, and the files that it reads.
     let before = 1 + whole.keys().filter(|name| name.starts_with("inputs/")).count();
     let mut placed = calls.iter().filter(|call| call.name.starts_with("rename"));
     let stopped_at = placed.nth(before).unwrap().number;
@@ -392,7 +392,8 @@ fn of_a_look_of_a_run_that_goes_on() {
     prepare();
     let Hit { ended, calls, .. } = hit(&workspace, line, fault, 0);
     assert_eq!(ended.unwrap().unwrap().status, 0);
-    // What a sample may miss: the hidden folder, that of the run, and what a picture is left out without.
+    // A random sample may miss these: the hidden folder, the run folder, and the file without which a picture
+    // is left out.
     let is_tried = |path: &str| {
         let places = ["out", ".slipfront", "journal.jsonl", "tmp", "kymograph.nc"];
         long() || places.iter().any(|place| path.ends_with(place))
@@ -418,7 +419,7 @@ fn of_a_look_of_a_run_that_goes_on() {
     assert!(findings.is_empty(), "{}", findings.join("\n"));
 }
 
-/// The calls of the program are seen however they are made: this program renames without libc.
+/// The watcher sees the program's calls however they are made: this program renames without libc.
 #[test]
 fn renames_are_seen() {
     if watcher().is_none() {
@@ -429,10 +430,11 @@ fn renames_are_seen() {
     assert_eq!(ended.unwrap().unwrap().status, 0);
     let count = |start: &str| calls.iter().filter(|call| call.name.starts_with(start)).count();
     let files = workspace.files_if_any("out").len();
-    // So are folders: the one above the new folder of the run; the hidden one and that of the run with the
-    // journal; that of the run with the new folder of the inputs, then with its case, and that of the inputs;
-    // both again before the manifest, and that of the complete run after it; and the hidden one before its
-    // journal goes. The journal itself is synced for every file, before this takes its name.
+    // Folders are synced too: the parent of the new run folder; the hidden folder, and the run folder with
+    // the journal; the run folder with the new folder of inputs, then with its case, and the folder of
+    // inputs; both again before the manifest, and the complete run folder after it; and the hidden folder
+    // before its journal is removed. The journal itself is synced for every file, before that file gets its
+    // name.
     assert_eq!((count("rename"), count("fsync")), (files, files + 10));
     let places = |start: &str| {
         let calls = calls.iter().enumerate();

@@ -1,15 +1,15 @@
-//! A disk that is too small for what a command writes: the command says so and leaves whole files, and goes
-//! on to the same answer when there is room.
+//! A disk that is too small for the files of a command: the command reports it and leaves only complete
+//! files. With more space it continues to the same answer.
 
 use std::process::Command;
 
 use crate::jobs::{JOBS, expect_all, workspace};
 use crate::tally::{Chance, Tally, cases};
 
-/// A page of memory, in which such a disk is counted.
+/// Page size of memory, which is the unit of the size of such a disk.
 const PAGE_BYTES: usize = 4096;
 
-/// Whether a disk can be mounted, which takes rights that few have.
+/// Whether a disk can be mounted, which takes rights that few users have.
 fn can_mount() -> bool {
     let mount = "mount -t tmpfs -o size=4k tmpfs /mnt";
     let mounted = Command::new("unshare")
@@ -29,7 +29,7 @@ fn a_full_disk_is_said_and_spoils_nothing() {
     let mut chance = Chance::new();
     for job in &JOBS {
         let whole = job.undisturbed();
-        // A repeated run is written among temporary files alone.
+        // A repeated run writes only temporary files.
         let (place, written) = match whole.is_empty() {
             true => ("temporary", JOBS[0].undisturbed()),
             false => ("out", whole.clone()),
@@ -40,7 +40,7 @@ fn a_full_disk_is_said_and_spoils_nothing() {
         let given = workspace.files_if_any("out");
         let least: usize = given.values().map(pages).sum();
         let sizes = (least + 1..=most).map(|pages| format!("size={}", pages * PAGE_BYTES));
-        // The folder itself is one, too.
+        // The folder itself also counts.
         let counts = (given.len() + 2..=written.len() + 4).map(|files| format!("size=64m,nr_inodes={files}"));
         let disks: Vec<String> = sizes.chain(counts).collect();
         let tried = cases(2, disks.len());
@@ -52,7 +52,7 @@ fn a_full_disk_is_said_and_spoils_nothing() {
             for folder in ["disk", place] {
                 std::fs::create_dir_all(workspace.path(folder)).unwrap();
             }
-            // A mount in a name space of its own goes away by itself.
+            // A mount in its own namespace disappears by itself.
             let script = format!(
                 "mount -t tmpfs -o {disk} tmpfs disk && cp -R {place}/. disk && mount --bind disk {place} || exit 77
                  \"$@\"

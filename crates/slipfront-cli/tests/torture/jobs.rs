@@ -1,4 +1,4 @@
-//! Commands that write folders: their inputs, their continuation, and the required content of their folders.
+//! Commands that write folders: their inputs, how they continue, and the required contents of their folders.
 
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex};
@@ -11,18 +11,18 @@ use crate::support::workspace::{Files, Workspace};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub(crate) name: &'static str,
-    /// Folder of a finished run that the job gets, beside an empty folder `out`; none for a job without such
-    /// a folder.
+    /// Folder of a finished run that the job gets, in addition to an empty folder `out`; none for a job
+    /// without such a folder.
     pub(crate) given_run: Option<&'static str>,
     /// Command line of the first call.
     pub(crate) line: &'static str,
     /// Command line after a stop of any kind.
     pub(crate) again: &'static str,
-    /// Command line after a stop before there was anything to go on with.
+    /// Command line after a stop before there was anything to continue.
     pub(crate) anew: &'static str,
     /// Whether SIGUSR1 makes the command save its state.
     pub(crate) saves: bool,
-    /// Whether `slipfront verify` knows such folders.
+    /// Whether `slipfront verify` can check such folders.
     pub(crate) verified: bool,
 }
 
@@ -67,7 +67,7 @@ pub(crate) const JOBS: [Job; 13] = [
     into_a_folder("design", "design wish.toml --quiet --threads 1 -o out"),
 ];
 
-/// A job that is the same however often it is repeated.
+/// A job with the same command line for every call.
 const fn on_a_run(name: &'static str, line: &'static str) -> Job {
     Job {
         given_run: Some("done"),
@@ -76,7 +76,7 @@ const fn on_a_run(name: &'static str, line: &'static str) -> Job {
     }
 }
 
-/// A job that makes the folder `out` and goes on in it by the same line.
+/// A job that makes the folder `out` and continues there with the same command line.
 const fn into_a_folder(name: &'static str, line: &'static str) -> Job {
     Job {
         name,
@@ -89,7 +89,7 @@ const fn into_a_folder(name: &'static str, line: &'static str) -> Job {
     }
 }
 
-/// A case that reads every kind of file that there is.
+/// A case that reads every kind of input file.
 const CASE: &str = r#"# A small and quick one.
 [slider]
 blocks = [6, 5]
@@ -111,7 +111,7 @@ snapshots = [30, 50]
 series = 1
 "#;
 
-/// Some tenths of a second, in which checkpoints are saved.
+/// Takes some tenths of a second, in which checkpoints are saved.
 const SLOW: &str = r#"
 [slider]
 blocks = [40, 30]
@@ -145,7 +145,7 @@ key = "drive.v_star"
 list = [0.1, 0.2]
 "#;
 
-/// A study whose run folders are kept.
+/// A study that keeps its run folders.
 const KEPT: &str = r#"
 [study]
 keep = "all"
@@ -158,7 +158,7 @@ time = { duration_star = 20 }
 output = { snapshots = [], series = 1 }
 "#;
 
-/// As few runs as a calibration may have.
+/// The smallest number of runs of a calibration.
 const FIT: &str = r#"
 [base]
 slider.blocks = [2, 2]
@@ -190,7 +190,7 @@ slip_weakening = { length_star = 0.4 }
 stop = "after_onset"
 "#;
 
-/// A search of few runs, which the verdict follows.
+/// A search with few runs, followed by the verdict.
 const WISH: &str = r#"
 [base]
 slider.blocks = [4, 4]
@@ -220,7 +220,7 @@ static MADE: LazyLock<Files> = LazyLock::new(|| {
     workspace.files("made")
 });
 
-/// An array of numpy, `ny` rows of `nx` values of a type such as `|b1`.
+/// A numpy array: `ny` rows of `nx` values of a type such as `|b1`.
 fn npy(kind: &str, nx: usize, ny: usize, data: &[u8]) -> Vec<u8> {
     let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({ny}, {nx}), }}");
     let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
@@ -229,7 +229,7 @@ fn npy(kind: &str, nx: usize, ny: usize, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A workspace with all that the jobs read.
+/// A workspace with all inputs of the jobs.
 pub(crate) fn workspace() -> Workspace {
     let workspace = given_workspace();
     for (name, bytes) in MADE.iter() {
@@ -238,7 +238,7 @@ pub(crate) fn workspace() -> Workspace {
     workspace
 }
 
-/// A workspace with the files that a user would give.
+/// A workspace with the files that a user would provide.
 fn given_workspace() -> Workspace {
     let workspace = Workspace::new();
     std::fs::create_dir(workspace.path("temporary")).unwrap();
@@ -294,7 +294,7 @@ impl Job {
         }
     }
 
-    /// The folder `out` when nothing disturbs the job.
+    /// The folder `out` of an undisturbed job.
     pub(crate) fn undisturbed(&self) -> Files {
         static WHOLE: Mutex<BTreeMap<&str, Files>> = Mutex::new(BTreeMap::new());
         let known = WHOLE.lock().unwrap().get(self.name).cloned();
@@ -309,23 +309,23 @@ impl Job {
     }
 }
 
-/// Whether a name belongs to a file that is being written, or to a run which is not complete.
+/// Whether the name is that of a file that is being written, or of an incomplete run.
 fn unfinished(name: &str) -> bool {
     name.split('/').any(|part| part.starts_with('.'))
 }
 
-/// Whether a file depends on the time at which it was made.
+/// Whether the contents of a file depend on the time at which it was made.
 fn told_by_time(name: &str) -> bool {
     name.ends_with("manifest.json") || name.ends_with(".jsonl") || name == RO_CRATE
 }
 
-/// The description of a run, which is made after its manifest.
+/// The description of a run, which is written after its manifest.
 const RO_CRATE: &str = "ro-crate-metadata.json";
 
-/// Files that are made from a complete folder, which without them is no less complete.
+/// Files made from a complete folder, which is complete even without them.
 const MADE_LAST: [&str; 3] = [RO_CRATE, "convergence.json", "convergence.txt"];
 
-/// Outcomes of recorded runs by their identities. A run that is recorded twice is a finding.
+/// Outcomes of recorded runs, by identity. A run that is recorded twice is a finding.
 fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
     let mut found = BTreeMap::new();
     for line in bytes.split(|&byte| byte == b'\n') {
@@ -344,7 +344,7 @@ fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
     Ok(found)
 }
 
-/// Demands that a folder holds only files as they should be, some of which may be missing.
+/// Asserts that a folder contains only correct files, some of which may be missing.
 pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
     for (name, bytes) in now {
         if name.ends_with(".json") && serde_json::from_slice::<Value>(bytes).is_err() {
@@ -360,7 +360,7 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
             None => return Err(format!("{name} should not be there")),
         }
     }
-    // The manifest promises that the rest is there.
+    // A manifest promises that all other files exist.
     let is_missing = |name: &str| !MADE_LAST.contains(&name) && !now.contains_key(name);
     for manifest in now.keys().filter(|name| name.ends_with("manifest.json")) {
         let folder = manifest.trim_end_matches("manifest.json");
@@ -374,13 +374,13 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
     Ok(())
 }
 
-/// Demands that a folder holds exactly the files that it should.
+/// Asserts that a folder contains exactly the expected files.
 pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
     expect_nothing_unfinished(now)?;
     expect_all(now, whole)
 }
 
-/// Demands that a folder holds nothing that is being written.
+/// Asserts that a folder contains no file that is being written.
 pub(crate) fn expect_nothing_unfinished(now: &Files) -> Result<(), String> {
     match now.keys().find(|name| unfinished(name)) {
         Some(left) => Err(format!("{left} is left behind")),
@@ -388,7 +388,7 @@ pub(crate) fn expect_nothing_unfinished(now: &Files) -> Result<(), String> {
     }
 }
 
-/// Demands that the folder for temporary files is empty.
+/// Asserts that the folder for temporary files is empty.
 pub(crate) fn expect_nothing_temporary(workspace: &Workspace) -> Result<(), String> {
     let mut left = std::fs::read_dir(workspace.path("temporary")).unwrap();
     match left.next() {
@@ -397,7 +397,7 @@ pub(crate) fn expect_nothing_temporary(workspace: &Workspace) -> Result<(), Stri
     }
 }
 
-/// Demands that a folder holds all files that it should; half-written files may stand beside them.
+/// Asserts that a folder contains all expected files; it may also contain unfinished ones.
 pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
     if let Some(missing) = whole.keys().find(|name| !now.contains_key(*name)) {
         return Err(format!("{missing} is missing"));
@@ -408,7 +408,7 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
     }
     if let (Some(now), Some(whole)) = (now.get("runs.jsonl"), whole.get("runs.jsonl")) {
         let now = records(now)?;
-        // Runs of another study may stand there, too.
+        // The records may also contain runs of another study.
         if records(whole)?
             .iter()
             .any(|(id, outcome)| now.get(id) != Some(outcome))
@@ -422,7 +422,7 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
 impl Job {
     /// Next command line, from the state of the folder.
     pub(crate) fn next(&self, workspace: &Workspace, whole: &Files) -> &'static str {
-        // A run goes on with its case and all that this reads.
+        // A run can be resumed if its case and all inputs are there.
         let read = |name: &&String| *name == "case.toml" || name.starts_with("inputs/");
         let whole_case = whole
             .keys()
@@ -431,13 +431,13 @@ impl Job {
         let complete = workspace.path("out/manifest.json").exists();
         match workspace.path("out").exists() {
             false => self.line,
-            // To resume a complete run is to do nothing.
+            // Resuming a complete run does nothing.
             true if whole_case && !(complete && self.saves) => self.again,
             true => self.anew,
         }
     }
 
-    /// Lets the job go on to its end, and demands the right answer.
+    /// Lets the job continue to its end, and asserts the right answer.
     pub(crate) fn finish(&self, workspace: &Workspace, whole: &Files) -> Result<(), String> {
         workspace.succeed_bounded(self.next(workspace, whole))?;
         expect_complete(&workspace.files_if_any("out"), whole)?;
@@ -451,7 +451,8 @@ impl Job {
         Ok(())
     }
 
-    /// Demands that the files in the folder are right so far, and that it looks complete only if it is.
+    /// Asserts that the files in the folder are correct so far, and that the folder looks complete only if it
+    /// is.
     pub(crate) fn expect_honest(&self, workspace: &Workspace, whole: &Files) -> Result<(), String> {
         let now = workspace.files_if_any("out");
         expect_sound(&now, whole)?;

@@ -1,4 +1,4 @@
-//! Killed at random moments, a command leaves nothing wrong behind, and goes on to the same answer.
+//! A command that is killed at random moments leaves nothing wrong behind, and continues to the same answer.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use crate::support::process::try_send;
 use crate::support::workspace::{Files, Workspace};
 use crate::tally::{Chance, Tally, cases};
 
-/// Kills after which a job goes on to its end.
+/// Number of kills after which a job continues to its end.
 const IN_A_ROW: usize = 4;
 
 fn kill_and_look(
@@ -34,7 +34,7 @@ fn kill_and_look(
     }
 }
 
-/// Duration of a job that nothing disturbs.
+/// Duration of an undisturbed job.
 fn time_of(workspace: &Workspace, job: &Job) -> Duration {
     job.prepare(workspace);
     let began = Instant::now();
@@ -49,7 +49,7 @@ fn torture(job: &Job, kills: usize) {
     let whole = job.undisturbed();
     let takes = time_of(&workspace, job);
     for round in 0..kills.div_ceil(IN_A_ROW) {
-        // Every second time a finished folder is worked on again.
+        // Every second round works on a finished folder again.
         if round % 2 == 1 {
             job.prepare(&workspace);
         }
@@ -131,7 +131,7 @@ fn a_killed_design_goes_on() {
     torture(&JOBS[12], cases(4, 200));
 }
 
-/// Names in the folder of the workspace that are no inputs of an export.
+/// Names in the folder of the workspace that are not inputs of an export.
 fn made(workspace: &Workspace) -> Vec<String> {
     let names = std::fs::read_dir(workspace.path("")).unwrap();
     let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -140,8 +140,8 @@ fn made(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// A crate is whole or not there, whatever ends the command; what a kill leaves has a hidden name, and the
-/// next call removes it.
+/// A crate is complete or absent, however the command ends; a kill leaves only a hidden name, which the next
+/// call removes.
 #[test]
 fn a_killed_export_leaves_no_crate() {
     let workspace = workspace();
@@ -151,7 +151,7 @@ fn a_killed_export_leaves_no_crate() {
     let began = Instant::now();
     workspace.succeed_bounded(line).unwrap();
     let takes = began.elapsed();
-    // Of the day, which may end meanwhile, the description has the date.
+    // The description contains the date, which may change during the test.
     let files = || {
         let mut files = workspace.files("crate");
         files.remove("ro-crate-metadata.json").map(|_| files)
@@ -187,13 +187,13 @@ fn a_killed_export_leaves_no_crate() {
     tally.close();
 }
 
-/// A signal that a command can answer leaves nothing that the next command would have to remove.
+/// A signal that a command handles leaves nothing that the next command would have to remove.
 #[test]
 fn what_a_signal_stops_leaves_nothing_behind() {
     let workspace = workspace();
     let mut tally = Tally::new("signals at random moments");
     let mut chance = Chance::new();
-    // A run saves a checkpoint, and a design the best texture so far.
+    // The other jobs may leave files: a run saves a checkpoint, and a design the best texture so far.
     for job in &JOBS[4..12] {
         let whole = job.undisturbed();
         let takes = time_of(&workspace, job);

@@ -1,18 +1,17 @@
 //! Torture: the command is killed, its file-system calls fail, and the files that it reads are damaged. It
-//! must never give a wrong answer that looks right, never panic, never hang and never take memory without
-//! bound.
+//! must never give a wrong answer that looks right, never panic, never hang and never take unlimited memory.
 //!
-//! `cargo test` takes a sample of the cases. All of them, with the numbers of cases tried:
+//! By default, a sample of the cases is tried. All cases, with the numbers of cases tried:
 //!
 //! ```console
 //! $ SLIPFRONT_TORTURE=long cargo test --release -p slipfront-cli --test torture -- --nocapture
 //! ```
 //!
 //! A number in place of `long`, such as 0.1, takes that share of them. The random choices follow from a seed,
-//! `SLIPFRONT_TORTURE_SEED`, which every failure names.
+//! `SLIPFRONT_TORTURE_SEED`, which every failure prints.
 
 #![cfg(unix)]
-// Helpers of tests are not tests by themselves to clippy.
+// Clippy does not count helpers of tests as tests.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../support/mod.rs"]
@@ -26,7 +25,7 @@ mod faults;
 mod full_disk;
 mod jobs;
 mod kills;
-// Where /proc tells how much memory a process has had.
+// This test reads from /proc how much memory a process has used.
 #[cfg(target_os = "linux")]
 mod soak;
 mod tally;

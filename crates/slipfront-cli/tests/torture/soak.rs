@@ -1,7 +1,7 @@
-//! Soak: ten times the steps take no more memory and no more disk, and the ledger of energy closes as well as
-//! before.
+//! Soak: ten times as many steps take no more memory and no more disk space, and the energy balance closes as
+//! well as before.
 //!
-//! `cargo test` goes to a million steps. Up to 10^8, with the figures:
+//! `cargo test` runs a million steps. Up to 10^8 steps, with the measured figures:
 //!
 //! ```console
 //! $ SLIPFRONT_SOAK=long cargo test --release -p slipfront-cli --test torture soak -- --nocapture
@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::support::workspace::Workspace;
 
-/// Time, memory and disk space of a run, and its error of energy.
+/// Time, memory, disk space and energy error of a run.
 struct Soaked {
     steps: u64,
     peak_kib: u64,
@@ -23,14 +23,14 @@ struct Soaked {
 
 fn soak(workspace: &Workspace, duration_star: f64) -> Soaked {
     let out = format!("{duration_star:e}");
-    // On one thread the most is the same to a hundredth. On two, one run in four took a fifth less, by which
-    // of them drew what.
+    // On one thread the peak is reproducible to a hundredth. On two threads, one run in four took a fifth
+    // less, depending on which thread drew which picture.
     let mut child = workspace.start(&format!(
         "run --quiet --threads 1 --set slider.blocks=[6,5] --set drive.v_star=0.1 --set time.duration_star={duration_star} --out {out}"
     ));
     let mut peak_kib = 0;
     let status = loop {
-        // Most is taken while the pictures are drawn, for some tenths of a second at the end.
+        // The peak comes while the pictures are drawn, for some tenths of a second at the end.
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
         let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let peak = peak.and_then(|peak| peak.trim().trim_end_matches(" kB").parse().ok());
@@ -74,16 +74,16 @@ fn a_longer_run_takes_no_more() {
     assert_eq!(first.steps, 100_000);
     for (before, run) in runs.iter().zip(&runs[1..]) {
         assert_eq!(run.steps, 10 * before.steps);
-        // The allocator's moods make some per cent; a byte kept of every step would make a hundred.
+        // Variations of the allocator are some per cent; a byte kept for every step would double the memory.
         let peak = run.peak_kib as f64 / first.peak_kib as f64;
         assert!(peak < 1.1, "{} KiB after {} KiB", run.peak_kib, first.peak_kib);
-        // More digits in numbers and labels; other curves in the pictures.
+        // Numbers and labels have more digits, and pictures have other curves.
         for (name, &bytes) in &run.files {
             let (most, was) = (1.25 * first.files[name] as f64 + 1024.0, first.files[name]);
             assert!((bytes as f64) < most, "{name}: {bytes} bytes after {was}");
         }
-        // Every step adds the same share to what is put in and to what is missing. Rounding alone, if it did
-        // not cancel, would add 1e-16 a step: 1e-8 in 10^8 of them.
+        // Every step adds the same share to the energy input and to the error. Rounding alone, without
+        // cancellation, would add 1e-16 per step: 1e-8 in 10^8 steps.
         let drift = (run.energy_error - first.energy_error).abs();
         assert!(
             drift < 0.1 * first.energy_error.abs(),

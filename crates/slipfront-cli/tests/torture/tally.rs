@@ -1,14 +1,14 @@
-//! The extent of the tests, their seed, and their outcomes.
+//! The number of cases of the tests, their seed, and their outcomes.
 
 use std::collections::BTreeMap;
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 
-/// Largest number of findings of one test that are shown.
+/// Largest number of findings of one test that are printed.
 const SHOWN: usize = 40;
 
-/// Share of all cases that is asked for; none for the short form.
+/// Requested share of all cases; none for the short form.
 fn share() -> Option<f64> {
     match std::env::var("SLIPFRONT_TORTURE").ok()?.as_str() {
         "long" => Some(1.0),
@@ -16,12 +16,12 @@ fn share() -> Option<f64> {
     }
 }
 
-/// Whether the long form, or a share of it, is asked for.
+/// Whether the long form, or a share of it, was requested.
 pub(crate) fn long() -> bool {
     share().is_some()
 }
 
-/// Number of cases to try, where there are `all` in the long form.
+/// Number of cases to try if the long form has `all`.
 pub(crate) fn cases(short: usize, all: usize) -> usize {
     share().map_or(short, |share| short.max((all as f64 * share) as usize))
 }
@@ -39,13 +39,13 @@ impl Chance {
         Self(ChaCha8Rng::seed_from_u64(seed()))
     }
 
-    /// A whole number below `bound`.
+    /// A random integer below `bound`.
     pub(crate) fn below(&mut self, bound: usize) -> usize {
-        // The bias is far below what any test could see.
+        // The bias is far too small for any test to notice.
         (self.0.next_u64() % bound.max(1) as u64) as usize
     }
 
-    /// At most `count` of the elements, in their order.
+    /// At most `count` of the elements, in order.
     pub(crate) fn some<T>(&mut self, mut of: Vec<T>, count: usize) -> Vec<T> {
         while of.len() > count {
             let gone = self.below(of.len());
@@ -71,7 +71,7 @@ impl Tally {
         }
     }
 
-    /// Notes a case of some kind: its good end, or its error.
+    /// Records a case of some kind: its good outcome, or its error.
     pub(crate) fn note(&mut self, kind: &str, case: &str, ended: Result<&str, String>) {
         let ended = ended.unwrap_or_else(|finding| {
             self.findings.push(format!("{kind}, {case}: {finding}"));

@@ -1,9 +1,9 @@
-//! The program that lets calls of a command fail, for the tests of this crate and for those of slipfront-mpi.
+//! The program that makes calls of a command fail, for the tests of this crate and of slipfront-mpi.
 
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// The watcher, compiled with the C compiler that Rust links with; none where it does not work.
+/// Path of the watcher, compiled with the C compiler that Rust links with; none if it does not work.
 pub(crate) fn watcher() -> Option<&'static str> {
     static WATCHER: OnceLock<Option<String>> = OnceLock::new();
     let make = || {

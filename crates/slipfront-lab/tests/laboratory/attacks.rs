@@ -31,7 +31,7 @@ fn pages_of_other_sites_are_refused() {
     assert!(try_connect(&lab, &lab.token, &[("origin", &own)]).is_ok());
 }
 
-/// A name of somebody else's that was made to stand for 127.0.0.1.
+/// Names of other sites that resolve to 127.0.0.1.
 #[test]
 fn other_names_of_this_machine_are_refused() {
     let lab = Served::new();
@@ -73,7 +73,7 @@ fn without_the_token_there_is_no_session() {
         }
         assert_eq!(try_connect(&lab, token, &[]).err(), Some(401), "{token:?}");
     }
-    // A proof is of one tab and one nonce, and that of the server is none of a page.
+    // A proof is valid for one tab and one nonce, and the proof of the server is no proof of a page.
     let right = protocols(&proof(&lab.token, "page"));
     assert!(try_connect(&lab, "", &[("sec-websocket-protocol", &right)]).is_ok());
     let other = "f".repeat(32);
@@ -92,7 +92,7 @@ fn without_the_token_there_is_no_session() {
         let refused = try_connect(&lab, "", &[("sec-websocket-protocol", &wrong)]).err();
         assert_eq!(refused, Some(401), "{wrong}");
     }
-    // It is not in what anybody can fetch.
+    // Public answers do not contain the token.
     let page = lab.answer(&format!(
         "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
         lab.host()
@@ -165,7 +165,7 @@ fn paths_out_of_the_folder_are_refused() {
         let said = page.refusal(&json!({ "do": "open", "source": { "folder": name } }));
         assert!(said.contains("is no run of the folder of results"), "{said}");
     }
-    // A case that was sent by somebody has the files that were sent with it, and no others.
+    // A case that a page sends can use only the files that were sent with it.
     let secret = lab.results().join("secret.csv");
     std::fs::write(&secret, "1,1\n1,1\n").unwrap();
     let secret = secret.to_str().unwrap();
@@ -222,12 +222,12 @@ fn huge_and_torn_messages_end_the_connection_alone() {
     let lab = Served::new();
     let mut watching = Page::with_case(&lab, SMALL);
     watching.reply("case");
-    // One byte more than there may be.
+    // One byte more than a message may have.
     let mut page = Page::open(&lab);
     let _ = page.socket.send(Message::text("x".repeat((8 << 20) + 1)));
     page.end();
-    // Frames are written by hand: a text of 2^40 bytes; pieces of a text that has no end; bytes that are no
-    // UTF-8; half a frame.
+    // Frames written by hand: a text of 2^40 bytes; pieces of a text without end; invalid UTF-8; half a
+    // frame.
     let endless: Vec<u8> = [0x01, 0xfe, 0xff, 0xff, 0, 0, 0, 0]
         .into_iter()
         .chain([b' '; 65535])
@@ -250,7 +250,7 @@ fn huge_and_torn_messages_end_the_connection_alone() {
         let _ = stream.shutdown(std::net::Shutdown::Write);
         page.end();
     }
-    // Everybody else is served as before.
+    // Other pages are served as before.
     watching.send(&json!({ "do": "view", "paused": true }));
     watching.reply("numbers");
     Page::with_case(&lab, SMALL).reply("case");
@@ -312,14 +312,14 @@ fn cases_beyond_what_is_shown_are_refused() {
         let said = page.refusal(&request);
         assert!(said.contains(sentence), "{said}");
     }
-    // An image that is none is seen when it is meshed.
+    // An invalid image is detected when it is meshed.
     page.send(&json!({ "do": "image", "png": "aGVsbG8=", "threshold": 0.5, "gesture": 4 }));
     let said = page.reply("refused")["sentence"].to_string();
     assert!(said.contains("PNG"), "{said}");
 }
 
-/// Tables within tables are read and freed by functions that call themselves: beyond some thousand there is
-/// no stack left, and the process is gone.
+/// Nested tables are read and freed recursively: a few thousand levels would overflow the stack and crash the
+/// process.
 #[test]
 fn deep_keys_and_values_are_refused() {
     let lab = Served::new();
@@ -341,7 +341,7 @@ fn deep_keys_and_values_are_refused() {
             );
         }
     }
-    // As deep as JSON goes, and then some more with every key.
+    // As deep as JSON allows, and deeper with every key.
     let nested = format!("{}1{}", "{\"a\":".repeat(100), "}".repeat(100));
     let nested: serde_json::Value = serde_json::from_str(&nested).unwrap();
     for key in ["drive.v_star", "texture", "a.b.c.d"] {
@@ -349,7 +349,7 @@ fn deep_keys_and_values_are_refused() {
         assert!(said.contains("more than 64 levels deep"), "{said}");
         page.reply("case");
     }
-    // Dotted keys within brackets, of a case that somebody sends.
+    // Dotted keys within brackets, in a case that a page sends.
     let key = long(79);
     let toml = format!("x = {}1{}", format!("{{ {key} = ").repeat(75), "}".repeat(75));
     let said = page.refusal(&json!({ "do": "open", "source": { "toml": toml } }));
@@ -358,7 +358,7 @@ fn deep_keys_and_values_are_refused() {
     page.reply("case");
 }
 
-/// A page that asks without end, and reads nothing.
+/// A page that sends requests without end, and reads nothing.
 #[test]
 fn a_flood_does_not_fill_the_memory() {
     let lab = Served::new();
@@ -380,8 +380,8 @@ fn a_flood_does_not_fill_the_memory() {
     other.reply("case");
 }
 
-/// A value of JSON takes many times the memory of its text: a message of the largest length has no more of
-/// them than a page needs.
+/// A JSON value takes many times the memory of its text, so the server limits the number of values in a
+/// message to what a page needs.
 #[test]
 fn millions_of_values_are_no_request() {
     let lab = Served::new();
@@ -411,14 +411,14 @@ fn millions_of_values_are_no_request() {
         let reason = "not a request: it has more than 20000 values".to_owned();
         assert_eq!(end, Some((1008, reason)));
     }
-    // Commas of a text are none of the message.
+    // Commas inside a text do not count.
     let toml = format!("# {}\n{SMALL}", ",[".repeat(100_000));
     page.send(&json!({ "do": "open", "source": { "toml": toml } }));
     page.reply("case");
 }
 
-/// Small requests, pings, pieces of one byte, and sessions that begin and end at once, each in thousands:
-/// another page is served.
+/// Thousands of small requests, pings, pieces of one byte, and sessions that begin and end at once: another
+/// page is still served.
 #[test]
 fn floods_of_small_things_keep_nobody_out() {
     let lab = Served::new();
@@ -429,7 +429,7 @@ fn floods_of_small_things_keep_nobody_out() {
         let reply = watching.reply("numbers");
         assert_eq!(reply["is"], "numbers", "after {after}");
     };
-    // A page that reads nothing takes pings and requests until its window is full, or all of them.
+    // A client that reads nothing can send until the window of its connection is full, or send everything.
     let frame = |first: u8, text: &[u8]| [&[first, 0x80 | text.len() as u8, 0, 0, 0, 0], text].concat();
     for (what, bytes) in [
         ("requests", frame(0x81, br#"{"do":"view","paused":true}"#)),
@@ -452,7 +452,7 @@ fn floods_of_small_things_keep_nobody_out() {
         is_served(what);
     }
     for number in 0..300 {
-        // A place may still be held by a session that ends.
+        // An ending session may still hold a place.
         if let Ok(mut page) = try_connect(&lab, &lab.token, &[])
             && number % 3 == 0
         {

@@ -1,4 +1,5 @@
-//! Who connects and says nothing, too much or without reading; who takes the port; and the end of the server.
+//! Clients that send nothing, send too much or do not read; attempts to take the port; and the end of the
+//! server.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -16,7 +17,7 @@ use crate::page::{NONCE, Page, TAB, proof, try_connect};
 /// Number of connections that an attacker opens.
 const MANY: usize = 300;
 
-/// Tells whether the server has closed a connection, or answered.
+/// Whether the server has closed a connection, or answered.
 fn is_over(stream: &mut TcpStream) -> bool {
     stream.set_nonblocking(true).unwrap();
     let read = stream.read(&mut [0; 64]);
@@ -36,7 +37,7 @@ fn end(mut lab: Served) -> Duration {
     told.recv_timeout(2 * TIMEOUT).expect("the server has not ended")
 }
 
-/// Asks for answers of 25 times a megabyte, of which the system keeps a few for whoever reads them later.
+/// Requests 25 answers of a megabyte; the system buffers only a few of them.
 fn ask_for_much(page: &mut Page) {
     let number = format!("0.5{}", "0".repeat(253));
     let row = vec![number; 64].join(",") + "\n";
@@ -49,8 +50,7 @@ fn ask_for_much(page: &mut Page) {
     }
 }
 
-/// An image of 2^28 white pixels in some ten kilobytes, and a case that reads it a hundred times, which takes
-/// minutes.
+/// A case that takes minutes: it reads an image of 2^28 white pixels, of some ten kilobytes, a hundred times.
 #[cfg(target_os = "linux")]
 fn case_of_minutes() -> serde_json::Value {
     let mut image = Vec::new();
@@ -60,7 +60,7 @@ fn case_of_minutes() -> serde_json::Value {
     let mut writer = encoder.write_header().unwrap();
     writer.write_image_data(&vec![0xff; 1 << 25]).unwrap();
     writer.finish().unwrap();
-    // Images of different thresholds are read anew.
+    // Each threshold makes the image be read again.
     let texture = |k: u32| format!("[[texture]]\nshape = 'mask'\nfile = 'a.png'\nthreshold = 0.{k}\n");
     let toml: String = (1000..1100).map(texture).collect();
     json!({ "do": "open", "source": { "toml": toml, "files": { "a.png": BASE64_STANDARD.encode(image) } } })
@@ -71,7 +71,7 @@ fn case_of_minutes() -> serde_json::Value {
 #[cfg(target_os = "linux")]
 fn time_of_sessions() -> Option<u64> {
     let tasks = std::fs::read_dir("/proc/self/task").unwrap();
-    // One that has just ended cannot be read.
+    // The entry of a thread that has just ended cannot be read.
     let stats = tasks.filter_map(|task| std::fs::read_to_string(task.ok()?.path().join("stat")).ok());
     let of_sessions = stats.filter_map(|stat| {
         let (_, fields) = stat.split_once("(session) ")?;
@@ -80,7 +80,7 @@ fn time_of_sessions() -> Option<u64> {
     of_sessions.reduce(|all, one| all + one)
 }
 
-/// A link of a stranger may lead to a case that takes minutes to make.
+/// A link from a stranger may lead to a case that takes minutes to make.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_page_that_is_gone_leaves_no_case_that_is_being_made() {
@@ -94,8 +94,8 @@ fn a_page_that_is_gone_leaves_no_case_that_is_being_made() {
                 thread::sleep(Duration::from_millis(10));
             }
         };
-        // Requests that wait for the session are not read, so that a page whose requests wait is noticed in
-        // another way.
+        // While requests wait for a session, the server does not read from its page, and notices in another
+        // way that the page is gone.
         for waiting in [0, 40] {
             let lab = Served::new();
             let mut page = Page::open(&lab);
@@ -115,12 +115,12 @@ fn connections_that_say_nothing_keep_no_page_out() {
     let lab = Served::impatient();
     let mut idle: Vec<TcpStream> = (0..MANY).map(|_| lab.connect()).collect();
     for stream in &mut idle {
-        // Some are closed already, for those that came after them.
+        // Some connections are already closed to make room for later ones.
         let _ = stream.write_all(b"G");
     }
     assert_eq!(lab.status("/", &lab.host(), ""), 200);
     Page::open(&lab).reply("hello");
-    // Few are held open, and none for long.
+    // Few connections stay open, and none for long.
     let began = Instant::now();
     while !idle.iter_mut().all(is_over) {
         assert!(
@@ -135,7 +135,7 @@ fn connections_that_say_nothing_keep_no_page_out() {
 fn connections_before_a_header_is_there_are_few() {
     let lab = Served::new();
     let mut idle: Vec<TcpStream> = (0..MANY).map(|_| lab.connect()).collect();
-    // The server takes connections in their order.
+    // The server accepts connections in order.
     lab.status("/", &lab.host(), "");
     let open = idle
         .iter_mut()
@@ -150,7 +150,7 @@ fn large_headers_are_refused() {
     let line = |bytes| format!("X: {}\r\n", "a".repeat(bytes));
     assert_eq!(lab.status("/", &lab.host(), &line(8 << 10)), 200);
     assert_eq!(lab.status("/", &lab.host(), &line(17 << 10)), 431);
-    // One that never ends is not read to its end.
+    // The server does not read an endless header to its end.
     let mut stream = lab.connect();
     stream.set_write_timeout(Some(TIMEOUT)).unwrap();
     let begun = format!("GET / HTTP/1.1\r\nHost: {}\r\nX: ", lab.host());
@@ -172,13 +172,13 @@ fn the_server_ends_whatever_is_open() {
     drop((idle, page));
 }
 
-/// A page that does not read what it is sent is not waited for, and what it was to read is not kept.
+/// The server does not wait for a page that does not read, and drops its messages.
 #[test]
 fn a_page_that_does_not_read_is_dropped() {
     let lab = Served::impatient();
     let mut pages: Vec<Page> = (0..4).map(|_| Page::open(&lab)).collect();
     ask_for_much(&mut pages[0]);
-    // Its place becomes free, for which no other page has to go.
+    // The place of the dropped page becomes free, and no other page has to go.
     let began = Instant::now();
     while try_connect(&lab, &lab.token, &[]).is_err() {
         assert!(
@@ -198,7 +198,7 @@ fn the_end_does_not_wait_for_a_page_that_does_not_read() {
     end(lab);
 }
 
-/// Before a page proves anything, the server has proved that it knows the token.
+/// The server proves that it knows the token before a page proves anything.
 #[test]
 fn the_server_proves_that_it_is_the_one() {
     let lab = Served::new();
@@ -228,10 +228,10 @@ fn the_server_proves_that_it_is_the_one() {
     ] {
         assert!(prove(tab, nonce).starts_with("HTTP/1.1 404"), "{tab} {nonce}");
     }
-    // Another server of the same port cannot.
+    // Another server on the same port cannot prove it.
     let stranger = Served::new();
     assert_ne!(proof(&stranger.token, "server"), expected);
-    // On the connection itself, as the first message.
+    // The first message on the connection itself is the proof.
     let mut page = Page::open(&lab);
     let first = page.read().unwrap().unwrap();
     assert_eq!(first, json!({ "is": "proof", "proof": expected }));
@@ -245,7 +245,7 @@ fn the_start_page_is_there_until_a_page_has_connected_or_the_server_ends() {
         page.contains(&format!("url=http://{}/#token={}\"", lab.host(), lab.token)),
         "{page}"
     );
-    // Whoever does not know the token does not take it away.
+    // A client without the token does not remove the start page.
     assert_eq!(lab.status("/", &lab.host(), ""), 200);
     assert_eq!(try_connect(&lab, "wrong", &[]).err(), Some(401));
     assert!(lab.start_page.exists());

@@ -1,4 +1,4 @@
-//! Which files of the disk a case may name.
+//! Files of the disk that a case may name.
 #![cfg(unix)]
 
 use std::os::unix::fs::symlink;
@@ -13,7 +13,7 @@ use crate::page::Page;
 
 const SECRET: &str = "0.5,0.25\n0.125,0.0625\n";
 
-/// A folder `case` of somebody else's, and beside it a folder with a file of the user's.
+/// A folder `case` from somebody else, and next to it a folder with a file of the user.
 fn folders() -> TempDir {
     let all = tempfile::tempdir().unwrap();
     for folder in ["case", "mine"] {
@@ -36,7 +36,7 @@ fn write_case(all: &TempDir, name: &str) -> PathBuf {
     path
 }
 
-/// Why the laboratory does not start.
+/// The error with which the laboratory does not start.
 fn refused(path: &Path, allowed: &[PathBuf]) -> String {
     Start::of(path, allowed).err().unwrap().to_string()
 }
@@ -68,7 +68,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
             "{said}"
         );
         assert!(Start::of(&path, &[all.path().join("mine")]).is_ok(), "{name}");
-        // Another folder than the one that it is in.
+        // The allowed folder is not the one with the file.
         assert!(
             refused(&path, &[all.path().join("case")]).contains("outside"),
             "{name}"
@@ -81,7 +81,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
     for name in ["own.csv", "./own.csv", "../case/own.csv"] {
         assert!(Start::of(&write_case(&all, name), &[]).is_ok(), "{name}");
     }
-    // Every key that names a file, and not those of coefficients alone.
+    // The rule holds for every key that names a file, not only for those of coefficients.
     for ending in ["npy", "png"] {
         std::fs::write(mine.join(format!("secret.{ending}")), SECRET).unwrap();
     }
@@ -108,7 +108,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
     }
 }
 
-/// Links and exports of a case hold files that lie in its folder or in an allowed one.
+/// Links and exports of a case contain the files in its folder or in an allowed one.
 #[test]
 fn links_and_exports_hold_the_files_that_were_read() {
     let all = folders();
@@ -121,7 +121,7 @@ fn links_and_exports_hold_the_files_that_were_read() {
     let mut page = Page::open(&lab);
     page.send(&json!({ "do": "open", "source": {} }));
     assert_eq!(page.reply("case")["files"], json!(["secret.csv"]));
-    // What the page says itself reads no file of the disk, allowed or not.
+    // A case that the page sends reads no file of the disk, allowed or not.
     let secret = all.path().join("mine/secret.csv").display().to_string();
     for name in [secret.as_str(), "../mine/secret.csv", "case/own.csv"] {
         let toml = format!("slider.blocks = [2, 2]\nfriction.mu_static_field = '{name}'\n");
@@ -134,7 +134,7 @@ fn links_and_exports_hold_the_files_that_were_read() {
             page.refusal(&json!({ "do": "set", "keys": { "load.pressure_field": name }, "gesture": 1 }));
         assert!(said.contains("is not one of the files of the case"), "{said}");
     }
-    // A file that no key names any more is not handed on either.
+    // A file that no key names any more is not exported either.
     page.send(&json!({ "do": "set", "keys": { "friction.mu_static_field": null }, "gesture": 2 }));
     page.wait_for("the change", |reply| reply["why"] == "change");
     page.send(&json!({ "do": "export" }));
@@ -144,7 +144,7 @@ fn links_and_exports_hold_the_files_that_were_read() {
     assert!(page.reply("exported")["files"]["secret.csv"].is_string());
 }
 
-/// The cases of the repository name files beside them.
+/// The cases of the repository name files in their own folder.
 #[test]
 fn the_cases_of_the_repository_can_be_opened() {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
@@ -166,7 +166,7 @@ fn the_cases_of_the_repository_can_be_opened() {
     assert!(with_files > 0);
 }
 
-/// A run of the results that is a link out of them, and runs whose files are.
+/// A run folder that is a link out of the results, and runs with files that are such links, are refused.
 #[test]
 fn run_folders_hold_their_files_themselves() {
     let lab = Served::new();
@@ -183,7 +183,7 @@ fn run_folders_hold_their_files_themselves() {
         said.contains("outside of the folder of the results") && said.contains("--allow-files"),
         "{said}"
     );
-    // The user may name it.
+    // The user may name such a run at the start.
     assert!(Start::of(&lab.results().join("run"), &[]).is_ok());
     for name in [
         "case.toml",

@@ -1,5 +1,5 @@
-//! The search for a texture that is better than the painted one, whatever becomes of the page that asked for
-//! it.
+//! The search for a texture that is better than the painted one, and its end when the page or the server
+//! ends.
 
 use std::time::{Duration, Instant};
 
@@ -8,10 +8,10 @@ use serde_json::json;
 use crate::laboratory::Served;
 use crate::page::Page;
 
-/// A texture takes some hundredths of a second, so that a search goes on until it is stopped.
+/// A texture takes some hundredths of a second, so the search continues until it is stopped.
 const CASE: &str = "slider.blocks = [100, 100]\n";
 
-/// A page on which a search is under way.
+/// A page with a search under way.
 fn searching(lab: &Served) -> Page {
     let mut page = Page::with_case(lab, CASE);
     page.reply("case");
@@ -20,7 +20,7 @@ fn searching(lab: &Served) -> Page {
     page
 }
 
-/// How far a search is told also while the run stands still and nothing else is to be done.
+/// The page gets the progress of a search even while the run is paused and nothing else happens.
 #[test]
 fn a_search_goes_on_while_the_run_is_paused() {
     let lab = Served::new();
@@ -42,6 +42,6 @@ fn a_search_ends_with_its_page_and_with_the_server() {
     let _page = searching(&lab);
     let began = Instant::now();
     lab.stop();
-    // Work that goes on is waited for 10 s, and then left alone.
+    // The server waits at most 10 s for work that continues.
     assert!(began.elapsed() < Duration::from_secs(10), "{:?}", began.elapsed());
 }

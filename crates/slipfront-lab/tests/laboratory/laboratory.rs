@@ -1,4 +1,4 @@
-//! A server of a test's own.
+//! A server for one test.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -11,13 +11,13 @@ use slipfront_lab::{Laboratory, Patience, ServerOptions, Start};
 use tempfile::TempDir;
 use tokio::sync::oneshot;
 
-/// Long enough for a slow machine, short enough for a test that fails.
+/// Long enough for a slow machine, and short enough for a test that fails.
 pub(crate) const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Sentences that all servers of the tests have printed in their terminals.
 static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// A server, which ends with the test.
+/// A server that ends with the test.
 pub(crate) struct Served {
     pub(crate) port: u16,
     pub(crate) token: String,
@@ -37,7 +37,7 @@ impl Served {
         Self::patient(start, Patience::default())
     }
 
-    /// A server that waits a second for those who say or read nothing.
+    /// A server that waits one second for clients that send or read nothing.
     pub(crate) fn impatient() -> Self {
         let second = Duration::from_secs(1);
         let patience = Patience {
@@ -85,7 +85,7 @@ impl Served {
         self.folder.path().join("results")
     }
 
-    /// Sentences of the terminal that name this folder of the results of this server.
+    /// Sentences in the terminal about this folder in the results of this server.
     pub(crate) fn told_of(&self, name: &str) -> Vec<String> {
         let folder = self.results().join(name).display().to_string();
         let mut told = TOLD.lock().unwrap().clone();
@@ -99,7 +99,7 @@ impl Served {
         stream
     }
 
-    /// The answer to these bytes, as far as the connection is closed after it.
+    /// The answer to these bytes, if the server closes the connection after it.
     pub(crate) fn answer(&self, request: &str) -> String {
         let mut stream = self.connect();
         stream.write_all(request.as_bytes()).unwrap();
@@ -120,7 +120,7 @@ impl Served {
         format!("127.0.0.1:{}", self.port)
     }
 
-    /// Ends the server, and waits for it.
+    /// Ends the server, and waits until it has ended.
     pub(crate) fn stop(&mut self) {
         drop(self.stop.take());
         if let Some(thread) = self.thread.take() {

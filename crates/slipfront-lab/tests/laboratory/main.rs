@@ -1,4 +1,4 @@
-//! The server as a page sees it, and as somebody who means harm does; and the lessons of the page.
+//! Tests of the server from the view of a page and of an attacker, and of the lessons of the page.
 #![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 mod attacks;

@@ -12,15 +12,15 @@ use tungstenite::{Error, Message, WebSocket};
 
 use crate::laboratory::{Served, TIMEOUT};
 
-/// A connection as a page has it.
+/// Connection of a page to the server.
 pub(crate) struct Page {
     pub(crate) socket: WebSocket<TcpStream>,
-    /// Number of pictures received, and the last of them.
+    /// Number of pictures received so far; the last one follows.
     pub(crate) pictures: usize,
     pub(crate) picture: Vec<u8>,
 }
 
-/// A name of a tab and a nonce, as good as any.
+/// Arbitrary name of a tab, and an arbitrary nonce.
 pub(crate) const TAB: &str = "00112233445566778899aabbccddeeff";
 pub(crate) const NONCE: &str = "0123456789abcdef0123456789abcdef";
 
@@ -31,7 +31,7 @@ fn code(key: &str, text: &str) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// How `who`, page or server, proves that it knows the token.
+/// The proof of `who`, page or server, that it knows the token.
 pub(crate) fn proof(token: &str, who: &str) -> String {
     code(&code(token, TAB), &format!("{who} {NONCE}"))
 }
@@ -41,7 +41,7 @@ pub(crate) fn protocols(proof: &str) -> String {
     format!("slipfront.lab.v2, tab.{TAB}, nonce.{NONCE}, proof.{proof}")
 }
 
-/// Why a connection was refused, or that it was not.
+/// Tries to connect; returns the page, or the status of the refusal.
 pub(crate) fn try_connect(of: &Served, token: &str, headers: &[(&'static str, &str)]) -> Result<Page, u16> {
     let mut request = format!("ws://{}/ws", of.host()).into_client_request().unwrap();
     let protocols = protocols(&proof(token, "page"));
@@ -76,7 +76,7 @@ impl Page {
         self.socket.send(Message::text(request.to_string())).unwrap();
     }
 
-    /// The next message, as far as it is one of the server.
+    /// Reads the next message; none if it is not a reply.
     pub(crate) fn read(&mut self) -> Result<Option<Value>, Error> {
         match self.socket.read()? {
             Message::Text(text) => Ok(Some(serde_json::from_str(&text).unwrap())),
@@ -92,7 +92,7 @@ impl Page {
         }
     }
 
-    /// The next reply for which this holds.
+    /// Waits for the next reply that fulfils a condition.
     pub(crate) fn wait_for(&mut self, what: &str, holds: impl Fn(&Value) -> bool) -> Value {
         let began = Instant::now();
         while began.elapsed() < TIMEOUT {
@@ -123,13 +123,13 @@ impl Page {
         &self.picture
     }
 
-    /// The sentence with which a request is refused.
+    /// Sends a request, and returns the sentence that refuses it.
     pub(crate) fn refusal(&mut self, request: &Value) -> String {
         self.send(request);
         self.reply("refused")["sentence"].as_str().unwrap().to_owned()
     }
 
-    /// How the connection ends: its code and reason, or none if it just breaks.
+    /// Waits for the end of the connection; returns its code and reason, or none if it just breaks.
     pub(crate) fn end(&mut self) -> Option<(u16, String)> {
         loop {
             match self.socket.read() {

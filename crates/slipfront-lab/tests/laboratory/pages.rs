@@ -1,4 +1,4 @@
-//! Replies, pictures and files that the server gives a page.
+//! Replies, pictures and files that the server sends to a page.
 
 use std::time::{Duration, Instant};
 
@@ -10,14 +10,14 @@ use crate::page::Page;
 const CIRCLE: &str = "slider.blocks = [20, 20]\nfriction.sigma_static_star = 0\ntime.duration_star = 200\n[[texture]]\nshape = 'cavity'\n\
                       coverage = 10\n";
 
-/// The field of a picture.
+/// The code of the field of a picture.
 const CONTACT_STRESS: u8 = 0;
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// Takes a run to its end, as fast as it goes.
+/// Runs to the end, as fast as possible.
 fn ended(page: &mut Page) -> Value {
     page.send(&json!({ "do": "view", "pace": 0 }));
     page.wait_for("the end", |reply| {
@@ -25,7 +25,7 @@ fn ended(page: &mut Page) -> Value {
     })
 }
 
-/// Numbers that the page receives equal those of a run of the same case, to the last digit.
+/// Numbers on the page equal the numbers of a run of the same case, to the last digit.
 #[test]
 fn the_numbers_are_those_of_a_run() {
     let lab = Served::new();
@@ -56,14 +56,14 @@ fn the_numbers_are_those_of_a_run() {
     }
 }
 
-/// A run saved by the page has the bytes of `slipfront run`, except in the manifest, which names the program
-/// and the time.
+/// A run saved by the page has the same bytes as with `slipfront run`, except in the manifest, which names
+/// the program and the time.
 #[test]
 fn a_saved_run_has_the_bytes_of_the_command() {
     let lab = Served::new();
     let mut page = Page::with_case(&lab, CIRCLE);
     page.reply("case");
-    // As it was painted.
+    // The saved case includes the painted texture.
     page.send(
         &json!({ "do": "paint", "points": [[4, 4], [16, 4]], "radius": 1.5, "textured": true, "gesture": 1 }),
     );
@@ -102,7 +102,7 @@ fn a_saved_run_has_the_bytes_of_the_command() {
     assert!(said.contains("exists already"), "{said}");
 }
 
-/// A run of the case into a folder, by the functions of `slipfront run`.
+/// Runs the case into a folder with the functions of `slipfront run`.
 fn slipfront_run_of(case: &std::path::Path, out: &std::path::Path) -> bool {
     use slipfront_case::case::{Case, Ranks};
     use slipfront_run::{pictures, results, run_folder::RunFolder, running};
@@ -143,13 +143,14 @@ fn paint_undo_and_redo_change_the_texture() {
         page.send(&request);
         number(&page.reply("case")["texture_percent"])
     };
-    // Middles of 4 of 80 blocks are within 1 of the corner (5, 4); a line of the fifth row crosses all 10.
+    // The centres of 4 of 80 blocks are within 1 of the corner (5, 4); a line along the fifth row crosses all
+    // 10.
     assert_eq!(percent(&mut page, paint(json!([[5, 4]]), 1.0, true, 1)), 5.0);
     assert_eq!(
         percent(&mut page, paint(json!([[0, 4.5], [10, 4.5]]), 0.4, true, 2)),
         15.0
     );
-    // The same gesture again: undone together with what went before.
+    // The same gesture again is undone together with the part before it.
     assert_eq!(percent(&mut page, paint(json!([[5, 4]]), 1.0, false, 2)), 10.0);
     assert_eq!(percent(&mut page, json!({ "do": "undo" })), 5.0);
     assert_eq!(percent(&mut page, json!({ "do": "undo" })), 0.0);
@@ -160,9 +161,10 @@ fn paint_undo_and_redo_change_the_texture() {
         (number(&case["texture_percent"]), &case["can_redo"]),
         (10.0, &json!(false))
     );
-    // The picture shows it where it is: the row of y = 4 but for the four blocks in its middle and below.
+    // The picture shows the texture in its place: the row of y = 4 except for the four blocks in its middle
+    // and below.
     page.send(&json!({ "do": "view", "field": "contact_stress", "paused": true }));
-    // It may come before the numbers that were found with it.
+    // The picture may arrive before the numbers of the same time.
     while page.picture.get(1) != Some(&CONTACT_STRESS) {
         page.next_picture();
     }
@@ -184,16 +186,16 @@ fn changes_go_on_or_begin_at_rest_as_was_chosen() {
     let case = page.wait_for("the change", |reply| reply["why"] == "change");
     assert_eq!(case["leg"], 1);
     let speed = number(&case["values"]["speed"]["si"]);
-    // It became V* and a speed again.
+    // The speed was converted to V* and back.
     assert!((speed / 2e-4 - 1.0).abs() < 1e-15, "{speed}");
     assert!(number(&case["time_before_s"]) > 0.0);
     let numbers = page.wait_for("its numbers", |reply| {
         reply["is"] == "numbers" && !reply["instants"]["A"].is_null()
     });
-    // Instants of a leg count from rest as the curve does.
+    // Instants of a leg count from rest, like the curve.
     let before = number(&case["time_before_s"]) / number(&case["units"]["time_s"]);
     assert!(number(&numbers["instants"]["A"]) > before);
-    // Other blocks are another slider.
+    // A change of the number of blocks makes another slider, which starts from rest.
     page.send(&json!({ "do": "set", "keys": { "slider.blocks": [12, 10] }, "gesture": 2 }));
     assert_eq!(
         page.wait_for("the change", |reply| reply["why"] == "change")["leg"],
@@ -203,14 +205,14 @@ fn changes_go_on_or_begin_at_rest_as_was_chosen() {
     assert_eq!(page.wait_for("rest", |reply| reply["why"] == "rest")["leg"], 0);
 }
 
-/// Nothing is computed or sent for a page that is not seen.
+/// A hidden page makes the server compute and send nothing.
 #[test]
 fn a_hidden_page_costs_nothing() {
     let lab = Served::new();
     let mut page = Page::with_case(&lab, "slider.blocks = [10, 10]\ntime.duration_star = 1e6\n");
     page.reply("numbers");
     page.send(&json!({ "do": "view", "visible": false }));
-    // An answer tells that the request has arrived.
+    // An answer shows that the request has arrived.
     page.send(&json!({ "do": "export" }));
     page.reply("exported");
     let pictures = page.pictures;
@@ -219,7 +221,7 @@ fn a_hidden_page_costs_nothing() {
         .set_read_timeout(Some(Duration::from_millis(500)))
         .unwrap();
     let began = Instant::now();
-    // What was under way when it was asked for: one picture and the replies with it.
+    // Only messages under way may still arrive: one picture and its replies.
     while page.read().is_ok() {
         assert!(began.elapsed() < Duration::from_secs(5), "messages do not end");
     }
@@ -247,14 +249,14 @@ fn a_run_folder_is_shown_again() {
         .iter()
         .map(number)
         .fold(0.0, f64::max);
-    // The same numbers again.
+    // The numbers are the same again.
     let end = ended(&mut page);
     assert_eq!(number(&end["summary"]["mu_star_max"]), largest);
-    // And a snapshot of then.
+    // A snapshot of the run can be shown.
     page.send(&json!({ "do": "frames_of", "index": 2 }));
-    // That of the end may be under way.
+    // The picture of the end may still be under way.
     while page.next_picture()[2] != 1 {}
-    // Other files in the folder are no run.
+    // A folder with changed files is not a run.
     std::fs::write(lab.results().join("first/case.toml"), "slider.blocks = [3, 3]").unwrap();
     let said = page.refusal(&json!({ "do": "open", "source": { "folder": "first" } }));
     assert!(said.contains("case.toml"), "{said}");
@@ -291,7 +293,7 @@ fn the_uncertainty_is_that_of_several_seeds() {
         number(&repeated["change_percent"]["half_width"]),
         sample.half_width.unwrap()
     );
-    // Without texture there is nothing to compare with.
+    // Without a texture there is nothing to compare with.
     page.send(&json!({ "do": "set", "keys": { "texture": null }, "gesture": 1 }));
     page.send(&json!({ "do": "repeat", "seeds": 2 }));
     let repeated = page.wait_for("the last seed", |reply| reply["finished"] == true);

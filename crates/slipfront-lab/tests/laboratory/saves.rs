@@ -1,4 +1,4 @@
-//! Runs that are saved, whatever becomes of the page that asked for it.
+//! Saving of runs, even if the page that asked for it is closed.
 
 use std::time::{Duration, Instant};
 
@@ -9,10 +9,10 @@ use crate::page::Page;
 
 const SMALL: &str = "slider.blocks = [20, 20]\ntime.duration_star = 200\n";
 
-/// Some minutes of work, of which every test stops what it has begun.
+/// Takes some minutes; every test stops the runs that it has begun.
 const LONG: &str = "slider.blocks = [300, 300]\ntime.duration_star = 1e5\n";
 
-/// Waits until something holds.
+/// Waits until a condition holds.
 fn wait_until(what: &str, holds: impl Fn() -> bool) {
     let began = Instant::now();
     while !holds() {
@@ -28,14 +28,14 @@ fn names(reply: &Value) -> Vec<String> {
         .collect()
 }
 
-/// The next list of what is being saved that has these names.
+/// Waits for the next list of saves that has these names.
 fn wait_for_names(page: &mut Page, wanted: &[&str]) -> Value {
     page.wait_for("the list of saves", |reply| {
         reply["is"] == "saving" && names(reply) == wanted
     })
 }
 
-/// A page goes when it is loaded again or its tab is closed; the runs that are being saved go on.
+/// Reloading or closing a page does not end the saving of its runs.
 #[test]
 fn a_page_that_goes_ends_no_save() {
     let lab = Served::new();
@@ -82,11 +82,11 @@ fn a_new_page_is_told_what_is_being_saved_and_can_stop_it() {
         told[0].contains("was not saved: it was stopped after"),
         "{told:?}"
     );
-    // A name that nothing is saved under is no reason to stop anything.
+    // A request to stop saving an unknown name stops nothing.
     second.send(&json!({ "do": "save_stop", "name": "none" }));
     second.send(&json!({ "do": "save_stop", "name": "two" }));
     wait_for_names(&mut second, &[]);
-    // What another page has saved is told on all of them.
+    // All pages are notified when a run of any page is saved.
     let mut third = Page::with_case(&lab, SMALL);
     third.reply("case");
     third.send(&json!({ "do": "save", "name": "three" }));
@@ -112,7 +112,7 @@ fn names_and_numbers_of_saves_are_bounded() {
     assert!(!lab.results().join("d").exists());
 }
 
-/// A link that somebody puts there is nothing to write through.
+/// The server does not write through a link in the folder of results.
 #[cfg(unix)]
 #[test]
 fn nothing_is_saved_through_a_link() {
@@ -130,7 +130,7 @@ fn nothing_is_saved_through_a_link() {
     assert_eq!(std::fs::read_dir(elsewhere.path()).unwrap().count(), 0);
 }
 
-/// A save that the end of the server interrupts is told in the terminal, and leaves no unfinished folder.
+/// A save that the end of the server interrupts is reported in the terminal, and leaves no unfinished folder.
 #[test]
 fn the_end_of_the_server_gives_up_what_is_being_saved() {
     let mut lab = Served::new();

@@ -1,6 +1,6 @@
-//! Shared parts of the tests: programs under mpirun.
+//! Shared helpers of the tests, which run programs under mpirun.
 
-// Every test binary uses a part of it.
+// Every test binary uses only some of these.
 #![allow(dead_code)]
 
 pub(crate) mod results;
@@ -10,11 +10,11 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Open MPI's parameter for the seconds between the signal on which ranks are to end and the one that kills
+/// Open MPI's parameter for the seconds between the signal that asks ranks to end and the signal that kills
 /// them.
 pub(crate) const SECONDS_TO_END: &str = "OMPI_MCA_odls_base_sigkill_timeout";
 
-/// The environment in which a test program finds the arguments of the command that it is to run.
+/// Environment variable with the arguments of the command that a test program is to run.
 const ARGUMENTS: &str = "SLIPFRONT_TEST_ARGUMENTS";
 
 /// Starts a program with `ranks` ranks.
@@ -24,16 +24,16 @@ pub(crate) fn mpirun(ranks: usize, program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// The command mpirun, without a program to start yet. Ranks may be more than cores, and then give way to
-/// each other while they wait.
+/// mpirun without a program to start yet. There may be more ranks than cores: ranks that wait yield to
+/// others.
 pub(crate) fn launcher() -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]);
-    // A rank that waits for ever is a failure of the test, not of the machine on which it runs. Four ranks on
-    // two cores give way to whatever else works there at each of their steps, so that seconds become minutes.
+    // A rank that waits for ever is a failure of the test, not of the machine. Four ranks on two cores yield
+    // to other processes at each of their steps, so seconds become minutes.
     command.args(["--timeout", "600", "--mca", "mpi_yield_when_idle", "1"]);
-    // Of ranks that end with another status than 0 mpirun kills at once what is left, and not after a second
-    // or two.
+    // When a rank ends with a status other than 0, mpirun kills the other ranks at once, instead of after a
+    // second or two.
     command.env(SECONDS_TO_END, "0");
     command
 }
@@ -46,22 +46,22 @@ pub(crate) fn output(command: &mut Command) -> Output {
     })
 }
 
-/// Text that is printed to stdout and stderr.
+/// Text printed to stdout and stderr.
 pub(crate) fn printed(output: &Output) -> String {
     [&output.stdout, &output.stderr]
         .map(|bytes| String::from_utf8_lossy(bytes))
         .concat()
 }
 
-/// Starts one of the tests of this program that are ignored otherwise, on every rank.
+/// Runs one of the ignored tests of this program on every rank.
 pub(crate) fn ranks_of_test(ranks: usize, test: &str) -> Command {
     let mut command = mpirun(ranks, std::env::current_exe().unwrap());
     command.args(only(test));
     command
 }
 
-/// Runs the plain command `slipfront`, which must succeed, in a folder, as a process of this test program,
-/// which has [`run_plain_command`] in a test named `plain_command`.
+/// Runs the plain command `slipfront` in a folder, which must succeed. The command runs in a process of this
+/// test program, which has a test named `plain_command` that calls [`run_plain_command`].
 pub(crate) fn run_plain(folder: &Path, line: &str) {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(only("plain_command")).env(ARGUMENTS, line);
@@ -69,7 +69,7 @@ pub(crate) fn run_plain(folder: &Path, line: &str) {
     assert!(output.status.success(), "{}", printed(&output));
 }
 
-/// Ends this process as `slipfront` with the arguments that it was given.
+/// Runs `slipfront` in this process with the arguments from the environment.
 pub(crate) fn run_plain_command() {
     let line = std::env::var(ARGUMENTS).unwrap();
     let line = std::iter::once("slipfront").chain(line.split_whitespace());

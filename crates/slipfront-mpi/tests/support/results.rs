@@ -1,12 +1,12 @@
-//! Files that a run has written.
+//! Files written by a run.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Files by their names, with their bytes.
+/// Contents of files, by file name.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// Every file of a complete run but the manifest, which names machines and dates.
+/// Every file of a complete run except the manifest, which contains machine names and dates.
 pub(crate) fn results(folder: &Path) -> Files {
     let mut files = Files::new();
     for folder in [folder, &folder.join("inputs")] {

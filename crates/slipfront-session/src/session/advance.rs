@@ -1,24 +1,23 @@
-//! The clock of a session: what is due by now, and when there is something to do next.
+//! The clock of a session: what is due now, and when something is due next.
 
 use std::time::Duration;
 
 use super::state::Session;
 use crate::protocol::CalibrationOutcome;
 
-/// Time between two looks after work beside the session.
+/// Time between two checks of the jobs outside the session.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(100);
 
 impl Session {
-    /// Does what is due by `now`, some milliseconds of it at a time. Gives the time at which to be called
-    /// again, which is `now` where more is to be done at once, and none if there is nothing to do before the
-    /// page asks for something.
+    /// Does what is due by `now`, for some milliseconds per call. Returns the time of the next call: `now` if
+    /// more is to be done at once, and none if there is nothing to do before the next request of the page.
     ///
-    /// All times count from the same instant. The messages that have come are to be [handled](Self::handle)
+    /// All times count from the same instant. Messages that have arrived must be [handled](Self::handle)
     /// before.
     pub fn advance(&mut self, now: Duration) -> Option<Duration> {
         self.clock.end_slice(now);
-        // Changes that come while steps are taken wait for the picture, so that of many the case is made
-        // once.
+        // Changes that arrive while steps are taken wait for the picture, so that the case is made only once
+        // for all of them.
         let is_changed = !self.is_stepping && self.has_edits();
         if is_changed {
             self.apply_edits();
@@ -27,7 +26,7 @@ impl Session {
         self.follow_search(now);
         self.follow_calibration(now);
         self.follow_errands();
-        // A host may ask more often than anything moves.
+        // A host may call more often than anything moves.
         if !self.is_idle() {
             self.run_until_next_picture(now);
         }
@@ -42,7 +41,7 @@ impl Session {
         self.next_picture(now).into_iter().chain(followed).min()
     }
 
-    /// Gives up all work beside the session, since its case is no longer the present one.
+    /// Abandons all jobs outside the session, because their case is no longer the present one.
     pub(super) fn give_up_work(&mut self) {
         self.give_up_search();
         self.end_repetition();
@@ -50,7 +49,7 @@ impl Session {
         self.give_up_errands();
     }
 
-    /// When there is something to do for the next picture; none if nothing moves.
+    /// Time at which there is something to do for the next picture; none if nothing moves.
     fn next_picture(&self, now: Duration) -> Option<Duration> {
         if self.is_idle() {
             return None;
@@ -65,7 +64,7 @@ impl Session {
         Some(now.max(self.clock.picture + self.picture_period()))
     }
 
-    /// Whether there is nothing to do before the page asks for something.
+    /// Whether there is nothing to do before the next request of the page.
     fn is_idle(&self) -> bool {
         if self.has_edits() {
             return false;

@@ -2,14 +2,14 @@
 
 use slipfront::Lattice;
 
-/// Most points of a stroke in one message.
+/// Largest number of points of a stroke in one message.
 const MAX_POINTS: usize = 4096;
 
-/// Makes the blocks whose middles are within `radius` of the line through `points` texture, or contact.
+/// Turns the blocks with centres within `radius` of the line through `points` into texture, or into contact.
 /// Lengths are in blocks.
 ///
 /// # Errors
-/// A sentence, if there are no points or too many of them, or they or the radius are out of all bounds.
+/// A sentence, if there are no points or too many of them, or they or the radius are out of bounds.
 pub(super) fn stroke(
     mask: &mut [bool],
     lattice: &Lattice,
@@ -25,7 +25,7 @@ pub(super) fn stroke(
             "the radius of the brush is {radius} blocks, where it may be from 0.1 to 1000"
         ));
     }
-    // The last point once more, for a stroke of a single one.
+    // The last point is repeated, for a stroke with a single point.
     let ends = points.iter().skip(1).chain(points.last());
     for (from, to) in points.iter().zip(ends) {
         let within = |axis: usize, count: usize| {
@@ -65,7 +65,7 @@ mod tests {
     fn a_stroke_covers_the_middles_within_its_radius() {
         let lattice = Lattice::free(6, 3);
         let mut mask = [false; 18];
-        // Middles of the lowest row are 0.5 away from y = 0; those of i = 1, 2, 3 are within 1 of the ends in
+        // Centres of the lowest row are 0.5 away from y = 0; those of i = 1, 2, 3 are within 1 of the ends in
         // x.
         stroke(&mut mask, &lattice, &[[1.5, 0.0], [3.5, 0.0]], 1.0, true).unwrap();
         let row = |mask: &[bool], j: usize| {
@@ -80,7 +80,7 @@ mod tests {
         );
         stroke(&mut mask, &lattice, &[[2.5, 0.5]], 0.1, false).unwrap();
         assert_eq!(row(&mask, 0), [0, 1, 0, 1, 0, 0]);
-        // Beyond the slider there is nothing to paint.
+        // There is nothing to paint beyond the slider.
         stroke(&mut mask, &lattice, &[[-50.0, -50.0], [60.0, 80.0]], 0.1, true).unwrap();
         assert!(stroke(&mut mask, &lattice, &[[f64::NAN, 0.0]], 1.0, true).is_err());
     }

@@ -1,4 +1,4 @@
-//! A calibration of the case: begun, followed, ended.
+//! A calibration of the case: how it begins, continues and ends.
 
 use std::time::Duration;
 
@@ -9,10 +9,10 @@ use super::clock::is_due;
 use super::state::Session;
 use crate::protocol::{CalibrateRequest, CalibratedReply, CalibrationOutcome, Reply};
 
-/// Time between two reports of how far a calibration is.
+/// Time between two progress reports of a calibration.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
-/// Unknown keys that a page may ask for.
+/// Smallest and largest number of unknown keys that a page may ask for.
 const UNKNOWNS: [usize; 2] = [2, 4];
 
 impl Session {

@@ -1,4 +1,4 @@
-//! A calibration under way, shared out to tasks.
+//! A calibration under way, distributed over tasks.
 
 use std::vec;
 
@@ -10,31 +10,31 @@ use crate::host::{Host, Task};
 use crate::job::{Job, JobKind};
 use crate::protocol::{CalibrateRequest, CalibratingReply, CalibrationStage};
 
-/// Why a calibration ends by a defect.
+/// The error message of a calibration that crashes.
 const LOST: &str = "the calibration failed by a defect of its own";
 
-/// A calibration under way. Dropping it ends its work.
+/// A calibration under way. Dropping it ends its jobs.
 pub(super) struct Calibration {
     document: Document,
     request: Box<CalibrateRequest>,
-    /// Runs that were made for it by other tasks.
+    /// Runs that other tasks have made for it.
     made: Vec<MadeRun>,
     work: Work,
     pub(super) progress: CalibratingReply,
 }
 
-/// Work of a calibration.
+/// The present work of a calibration.
 enum Work {
-    /// The calibration itself, as far as its runs go.
+    /// The calibration itself, as far as its runs allow.
     Finding(Box<dyn Task>),
-    /// Runs that it wants, shared out to several tasks.
+    /// Runs that it wants, distributed over several tasks.
     Making(Vec<Part>),
 }
 
 /// The runs that one task makes.
 struct Part {
     task: Box<dyn Task>,
-    /// Runs of which the task has reported nothing yet, in its order.
+    /// Runs that the task has not reported yet, in order.
     wanted: vec::IntoIter<WantedRun>,
 }
 
@@ -42,7 +42,7 @@ impl Calibration {
     /// Begins the calibration of a case.
     ///
     /// # Errors
-    /// A sentence, if the system refuses the work.
+    /// A sentence, if the system refuses the job.
     pub(super) fn begin(
         host: &dyn Host,
         document: Document,
@@ -59,7 +59,7 @@ impl Calibration {
         })
     }
 
-    /// Begins the calibration of a case, or goes on with the runs that were made for it.
+    /// Begins the calibration of a case, or continues it with the runs that were made for it.
     fn find(
         host: &dyn Host,
         document: &Document,
@@ -74,7 +74,7 @@ impl Calibration {
         host.begin(Job::new(document.clone(), kind))
     }
 
-    /// Shares runs out to the workers of the host.
+    /// Distributes runs over the workers of the host.
     fn make(&mut self, host: &dyn Host, wanted: &[WantedRun]) -> Result<(), String> {
         let workers = host.workers().clamp(1, wanted.len().max(1));
         let mut parts = Vec::new();
@@ -92,7 +92,7 @@ impl Calibration {
         Ok(())
     }
 
-    /// Looks after the work; gives its results once they are there.
+    /// Checks the tasks; returns the results once they are there.
     ///
     /// # Errors
     /// A sentence on why there are none.
@@ -132,7 +132,7 @@ impl Calibration {
 }
 
 impl Part {
-    /// Notes the curves that the task has reported since the last look.
+    /// Collects the curves that the task has reported since the last call.
     fn follow(&mut self, made: &mut Vec<MadeRun>) -> Result<(), String> {
         while let Some(wanted) = self.wanted.as_slice().first().cloned()
             && let Some(event) = self.task.next_event()

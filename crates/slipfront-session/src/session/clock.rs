@@ -1,11 +1,11 @@
-//! When pictures, numbers and steps are due. All times count from some instant of the host.
+//! Times at which pictures, numbers and steps are due. All times count from a fixed instant of the host.
 
 use std::time::Duration;
 
-/// Longest time of steps between two looks at the clock.
+/// Longest time that steps take between two calls.
 const SLICE: Duration = Duration::from_millis(3);
 
-/// When pictures and numbers were sent last, and how fast steps are taken.
+/// When pictures and numbers were last sent, and how fast steps are taken.
 #[derive(Default)]
 pub(super) struct Clock {
     pub(super) picture: Duration,
@@ -14,43 +14,44 @@ pub(super) struct Clock {
     pub(super) kymograph: Option<Duration>,
     pub(super) search: Option<Duration>,
     pub(super) calibration: Option<Duration>,
-    /// Steps that are due, with a fraction, and when they were counted last.
+    /// Number of steps due, with a fraction, and when they were last counted.
     pub(super) due: f64,
     last_count: Duration,
-    /// Steps that are being taken, and since when.
+    /// Number of steps that are being taken, and the time at which they began.
     slice: Option<(u64, Duration)>,
     counted_from: Duration,
     counted_steps: u64,
     steps_per_second: f64,
-    /// Time that a step takes, s; none before the first one.
+    /// Time that a step takes, s; none before the first step.
     seconds_per_step: Option<f64>,
 }
 
 impl Clock {
-    /// Seconds since the last count of steps, 0.25 at most: a page that was hidden is not made up for.
+    /// Seconds since steps were last counted, 0.25 at most: the time while a page was hidden is not made up
+    /// for.
     pub(super) fn seconds_since_last_count(&mut self, now: Duration) -> f64 {
         let since = now.saturating_sub(self.last_count).as_secs_f64();
         self.last_count = now;
         since.min(0.25)
     }
 
-    /// Counts steps of the run that were taken.
+    /// Counts steps that the run has taken.
     pub(super) fn count_steps(&mut self, steps: u64) {
         self.counted_steps += steps;
     }
 
-    /// Notes that steps are taken from `now` up to the next look at the clock, and that nothing else is done
-    /// until then.
+    /// Marks that `steps` steps are taken from `now` until the next call, and that nothing else is done in
+    /// that time.
     pub(super) fn begin_slice(&mut self, steps: u64, now: Duration) {
         self.slice = Some((steps, now));
     }
 
-    /// Notes that something else was done since the last look at the clock.
+    /// Marks that something else was done since the last call.
     pub(super) fn disturb_slice(&mut self) {
         self.slice = None;
     }
 
-    /// Looks at the clock: learns from the steps that were taken since the last look how long one takes.
+    /// Measures how long a step takes, from the steps that were taken since the last call.
     pub(super) fn end_slice(&mut self, now: Duration) {
         let Some((steps, began)) = self.slice.take().filter(|(steps, _)| *steps > 0) else {
             return;
@@ -70,17 +71,18 @@ impl Clock {
         self.steps_per_second
     }
 
-    /// Steps that take [`SLICE`], at least one.
+    /// Number of steps that take [`SLICE`], at least one.
     pub(super) fn steps_per_slice(&self) -> u64 {
         let each = self.seconds_per_step.unwrap_or(INITIAL_SECONDS_PER_STEP);
         ((SLICE.as_secs_f64() / each) as u64).max(1)
     }
 }
 
-/// Time that a step is taken to need before the first one, s.
+/// Assumed duration of a step before the first one, s.
 const INITIAL_SECONDS_PER_STEP: f64 = 1e-4;
 
-/// Whether the interval `every` has passed since `last`, if there was one, which then becomes the present.
+/// Whether the interval `every` has passed since `last`, or there is no `last` yet. If so, sets `last` to
+/// `now`.
 pub(super) fn is_due(last: &mut Option<Duration>, every: Duration, now: Duration) -> bool {
     let due = last.is_none_or(|last| now.saturating_sub(last) >= every);
     if due {

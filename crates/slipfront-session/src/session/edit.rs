@@ -19,7 +19,7 @@ use crate::view::AfterChange;
 impl Session {
     pub(super) fn open(&mut self, source: Source) -> Result<(), String> {
         let OpenedCase { document, recorded } = self.opened(source)?;
-        // Whether it can be run is known before anything is given up.
+        // A case that cannot be run is refused before anything is dropped.
         let case = self.case_of(&document)?;
         self.give_up_work();
         (self.edited, self.painting) = (None, None);
@@ -39,7 +39,7 @@ impl Session {
         Ok(())
     }
 
-    /// The case that a source names.
+    /// Reads the case that a source names.
     fn opened(&self, source: Source) -> Result<OpenedCase, String> {
         if let Some(name) = source.preset {
             return self.host.preset(&name).map(OpenedCase::from);
@@ -119,7 +119,7 @@ impl Session {
         Ok(())
     }
 
-    /// Undoes or redoes a change of the case, as `go` says, and runs the case that is present then.
+    /// Undoes or redoes a change of the case with `go`, and runs the case that results.
     pub(super) fn move_in_history(
         &mut self,
         why: &'static str,
@@ -134,7 +134,7 @@ impl Session {
         }
     }
 
-    /// Runs the case with all edits that are not run yet.
+    /// Runs the case with all pending edits.
     pub(super) fn apply_edits(&mut self) {
         self.apply_painting();
         self.apply_edited_document();
@@ -176,7 +176,7 @@ impl Session {
         };
         if let Err(sentence) = self.run_edited(document, gesture) {
             self.host.reply(Reply::Refused { of, sentence }.json());
-            // The page shows what it has asked for, which is not what holds.
+            // The page shows its own change, which was refused.
             self.send_case("refused");
         }
     }
@@ -184,7 +184,7 @@ impl Session {
     /// Makes a changed case the present one, and runs it.
     ///
     /// # Errors
-    /// A sentence, if it cannot be run; then the present case stays.
+    /// A sentence, if it cannot be run; in that case the present case stays.
     pub(super) fn run_edited(&mut self, mut document: Document, gesture: u64) -> Result<(), String> {
         let from_rest = self.view.after_change == AfterChange::Rest;
         let case = self.case_of(&document)?;

@@ -1,4 +1,4 @@
-//! Work that ends with one reply: a record is read, a sensitivity is computed, a texture is drawn.
+//! Jobs that end with one reply: reading a record, computing a sensitivity, drawing a texture.
 
 use super::state::{Errand, Session};
 use crate::controls;
@@ -6,7 +6,7 @@ use crate::event::EventKind;
 use crate::job::{Job, JobKind};
 use crate::protocol::{DrawingFormat, RecordFile, Reply};
 
-/// Name of the request whose work does not depend on the case.
+/// Name of the request with a job that does not depend on the case.
 const READ_RECORD: &str = "read_record";
 
 impl Session {
@@ -17,7 +17,7 @@ impl Session {
     }
 
     /// Begins to compute static friction at the present value of the quantity of a slider, and at another
-    /// one.
+    /// value.
     pub(super) fn sensitivity(&mut self, control: &str) -> Result<(), String> {
         self.apply_edits();
         let document = self.document()?.clone();
@@ -32,7 +32,7 @@ impl Session {
         self.begin_errand("drawing", Job::new(document, JobKind::Draw(format)))
     }
 
-    /// Begins work that takes the place of earlier work for such a request.
+    /// Begins a job that replaces an earlier job for the same request.
     fn begin_errand(&mut self, of: &'static str, job: Job) -> Result<(), String> {
         self.errands.retain(|errand| errand.of != of);
         let task = self.host.begin(job)?;
@@ -40,12 +40,12 @@ impl Session {
         Ok(())
     }
 
-    /// Gives up work for a case that is no longer the present one.
+    /// Abandons jobs for a case that is no longer the present one.
     pub(super) fn give_up_errands(&mut self) {
         self.errands.retain(|errand| errand.of == READ_RECORD);
     }
 
-    /// Sends the replies of work that has ended.
+    /// Sends the replies of jobs that have ended.
     pub(super) fn follow_errands(&mut self) {
         let host = &self.host;
         self.errands.retain_mut(|Errand { of, task }| {

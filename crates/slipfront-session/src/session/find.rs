@@ -1,5 +1,5 @@
-//! A search for a texture that is better than the painted one: begun, followed, and made the texture of the
-//! case.
+//! A search for a texture that is better than the painted one: how it begins, continues and ends, and how its
+//! result becomes the texture of the case.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::job::{Job, JobKind};
 use crate::protocol::{FindingReply, FoundOutcome, FoundReply, Reply};
 use crate::search::{self, NOTHING_TRIED, SEARCH_TIME};
 
-/// Time between two reports of how far a search is.
+/// Time between two progress reports of a search.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
 /// The outcome of a search: the best texture and its comparison with the painted one, or why there is none.
@@ -39,14 +39,14 @@ impl Session {
         Ok(())
     }
 
-    /// Ends the search, if there is one; its best texture so far counts.
+    /// Ends the search, if there is one, and keeps its best texture so far.
     pub(super) fn stop_search(&mut self) {
         if let Some(search) = &mut self.search {
             search.is_enough = true;
         }
     }
 
-    /// Gives up the search, if there is one, since its case is no longer the present one.
+    /// Abandons the search, if there is one, because its case is no longer the present one.
     pub(super) fn give_up_search(&mut self) {
         if self.search.take().is_some() {
             let given_up = FoundReply::without(FoundOutcome::GivenUp);
@@ -54,7 +54,7 @@ impl Session {
         }
     }
 
-    /// Reports the progress of the search, or its result: a texture that is better replaces the painted one.
+    /// Reports the progress of the search, or its result: a better texture replaces the painted one.
     pub(super) fn follow_search(&mut self, now: Duration) {
         let Some(search) = &mut self.search else { return };
         let began = *search.began.get_or_insert(now);
@@ -81,7 +81,7 @@ impl Session {
         self.host.reply(Reply::Found(found).json());
     }
 
-    /// Gives the outcome of the search once it has ended. Begins the comparison of the best texture once no
+    /// Returns the outcome of the search once it has ended. Begins the comparison of the best texture when no
     /// more textures are tried.
     fn outcome_of_search(&mut self) -> Option<Outcome> {
         let search = self.search.as_mut()?;
@@ -89,7 +89,7 @@ impl Session {
         while let Some(event) = search.task.next_event() {
             match event.0 {
                 EventKind::Tried(tried) => search.note(tried),
-                // The last event of this task, which may have ended.
+                // This is the last event of the task, which may have ended.
                 EventKind::Searched(found) => {
                     searched = Some(found);
                     break;
@@ -118,7 +118,7 @@ impl Session {
     /// Ends the search, and begins to compare its best texture with the painted one.
     ///
     /// # Errors
-    /// A sentence, if the search has found nothing, or the system refuses the work.
+    /// A sentence, if the search has found nothing, or the system refuses the job.
     fn compare(&mut self, searched: Result<Mask, String>) -> Result<(), String> {
         let best = searched?;
         let document = self.document()?.clone();
@@ -149,7 +149,7 @@ impl Session {
 }
 
 impl TextureSearch {
-    /// Notes how far the search is.
+    /// Records the progress of the search.
     fn note(&mut self, tried: Tried) {
         self.tried.textures = tried.textures;
         if tried.best_texture.is_some() {
@@ -157,7 +157,7 @@ impl TextureSearch {
         }
     }
 
-    /// How far the search is; `columns` is the number of blocks along x.
+    /// Progress of the search; `columns` is the number of blocks along x.
     fn progress(&self, columns: usize) -> FindingReply {
         let texture = self.tried.best_texture.as_deref();
         FindingReply {
@@ -183,7 +183,7 @@ impl FoundReply {
         }
     }
 
-    /// The result of a search that has tried so many textures, from its comparison.
+    /// The result of a search that has tried `textures` textures, from its comparison.
     fn of(comparison: &Comparison, textures: usize) -> Self {
         Self {
             outcome: if comparison.is_better {

@@ -1,4 +1,4 @@
-//! A session: a case that is edited, and its run, which goes on only while somebody looks.
+//! A session: a case that is edited, and its run, which advances only while the page is visible.
 
 mod advance;
 mod brush;

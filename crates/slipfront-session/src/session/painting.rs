@@ -1,4 +1,4 @@
-//! A texture while it is painted: a layer of its own beside the shapes, which stay what they are.
+//! A texture while it is painted: a separate layer in addition to the shapes, which stay unchanged.
 
 use slipfront::surface::mesh;
 use slipfront_case::case::Case;
@@ -6,20 +6,21 @@ use slipfront_case::case::Case;
 use super::brush::stroke;
 use crate::document::Document;
 
-/// The painted layer of a case, block by block, before it is made part of the case.
+/// The painted layer of a case, block by block, before it becomes part of the case.
 pub(super) struct Painting {
-    /// The gesture by which the page paints.
+    /// The gesture with which the page paints.
     pub(super) gesture: u64,
-    /// The place of the layer among the textures; none if it is to be a new one behind them.
+    /// Index of the layer among the textures; none for a new layer after them.
     index: Option<usize>,
-    /// Blocks that are painted.
+    /// The painted blocks.
     layer: Vec<bool>,
-    /// Blocks that other textures cover; none once all textures have become the layer.
+    /// Blocks that other textures cover; none once all textures were merged into the layer.
     others: Option<Vec<bool>>,
 }
 
 impl Painting {
-    /// The layer of a document, of which `case` is made; a new layer if the document has none.
+    /// Begins with the painted layer of a document, from which `case` is made; with a new layer if the
+    /// document has none.
     ///
     /// # Errors
     /// A sentence, if a file of a texture cannot be read any more.
@@ -46,12 +47,12 @@ impl Painting {
         })
     }
 
-    /// Paints the blocks within `radius` of the line through `points`, or brings them into contact. Where
-    /// these lie in a shape, all textures become the layer, since no texture takes another one away. Lengths
-    /// are in blocks.
+    /// Paints the blocks within `radius` of the line through `points`, or brings them into contact. If such a
+    /// contact lies inside a shape, all textures are merged into the layer, because no texture can remove
+    /// part of another one. Lengths are in blocks.
     ///
     /// # Errors
-    /// A sentence, if there is no such stroke.
+    /// A sentence, if the stroke is invalid.
     pub(super) fn stroke(
         &mut self,
         case: &Case,
@@ -83,7 +84,7 @@ impl Painting {
         Ok(())
     }
 
-    /// The document with the layer as it is painted now, which has so many columns.
+    /// The document with the layer as painted up to now, with `columns` blocks along x.
     ///
     /// # Errors
     /// A sentence, if the image of the layer cannot be written.

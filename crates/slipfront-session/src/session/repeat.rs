@@ -1,4 +1,4 @@
-//! Static friction over several seeds: begun, followed, told.
+//! Static friction over several seeds: how a computation begins, continues and reports.
 
 use super::repetition::{Part, Repetition};
 use super::state::Session;
@@ -6,11 +6,11 @@ use crate::job::{Job, JobKind};
 use crate::protocol::Reply;
 use crate::repeat::SeedsFound;
 
-/// Most seeds of a repetition.
+/// Largest number of seeds.
 const MAX_SEEDS: u64 = 32;
 
 impl Session {
-    /// Begins to compute static friction of the case over so many seeds; 0 ends a computation under way.
+    /// Begins to compute static friction of the case over `seeds` seeds; 0 ends a computation under way.
     pub(super) fn repeat(&mut self, seeds: u64) -> Result<(), String> {
         self.end_repetition();
         if seeds == 0 {
@@ -38,14 +38,14 @@ impl Session {
         Ok(())
     }
 
-    /// Ends a computation over seeds under way; what it has found stays the last that the page is told.
+    /// Ends a computation over seeds that is under way, after a last report of its results.
     pub(super) fn end_repetition(&mut self) {
         if let Some(ended) = self.repeating.take() {
             self.host.reply(Reply::Repeated(ended.found.report(true)).json());
         }
     }
 
-    /// Tells the page what was found over seeds since the last look.
+    /// Sends the results over seeds since the last call to the page.
     pub(super) fn follow_repetition(&mut self) {
         let Some(Repetition { parts, found }) = &mut self.repeating else {
             return;

@@ -1,4 +1,4 @@
-//! A computation of static friction over several seeds, shared out to tasks.
+//! A computation of static friction over several seeds, distributed over tasks.
 
 use std::vec;
 
@@ -6,21 +6,21 @@ use crate::event::EventKind;
 use crate::host::Task;
 use crate::repeat::SeedsFound;
 
-/// A computation of static friction over several seeds. Dropping it ends its work.
+/// A computation of static friction over several seeds. Dropping it ends its jobs.
 pub(crate) struct Repetition {
     pub(crate) parts: Vec<Part>,
     pub(crate) found: SeedsFound,
 }
 
-/// The part of the seeds that one task goes through.
+/// The seeds that one task computes.
 pub(crate) struct Part {
     pub(crate) task: Box<dyn Task>,
-    /// Seeds of which the task has told nothing yet, in its order.
+    /// Seeds that the task has not reported yet, in order.
     pub(crate) seeds: vec::IntoIter<u64>,
 }
 
 impl Part {
-    /// Passes on what the task has told since the last look; gives whether there is more to come.
+    /// Passes on the results that the task has reported since the last call; returns whether more will come.
     pub(crate) fn follow(&mut self, found: &mut SeedsFound) -> bool {
         while let Some(seed) = self.seeds.as_slice().first().copied()
             && let Some(event) = self.task.next_event()

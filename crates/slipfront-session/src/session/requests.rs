@@ -1,4 +1,4 @@
-//! Requests of a page, and how a session meets them.
+//! Requests of a page, and how a session handles them.
 
 use slipfront_base::ordered::map_of;
 
@@ -8,8 +8,8 @@ use crate::protocol::{CalibrationOutcome, Message, Reply, Request};
 use crate::{base64, zip};
 
 impl Session {
-    /// Does what a message asks for, and tells the page if it is refused. Changes of the case are run when
-    /// the session next [advances](Self::advance).
+    /// Handles a message, and reports to the page if its request is refused. Changed cases run when the
+    /// session next [advances](Self::advance).
     pub fn handle(&mut self, message: Message) {
         let Message(request) = message;
         self.clock.disturb_slice();
@@ -19,7 +19,7 @@ impl Session {
         }
     }
 
-    /// Does what a request asks for.
+    /// Performs a request.
     ///
     /// # Errors
     /// A sentence, if the request is refused.

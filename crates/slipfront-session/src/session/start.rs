@@ -9,19 +9,19 @@ use crate::document::Document;
 use crate::live::LiveRun;
 
 impl Session {
-    /// Runs the present case again, from rest or from where it is.
+    /// Runs the present case again, from rest or from its present state.
     pub(super) fn run_present_case(&mut self, why: &'static str, from_rest: bool) -> Result<(), String> {
         let case = self.case_of(self.document()?)?;
         self.start_run(&case, why, from_rest)
     }
 
-    /// The case of a document, to be shown; none is made for a page that is gone.
+    /// Builds the case of a document for display, unless the page is gone.
     pub(super) fn case_of(&self, document: &Document) -> Result<Arc<Case>, String> {
         let case = document.case_to_show(&mut |_| !self.host.is_gone());
         case.map(Arc::new).map_err(|error| error.to_string())
     }
 
-    /// Runs a case that was made of the present document, from rest or from where the run is.
+    /// Runs a case made from the present document, from rest or from the present state of the run.
     pub(super) fn start_run(
         &mut self,
         case: &Arc<Case>,
@@ -29,11 +29,11 @@ impl Session {
         from_rest: bool,
     ) -> Result<(), String> {
         if !from_rest {
-            // A leg keeps only its own points.
+            // A leg keeps only its own points, so unsent ones must be sent first.
             self.send_curve();
         }
         let went_on = match &mut self.live {
-            // A run that cannot go on under this case begins again.
+            // A run that cannot continue with this case begins again.
             Some(live) if !from_rest => live.change(case).is_ok(),
             _ => false,
         };
@@ -50,7 +50,7 @@ impl Session {
         Ok(())
     }
 
-    /// Lets the slider without texture run beside the run, if the case has a texture to compare with.
+    /// Starts the slider without texture next to the run, if the case has a texture to compare with.
     pub(super) fn start_twin(&mut self, from_rest: bool) -> Result<(), String> {
         let document = self.document()?;
         if !self.view.twin || !document.has_texture() {
@@ -58,7 +58,7 @@ impl Session {
             return Ok(());
         }
         let document = document.twin()?;
-        // What it depends on has not changed: it stays as far as it is.
+        // The twin's own case has not changed: its run continues.
         if let Some(twin) = &self.twin
             && twin.document.is_same_case(&document)
             && (!from_rest || twin.live.leg == 0)

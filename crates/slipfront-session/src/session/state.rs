@@ -22,38 +22,38 @@ pub(super) struct Twin {
     pub(super) document: Document,
 }
 
-/// An edit of the case that is not run yet.
+/// An edit of the case that was not run yet.
 pub(super) struct PendingEdit {
     pub(super) document: Document,
     pub(super) gesture: u64,
     pub(super) of: &'static str,
 }
 
-/// A search for a better texture, and then the comparison of what it has found with what is painted.
+/// A search for a better texture, and then the comparison of its result with the painted texture.
 pub(super) struct TextureSearch {
-    /// The gesture by which the page asked for the search.
+    /// The gesture with which the page asked for the search.
     pub(super) gesture: u64,
-    /// Time of the host at which the session first looked after the search.
+    /// Time of the host when the session first checked the search.
     pub(super) began: Option<Duration>,
     /// Time that the search has taken up to now.
     pub(super) elapsed: Duration,
     /// Whether the page has asked to end the search.
     pub(super) is_enough: bool,
-    /// The work under way: the search, or the comparison after it.
+    /// The job under way: the search, or the comparison after it.
     pub(super) task: Box<dyn Task>,
     pub(super) tried: Tried,
     /// The texture that is being compared; none while textures are tried.
     pub(super) compared: Option<Mask>,
 }
 
-/// Work that ends with one reply. Dropping it ends the work.
+/// A job that ends with one reply. Dropping it ends the job.
 pub(super) struct Errand {
     /// Name of the request.
     pub(super) of: &'static str,
     pub(super) task: Box<dyn Task>,
 }
 
-/// A case that is edited, its run, and what a page is shown of them.
+/// A case that is edited, its run, and their display on a page.
 pub struct Session {
     pub(super) host: Rc<dyn Host>,
     pub(super) view: View,
@@ -67,36 +67,36 @@ pub struct Session {
     pub(super) shown_recording: Option<usize>,
     pub(super) painter: Painter,
     pub(super) clock: Clock,
-    /// Whether steps are being taken that are due before the next picture.
+    /// Whether steps that are due before the next picture are being taken.
     pub(super) is_stepping: bool,
-    /// Steps that requests to step a paused run have asked for, and that are still to be taken.
+    /// Number of steps still to take of those that requests have asked for while the run is paused.
     pub(super) single_steps: u64,
     /// The computation of static friction over several seeds, while it is under way.
     pub(super) repeating: Option<Repetition>,
     pub(super) search: Option<TextureSearch>,
     pub(super) calibration: Option<Calibration>,
-    /// Work that ends with one reply.
+    /// Jobs that end with one reply.
     pub(super) errands: Vec<Errand>,
     /// Updates to send with the next points of the curves.
     pub(super) pending: PendingUpdates,
 }
 
-/// Updates that the page has not been sent yet.
+/// Updates that were not sent to the page yet.
 #[derive(Default)]
 pub(super) struct PendingUpdates {
-    /// Whether a picture is to be drawn although nothing moved.
+    /// Whether a picture must be drawn although nothing has moved.
     pub(super) redraw: bool,
     pub(super) from_rest: bool,
     pub(super) twin_reset: bool,
     pub(super) recorded: bool,
-    /// How many ends of the run and its twin have been sent.
+    /// Number of ends of the run and its twin that were sent.
     pub(super) ends_sent: usize,
-    /// How many stages of the transition have been sent.
+    /// Number of stages of the transition that were sent.
     pub(super) stages_sent: usize,
 }
 
 impl Session {
-    /// A session in which no case is open yet.
+    /// A session without an open case.
     pub fn new(host: Rc<dyn Host>) -> Self {
         Self {
             host,
@@ -120,7 +120,7 @@ impl Session {
         }
     }
 
-    /// How many of the run and its twin have ended.
+    /// Number of runs that have ended: the run, its twin, or both.
     pub(super) fn count_ended(&self) -> usize {
         let runs = self.live.iter().chain(self.twin.as_ref().map(|twin| &twin.live));
         runs.filter(|run| run.ended.is_some()).count()
@@ -131,7 +131,7 @@ impl Session {
         self.live.as_ref().map_or(1, |live| live.case().model.lattice.nx)
     }
 
-    /// The case as it is edited up to now.
+    /// The case with all edits up to now.
     pub(super) fn document(&self) -> Result<&Document, String> {
         let edited = self.edited.as_ref().map(|edited| &edited.document);
         edited
@@ -139,7 +139,7 @@ impl Session {
             .ok_or_else(|| "no case is open yet".to_owned())
     }
 
-    /// Whether there are edits that are not run yet.
+    /// Whether there are edits that were not run yet.
     pub(super) fn has_edits(&self) -> bool {
         self.edited.is_some() || self.painting.is_some()
     }

@@ -1,4 +1,4 @@
-//! The steps that are due until the next picture.
+//! The steps that are due before the next picture.
 
 use std::time::Duration;
 
@@ -11,8 +11,8 @@ impl Session {
         Duration::from_secs_f64(1.0 / self.view.frames_per_second)
     }
 
-    /// Takes some of the steps that are due until the next picture, or sends what is new when there are none
-    /// left, or that picture is due.
+    /// Takes some of the steps that are due before the next picture. Sends updates when none are left, or the
+    /// picture is due.
     pub(super) fn run_until_next_picture(&mut self, now: Duration) {
         if !self.view.visible || self.live.is_none() || self.host.is_full() {
             self.is_stepping = false;
@@ -33,7 +33,7 @@ impl Session {
         }
     }
 
-    /// Takes some of the steps that are due until the next picture; afterwards the session [is
+    /// Takes some of the steps that are due before the next picture. Afterwards the session [is
     /// stepping](Self::is_stepping) if there may be more of them.
     fn take_steps(&mut self, now: Duration) -> Result<(), String> {
         let next = self.clock.picture + self.picture_period();
@@ -41,15 +41,15 @@ impl Session {
         if self.view.paused {
             self.is_stepping = false;
             live.advance(std::mem::take(&mut self.single_steps))?;
-            // It is asked only when there were steps, or there is something to draw.
+            // This is reached only when there were steps to take, or there is something to draw.
             self.pending.redraw = true;
             return Ok(());
         }
         if !self.is_stepping {
             let steps_per_second = self.view.pace_when(live.has_slipped()) / live.case().time_plan.dt_star;
             self.clock.due = if steps_per_second > 0.0 {
-                // What cannot be taken until the next picture is left out: the run is slower than asked for
-                // then.
+                // Steps that cannot be taken before the next picture are dropped: the run is then slower than
+                // requested.
                 let since = self.clock.seconds_since_last_count(now);
                 (self.clock.due + steps_per_second * since).min(steps_per_second)
             } else {
@@ -80,7 +80,7 @@ impl Session {
             self.clock.count_steps(taken);
             self.clock.due -= taken as f64;
             if self.view.pace > 0.0 && live.look_for_stages() > self.pending.stages_sent {
-                // A page that can follow is told at once, so that it can stop there.
+                // A page that keeps up with the run is notified at once, so that it can stop there.
                 self.pending.redraw = true;
                 self.is_stepping = false;
             }

@@ -1,4 +1,4 @@
-//! Sessions without threads: what is due when, and the search for a better texture.
+//! Tests of sessions without threads: what is due when, and the search for a better texture.
 
 use std::time::Duration;
 
@@ -9,18 +9,18 @@ use crate::testing::Tried;
 
 const PLAIN: &str = "slider.blocks = [20, 20]\ndrive.v_star = 0.1\n";
 
-/// Looks after work more often than any needs that is done.
+/// More calls of a session than any finished job needs.
 const MOST_LOOKS: usize = 10_000;
 
 impl Tried {
-    /// Begins a search, and gives the sentence if it is refused.
+    /// Begins a search, and returns the sentence if it is refused.
     fn find(&mut self) -> Option<String> {
         let replies = self.ask(json!({ "do": "find", "gesture": 1000 }));
         let refused = replies.iter().find(|reply| reply["is"] == "refused");
         refused.map(|reply| reply["sentence"].as_str().unwrap().to_owned())
     }
 
-    /// Works up to the first reply of this name for which this holds; all replies until then.
+    /// Calls the session until a reply of this name fulfils a condition; returns all replies up to then.
     fn follow(&mut self, is: &str, holds: impl Fn(&Value) -> bool) -> Vec<Value> {
         let mut all = Vec::new();
         for _ in 0..MOST_LOOKS {
@@ -35,7 +35,7 @@ impl Tried {
         panic!("no {is} came after {all:?}");
     }
 
-    /// Hands over a request, and works up to the first reply of this name; all replies until then.
+    /// Passes a request, and calls the session until a reply of this name; returns all replies up to then.
     fn ask_for(&mut self, request: Value, is: &str) -> Vec<Value> {
         let mut all = self.ask(request);
         if count(&all, is) == 0 {
@@ -64,7 +64,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// How many replies have this name.
+/// Number of replies with this name.
 fn count(replies: &[Value], is: &str) -> usize {
     replies.iter().filter(|reply| reply["is"] == is).count()
 }
@@ -73,7 +73,7 @@ fn count(replies: &[Value], is: &str) -> usize {
 fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
     let mut tried = Tried::new();
     assert_eq!(tried.advance(), None);
-    // A page sends its view first: there is nothing to draw yet.
+    // A page sends its view first, when there is nothing to draw yet.
     tried.ask(json!({ "do": "view", "field": "speed" }));
     assert_eq!(tried.advance(), None);
     tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
@@ -84,7 +84,7 @@ fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
     let step = tried.step();
     tried.ask(json!({ "do": "step", "count": 7 }));
     assert_eq!((tried.step(), tried.advance()), (step + 7, None));
-    // Asking again changes nothing.
+    // Another call changes nothing.
     let pictures = tried.host.pictures.take().len();
     tried.now += Duration::from_secs(1);
     assert_eq!(
@@ -92,7 +92,7 @@ fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
         (None, 0),
         "after {pictures}"
     );
-    // A page that nobody looks at does not go on, and one that reads nothing gets nothing.
+    // A hidden page does not advance, and a page that reads nothing gets nothing.
     tried.ask(json!({ "do": "view", "paused": false, "visible": false }));
     assert_eq!(tried.advance(), None);
     tried.host.is_full.set(true);
@@ -102,7 +102,7 @@ fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
     assert_eq!(tried.step(), step + 7);
 }
 
-/// With 25 t* in a second and steps of 1 ms, a second has 25 / dt* steps, and a picture comes every 1/60 s.
+/// With 25 t* per second and steps of 1 ms, a second has 25 / dt* steps, and a picture comes every 1/60 s.
 #[test]
 fn steps_keep_the_pace_and_pictures_their_rate() {
     let mut tried = Tried::new();
@@ -114,7 +114,7 @@ fn steps_keep_the_pace_and_pictures_their_rate() {
     assert!(pictures > 30, "{pictures}");
     tried.advance_until(2 * began, Duration::from_millis(1));
     let steps = tried.step() - before;
-    // A picture's worth more or less at either end.
+    // The tolerance is the steps of one picture at either end.
     let due = 25.0 / dt_star;
     assert!(
         (steps as f64 - due).abs() <= due / 30.0,
@@ -124,7 +124,7 @@ fn steps_keep_the_pace_and_pictures_their_rate() {
     assert!((55..=60).contains(&pictures), "{pictures}");
 }
 
-/// A run goes at 40 t* in a second until a block in contact slips, and then at 2.
+/// A run has a pace of 40 t* per second until a block in contact slips, and of 2 t* per second afterwards.
 #[test]
 fn a_run_is_loaded_at_a_pace_of_its_own() {
     let mut tried = Tried::new();
@@ -141,7 +141,7 @@ fn a_run_is_loaded_at_a_pace_of_its_own() {
         );
         now(tried)
     };
-    // 10 t*, less one picture's worth at either end.
+    // 10 t*, minus the steps of one picture at either end.
     let (has_slipped, loaded) = after(&mut tried, 250);
     assert!(!has_slipped && loaded > 8.5, "{has_slipped} {loaded}");
     while !after(&mut tried, 20).0 {
@@ -152,7 +152,7 @@ fn a_run_is_loaded_at_a_pace_of_its_own() {
     assert!((later - slipped - 2.0).abs() < 0.2, "{slipped} {later}");
 }
 
-/// A page that asks for the case at every movement of the pointer has it made once for each picture.
+/// A page changes the case at every movement of the pointer, but the case is made only once per picture.
 #[test]
 fn changes_between_two_pictures_are_run_once() {
     let mut tried = Tried::new();
@@ -169,14 +169,14 @@ fn changes_between_two_pictures_are_run_once() {
     tried.advance_until(tried.now + Duration::from_millis(40), Duration::from_millis(1));
     let live = tried.session.live.as_ref().unwrap();
     assert_eq!(live.case().groups.r_star, 0.3 + 0.001 * 99.0);
-    // One gesture is undone at once.
+    // All changes of one gesture are undone together.
     tried.ask(json!({ "do": "undo" }));
     let live = tried.session.live.as_ref().unwrap();
     assert_eq!(live.case().groups.r_star, 0.5);
 }
 
-/// Each stage of the transition is told in the step in which it is seen, and the field of the front then has
-/// blocks that slide, blocks that have slipped and blocks that have not.
+/// Each stage of the transition is reported in the step in which it is detected. The field of the front then
+/// has sliding blocks, blocks that have slipped and blocks that have not.
 #[test]
 fn the_stages_of_a_transition_are_told_at_once() {
     let mut tried = Tried::new();
@@ -207,7 +207,7 @@ fn the_stages_of_a_transition_are_told_at_once() {
     assert_eq!(kinds, [true; 3]);
 }
 
-/// At rest nothing is above 0, and the scale has the unit itself rather than a power of ten of its own.
+/// At rest no value is above 0, and the scale ends at the unit itself, not at a small power of ten.
 #[test]
 fn the_scale_of_a_slider_at_rest_goes_to_1() {
     let mut tried = Tried::with(PLAIN);
@@ -222,7 +222,7 @@ fn the_scale_of_a_slider_at_rest_goes_to_1() {
     }
 }
 
-/// The end of the run and of its twin is told once each, and then nothing is due.
+/// The ends of the run and of its twin are each reported once, and then nothing is due.
 #[test]
 fn a_run_and_its_twin_go_to_their_ends() {
     let mut tried = Tried::new();
@@ -245,7 +245,7 @@ fn a_run_and_its_twin_go_to_their_ends() {
     assert!(number(&last["change_percent"]) < 0.0, "{last}");
 }
 
-/// The curves that a page has drawn of what it was told.
+/// The curves that a page has drawn from the replies.
 #[derive(Default)]
 struct DrawnCurves {
     run: Vec<[f64; 2]>,
@@ -288,8 +288,8 @@ impl DrawnCurves {
     }
 }
 
-/// Holds a curve to the rows of its run: those of the present leg are all there, and no row is missing where
-/// a leg before has ended.
+/// Checks a curve against the rows of its run: all rows of the present leg are there, and no row is missing
+/// at the end of a previous leg.
 fn assert_whole(curve: &[[f64; 2]], live: &LiveRun) {
     let before = live.drive_time_before_star();
     let rows = live.running().rows().iter();
@@ -302,13 +302,13 @@ fn assert_whole(curve: &[[f64; 2]], live: &LiveRun) {
     assert!(curve[0][0] <= spacing);
     for pair in curve.windows(2) {
         let gap = pair[1][0] - pair[0][0];
-        // Times are sums of the times of some ten legs, each of which is rounded.
+        // Times are sums over some ten legs, each of them rounded.
         assert!((0.0..spacing * (1.0 + 1e-9)).contains(&gap), "{gap} {spacing}");
     }
 }
 
-/// Whatever is opened, changed, undone and replayed in whichever order, the page has the whole curve of the
-/// slider without texture, and of the run.
+/// After any sequence of opening, changing, undoing and replaying cases, the page has the whole curves of the
+/// run and of the slider without texture.
 #[test]
 fn curves_are_whole_after_any_order_of_requests() {
     const KEYS: &str = "slider.blocks = [6, 6]\ndrive.v_star = 0.1\ntime.duration_star = 20\n";
@@ -343,7 +343,7 @@ fn curves_are_whole_after_any_order_of_requests() {
     ];
     let mut random: u32 = 1;
     let mut below = |bound: u32| {
-        // A generator of 32 bits, of which the upper half has no short period.
+        // A 32-bit generator: its upper half has no short period.
         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (random >> 16) % bound
     };
@@ -409,7 +409,7 @@ fn static_friction_over_seeds_is_told_seed_by_seed_and_saving_is_left_to_the_hos
 #[test]
 fn the_best_of_a_stopped_search_replaces_the_painted_texture_and_undo_brings_it_back() {
     let mut tried = Tried::with(PLAIN);
-    // A single row: no texture that a search would try.
+    // A single row is no texture that a search would try.
     tried.ask(json!({
         "do": "paint", "points": [[0.5, 0.5], [4.5, 0.5]], "radius": 0.3, "textured": true, "gesture": 1,
     }));
@@ -445,7 +445,7 @@ fn the_best_of_a_stopped_search_replaces_the_painted_texture_and_undo_brings_it_
         "{found}"
     );
     assert_eq!((&case["is"], &case["why"]), (&json!("case"), &json!("change")));
-    // 3 % are the most where less is painted.
+    // A search may cover 3 % if less is painted.
     let percent = number(&case["texture_percent"]);
     assert!(percent > 1.25 && percent <= 3.0, "{percent}");
     assert_ne!(tried.textured(), painted);
@@ -455,7 +455,7 @@ fn the_best_of_a_stopped_search_replaces_the_painted_texture_and_undo_brings_it_
     assert_ne!(tried.textured(), painted);
 }
 
-/// The search of this host tells its best and does not end.
+/// The search of this host reports its best texture, but does not end.
 #[test]
 fn a_search_ends_when_its_time_is_over() {
     let mut tried = Tried::with(PLAIN);
@@ -472,7 +472,7 @@ fn a_search_ends_when_its_time_is_over() {
     assert!(number(&found["best"]["mean"]) < -1.0, "{found}");
 }
 
-/// There is room for one square in three places, of which a first search finds the best.
+/// The slider has room for one square, in three places. A first search finds the best of them.
 #[test]
 fn a_texture_that_nothing_is_better_than_stays() {
     let mut tried = Tried::with("slider.blocks = [9, 3]\ndrive.v_star = 0.1\n");
@@ -503,7 +503,7 @@ fn a_change_by_hand_gives_a_search_up() {
         let mut tried = Tried::with(PLAIN);
         tried.ask(json!({ "do": "set", "keys": { "friction.r_star": 0.3 }, "gesture": 1 }));
         assert_eq!(tried.find(), None);
-        // What changes nothing leaves it alone.
+        // Requests that change nothing do not end the search.
         for other in [
             json!({ "do": "rest" }),
             json!({ "do": "redo" }),
@@ -537,7 +537,7 @@ fn what_cannot_be_searched_for_is_refused_with_the_reason() {
         let said = Tried::with(case).find().unwrap();
         assert!(said.starts_with(reason), "{said}");
     }
-    // Known once it is looked for.
+    // This is known only once the search has begun.
     let mut narrow = Tried::with("slider.blocks = [7, 3]\ndrive.v_star = 0.1");
     assert_eq!(narrow.find(), None);
     let replies = narrow.follow("found", |found| found["outcome"] == "failed");
@@ -549,7 +549,7 @@ fn what_cannot_be_searched_for_is_refused_with_the_reason() {
     );
 }
 
-/// A search that is stopped before it has told anything.
+/// A search that is stopped before it has reported anything.
 #[test]
 fn a_search_that_is_stopped_at_once_has_found_nothing() {
     let mut tried = Tried::with(PLAIN);
@@ -557,7 +557,7 @@ fn a_search_that_is_stopped_at_once_has_found_nothing() {
         .session
         .handle(crate::protocol::Message::parse(&json!({ "do": "find", "gesture": 5 }).to_string()).unwrap());
     let search = tried.session.search.as_mut().unwrap();
-    // What it has told up to now is not looked at.
+    // Events up to now are ignored.
     search.task = Box::new(Silent);
     let replies = tried.ask(json!({ "do": "find_stop" }));
     let refused = replies.iter().find(|reply| reply["is"] == "refused").unwrap();
@@ -568,7 +568,7 @@ fn a_search_that_is_stopped_at_once_has_found_nothing() {
     assert_eq!(count(&replies, "found"), 1);
 }
 
-/// Work that tells nothing.
+/// A task without events.
 struct Silent;
 
 impl crate::host::Task for Silent {
@@ -584,7 +584,7 @@ fn shapes(tried: &Tried) -> Vec<String> {
     textures.as_array().unwrap().iter().map(shape).collect()
 }
 
-/// Painting between shapes, erasing the paint, and erasing a part of a shape.
+/// Painting between shapes, erasing the paint, and erasing part of a shape.
 #[test]
 fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
     let mut tried = Tried::with(
@@ -597,7 +597,7 @@ fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
         }));
         (shapes(&tried), tried.textured())
     };
-    // Two strokes are one layer, which has 12 blocks in each row, of which the groove has none.
+    // Two strokes form one layer with 12 blocks in each row. None of them are blocks of the groove.
     for (y, blocks) in [(1.5, 12), (3.5, 24)] {
         let (shapes, textured) = paint(y, true, 1);
         assert_eq!(shapes, ["cavity", "groove", "mask"]);
@@ -611,14 +611,14 @@ fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
         (shapes, &textured),
         (vec!["cavity".to_owned(), "groove".to_owned()], &before)
     );
-    // No texture takes a part of another one away.
+    // No texture can remove part of another one, so all become one mask.
     let (shapes, textured) = paint(10.5, false, 3);
     assert_eq!(shapes, ["mask"]);
     let row: Vec<usize> = (0..400).filter(|&b| before[b] != textured[b]).collect();
     assert!(!row.is_empty() && row.iter().all(|b| (10 * 20 + 6..10 * 20 + 18).contains(b)));
 }
 
-/// A layer with paint below a shape, which is seen when the shape is moved away.
+/// Paint below a shape stays, and is visible when the shape is moved away.
 #[test]
 fn paint_below_a_shape_stays() {
     let mut tried = Tried::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }]\n");
@@ -630,7 +630,7 @@ fn paint_below_a_shape_stays() {
     assert!(tried.textured()[10 * 20 + 10]);
 }
 
-/// A run of a case, as the files of its folder in Base64.
+/// The files of a run's folder, in Base64.
 fn run_files(case: &str) -> serde_json::Map<String, Value> {
     let document = crate::document::Document::new("case", case, |_| Err("there is none".to_owned())).unwrap();
     let case = std::sync::Arc::new(document.case(&mut |_| true).unwrap());
@@ -657,7 +657,7 @@ fn the_files_of_a_run_are_replayed_and_other_files_are_refused() {
         let refused = replies.iter().find(|reply| reply["is"] == "refused");
         refused.map(|reply| reply["sentence"].as_str().unwrap().to_owned())
     };
-    // Fields that are too large are left out.
+    // A run without its file of fields, as when that is too large, is accepted.
     let mut without = files.clone();
     without.remove("fields.nc");
     assert_eq!(refused(&without, &mut tried), None);
@@ -677,11 +677,11 @@ fn the_files_of_a_run_are_replayed_and_other_files_are_refused() {
     assert!(said.contains("fields.nc"), "{said}");
 }
 
-/// A slider of equal blocks, which a drive of constant speed makes stick and slip.
+/// A slider of equal blocks that sticks and slips under a drive of constant speed.
 const STICKS: &str = "slider.blocks = [4, 4]\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n\
                       drive.v_star = 0.1\n";
 
-/// The file of a record that goes up and down, over 60 t*.
+/// The file of a record that rises and falls, over 60 t*.
 fn record() -> Value {
     let case = slipfront_case::case::Case::parse(STICKS, "case", "", &[]).unwrap();
     let row = |k: u32| {
@@ -705,7 +705,7 @@ fn two_unknowns() -> Value {
 #[test]
 fn a_record_is_read_and_stays_where_the_case_changes() {
     let mut tried = Tried::with(STICKS);
-    // The host has not been looked at when the case changes.
+    // The session has not checked the job when the case changes.
     let message = json!({ "do": "read_record", "record": record() }).to_string();
     tried
         .session
@@ -732,7 +732,7 @@ fn a_calibration_finds_what_one_of_the_command_finds() {
     let done = replies.last().unwrap();
     assert_eq!(done["outcome"], "done", "{done}");
     let results = &done["results"];
-    // The calibration file that the page is given finds the same bits in one go.
+    // The calibration file from the page gives the same bits in one go.
     let toml = results["toml"].as_str().unwrap();
     let bytes = crate::base64::decode(record()["bytes"].as_str().unwrap()).unwrap();
     let files = slipfront_case::case::FilesInMemory::new();
@@ -750,7 +750,7 @@ fn a_calibration_finds_what_one_of_the_command_finds() {
     }
     assert_eq!(results["report"], found.report);
     assert_eq!(results["set"].as_object().unwrap().len(), 2);
-    // The medians are keys that the case takes.
+    // The case accepts the medians as keys.
     let replies = tried.ask(json!({ "do": "set", "keys": results["set"], "gesture": 2 }));
     assert_eq!(count(&replies, "refused"), 0, "{replies:?}");
 }
@@ -802,7 +802,7 @@ fn sensitivity_is_the_change_between_two_runs() {
         .ask_for(json!({ "do": "sensitivity", "control": "sigma" }), "sensitivity")
         .pop()
         .unwrap();
-    // More scatter lets slip begin earlier.
+    // With more scatter, slip begins earlier.
     assert!(number(&scatter["percent"]) < -0.1, "{scatter}");
     for control in ["seed", "no such"] {
         let replies = tried.ask(json!({ "do": "sensitivity", "control": control }));

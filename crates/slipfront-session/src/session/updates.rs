@@ -17,13 +17,13 @@ use crate::picture::{self, PictureFrame};
 use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
 use crate::{controls, search, shapes};
 
-/// Time between two reports of numbers, two of the block under the pointer, and two kymographs.
+/// Times between two reports of numbers, two reports of the block under the pointer, and two kymographs.
 const NUMBERS_INTERVAL: Duration = Duration::from_millis(200);
 const PROBE_INTERVAL: Duration = Duration::from_millis(100);
 const KYMOGRAPH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Session {
-    /// Sends the present case, with the reason why it is sent.
+    /// Sends the present case, with the reason for sending it.
     pub(super) fn send_case(&mut self, why: &'static str) {
         let (Some(history), Some(live)) = (&self.history, &self.live) else {
             return;
@@ -79,7 +79,7 @@ impl Session {
         self.host.reply(Reply::Case(Box::new(reply)).json());
     }
 
-    /// Sends the points of the curves that the page has not been sent yet.
+    /// Sends the points of the curves that were not sent to the page yet.
     pub(super) fn send_curve(&mut self) {
         let Some(live) = &mut self.live else { return };
         let points = live.take_unsent_points();
@@ -114,7 +114,7 @@ impl Session {
         self.send_curve();
         let ends = self.count_ended();
         let stages = match &mut self.live {
-            // At full speed nothing waits for them.
+            // At full speed no stage needs to be reported early.
             Some(live) if self.view.pace > 0.0 || ends > 0 => live.look_for_stages(),
             _ => self.pending.stages_sent,
         };
@@ -139,7 +139,7 @@ impl Session {
         }
     }
 
-    /// Sends the picture of the run, or of the recorded snapshot that is shown.
+    /// Sends the picture of the run, or of the recorded snapshot on the page.
     fn send_picture(&mut self) {
         let Some(live) = &self.live else { return };
         let case = live.case();

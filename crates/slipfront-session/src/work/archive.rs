@@ -1,4 +1,4 @@
-//! A run from rest as one archive, with the bytes that `slipfront run` writes.
+//! Archive of a run from rest, with the same bytes as `slipfront run`.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,14 +13,14 @@ use slipfront_run::running::Running;
 use crate::document::Document;
 use crate::zip;
 
-/// Share of a run after which its progress is told again.
+/// Share of a run between two progress reports.
 const SHARE: f64 = 0.01;
 
-/// Runs a case from rest to its end, and gives an archive of its files: the case and the files that it reads,
-/// summary, series, fields, kymograph and pictures, each with the bytes that `slipfront run` writes, and the
-/// manifest of these files. `now` tells the time of day, UTC as in RFC 3339, and that of a monotonic clock;
-/// `report_progress` gets the share of the run that is done. If pictures cannot be drawn, the manifest says
-/// why.
+/// Runs a case from rest to its end, and returns an archive of its files: the case and the files that it
+/// reads, summary, series, fields, kymograph and pictures, each with the same bytes as `slipfront run`, and
+/// the manifest of these files. `now` returns the time of day, UTC as in RFC 3339, and the time of a
+/// monotonic clock; `report_progress` gets the completed fraction of the run. If pictures cannot be drawn,
+/// the manifest says why.
 ///
 /// # Errors
 /// A sentence, if the case cannot be run, or the run diverges.
@@ -29,7 +29,7 @@ pub fn run_archive(
     now: &dyn Fn() -> (String, Duration),
     report_progress: &dyn Fn(f64),
 ) -> Result<Vec<u8>, String> {
-    /// Any error as its sentence.
+    /// Converts any error to its message.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
     }

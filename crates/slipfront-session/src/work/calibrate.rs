@@ -1,4 +1,4 @@
-//! A calibration of the case from a record that a page was given.
+//! A calibration of the case from a record of the page.
 
 use std::path::Path;
 
@@ -18,8 +18,8 @@ use crate::protocol::{
     CalibrateRequest, CalibratingReply, CalibrationResults, CalibrationStage, UnknownReply,
 };
 
-/// Calibrates a case. Where its runs are made elsewhere, those of a search for the closest curve excepted,
-/// the job ends with the runs that it wants first.
+/// Calibrates a case. If other jobs make its runs, all except those of a search for the closest curve, this
+/// job ends with the list of runs that it needs first.
 pub(super) fn calibrate(
     document: &Document,
     request: &CalibrateRequest,
@@ -99,7 +99,7 @@ fn find(
     }
 }
 
-/// Something as JSON.
+/// Serialises a value as JSON.
 fn json(of: &impl serde::Serialize) -> String {
     // Structs of texts and finite numbers: serialisation cannot fail.
     serde_json::to_string(of).expect("a run is JSON")
@@ -109,7 +109,7 @@ fn read_wanted(run: &WantedRun) -> Result<Wanted, String> {
     serde_json::from_str(&run.0).map_err(|error| error.to_string())
 }
 
-/// The stage that a page is told; it asks for none of the others.
+/// Stage in the progress report for a page; calibrations of a page reach no other stages.
 fn stage(stage: Stage) -> CalibrationStage {
     match stage {
         Stage::Training | Stage::FinerBlocks | Stage::Further | Stage::Planning => CalibrationStage::Training,
@@ -119,7 +119,7 @@ fn stage(stage: Stage) -> CalibrationStage {
     }
 }
 
-/// A calibration that a page asks for: its file and its record.
+/// A calibration that a page requests: its file and its record.
 struct Request<'a> {
     document: &'a Document,
     toml: String,
@@ -149,7 +149,7 @@ impl<'a> Request<'a> {
     }
 
     fn results(&self, found: slipfront_calibrate::CalibrationResults) -> Result<CalibrationResults, String> {
-        /// The part of the findings that a page shows beside the report.
+        /// The part of the results that a page shows in addition to the report.
         #[derive(Deserialize)]
         struct Findings {
             unknowns: Vec<UnknownReply>,
@@ -171,10 +171,10 @@ impl<'a> Request<'a> {
     }
 }
 
-/// The calibration file that a page asks for.
+/// The calibration file for the request of a page.
 ///
 /// # Errors
-/// A sentence, if a range is none.
+/// A sentence, if a range is invalid.
 fn calibration_file(
     document: &Document,
     request: &CalibrateRequest,

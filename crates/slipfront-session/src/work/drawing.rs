@@ -8,7 +8,7 @@ use slipfront_case::texture_file;
 use crate::document::Document;
 use crate::protocol::{DrawingFormat, DrawingReply};
 
-/// Draws the outlines of the texture in true size.
+/// Draws the outlines of the texture to scale.
 ///
 /// # Errors
 /// A sentence, if the case has no texture, or it cannot be drawn.

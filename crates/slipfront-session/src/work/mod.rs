@@ -1,4 +1,4 @@
-//! Work beside a session, wherever its host has it done: in a thread, or in another Worker.
+//! Jobs outside a session, wherever its host runs them: in a thread, or in another Worker.
 
 mod archive;
 mod calibrate;
@@ -14,7 +14,7 @@ use crate::job::{Job, JobKind};
 use crate::protocol::Reply;
 
 impl Job {
-    /// Does the job, until it is done or the worker is to stop.
+    /// Runs the job until it is done or the worker is to stop.
     pub fn run(&self, worker: &dyn Worker) {
         let Self { document, kind } = self;
         let tell = |kind| worker.tell(Event(kind));

@@ -1,4 +1,4 @@
-//! A measured record that a page was given.
+//! A measured record from a page.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use slipfront_run::measured::{
 use crate::base64;
 use crate::protocol::{RecordAbscissa, RecordColumn, RecordCurve, RecordFile, RecordOrdinate, RecordReply};
 
-/// Most values of a record that the page is sent: more than a screen has pixels.
+/// Largest number of values of a record that are sent to the page: more than the pixels of a screen.
 const MOST_VALUES: usize = 4000;
 
 /// Reads a record: its columns, and the curve of two of them or why there is none.
@@ -55,16 +55,16 @@ pub(super) fn read(file: &RecordFile) -> RecordReply {
     reply
 }
 
-/// The columns of a record, as they were asked for, or else as their units suggest.
+/// The columns of a record: those that were requested, or else those that their units suggest.
 pub(super) struct Chosen {
     places: [usize; 2],
-    /// Names of the columns as numbers from 1, and the units that were asked for.
+    /// Names of the columns as numbers from 1, and the requested units.
     pub(super) columns: [Column; 2],
     pub(super) along: Measure,
 }
 
 impl Chosen {
-    /// The columns that a page asks for, of a table that has these.
+    /// The columns that a page requests from a table with these columns.
     ///
     /// # Errors
     /// A sentence, if there is no such column.

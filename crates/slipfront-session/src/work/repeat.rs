@@ -13,8 +13,7 @@ use crate::document::Document;
 use crate::event::{Event, EventKind, Frictions, Worker};
 use crate::protocol::SensitivityReply;
 
-/// Runs the case, and if it has texture the same without, with each of the seeds to the end of its first
-/// peak.
+/// Runs the case, with and without its texture, with each of the seeds to the end of its first peak.
 pub(super) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
     let twin = document.has_texture().then(|| document.twin()).transpose();
     let twin = match twin {
@@ -38,8 +37,8 @@ pub(super) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
     }
 }
 
-/// mu_s* of a case with this value of a key, which is none of a run without a transition; none if it was
-/// stopped.
+/// Returns mu_s* of a case with this value of a key: the outer none if the run was stopped, the inner none if
+/// it had no transition.
 pub(super) fn static_friction(
     document: &Document,
     (key, value): (&str, Value),
@@ -55,11 +54,11 @@ pub(super) fn static_friction(
     Ok(record.map(|record| found(&record.summary)))
 }
 
-/// Finds static friction mu_s* at two values of the quantity of a slider, and the change from the first to
+/// Computes static friction mu_s* at two values of the quantity of a slider, and the change from the first to
 /// the second.
 ///
 /// # Errors
-/// A sentence, if the case cannot be run, or the work was stopped.
+/// A sentence, if the case cannot be run, or the job was stopped.
 pub(super) fn sensitivity(
     document: &Document,
     of: &TwoValues,

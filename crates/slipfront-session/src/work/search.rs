@@ -1,4 +1,5 @@
-//! A search for a texture with less static friction than the painted one, and its comparison with that.
+//! A search for a texture with less static friction than the painted one, and its comparison with the painted
+//! one.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,17 +15,18 @@ use crate::event::{Comparison, Event, EventKind, Mask, Tried, Worker};
 use crate::protocol::Estimate;
 use crate::search::{NOTHING_TRIED, SEARCH_TIME, WIDTH, limits};
 
-/// Most runs of a search: as many as a design has unless its file says otherwise.
+/// Largest number of runs of a search: the default of a design.
 const MAX_RUNS: usize = 10_000;
 
 /// Number of surfaces, unseen by the search, on which the best texture is compared with the painted one.
 const FRESH_SURFACES: u64 = 8;
 
-/// Most block-steps in which a texture is tried, for each thread: with some 1e8 of them in a second, there is
-/// time for several hundred textures in a minute, and for a comparison of the best in less than another one.
+/// Largest number of block-steps per texture and thread. With some 1e8 block-steps per second, there is time
+/// for several hundred textures in a minute, and for the comparison of the best one in less than another
+/// minute.
 const MAX_BLOCK_STEPS: f64 = 1e7;
 
-/// The design that a search is for, and the painted blocks, if there are any.
+/// The design problem of a search, and the painted blocks, if there are any.
 fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
     let allowed = limits(case);
     let limits = Limits {
@@ -42,7 +44,7 @@ fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
     Ok((design, painted))
 }
 
-/// Refuses a slider that has no room for a feature.
+/// Refuses a slider without room for a feature.
 fn refuse_narrow(design: &Design) -> Result<(), String> {
     let [nx, ny] = design.size();
     if nx.min(ny) < WIDTH {
@@ -53,7 +55,7 @@ fn refuse_narrow(design: &Design) -> Result<(), String> {
     Ok(())
 }
 
-/// Refuses a slider of which so many threads can try too few textures in the time.
+/// Refuses a slider that is too large for `threads` threads to try enough textures in the time.
 fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
     let needed = design
         .block_steps_per_texture()
@@ -70,14 +72,14 @@ fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// The design that a search for a document is for, and the painted blocks, if there are any.
+/// The design problem of a search for a document, and the painted blocks, if there are any.
 fn design_for(document: &Document, stop: &AtomicBool) -> Result<(Design, Option<Vec<bool>>), String> {
     let case = document.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
     let case = case.map_err(|error| error.to_string())?;
     design(&case).map_err(|error| error.to_string())
 }
 
-/// Searches for a texture for [`SEARCH_TIME`], and gives the best one.
+/// Searches for a texture for [`SEARCH_TIME`], and returns the best one.
 ///
 /// # Errors
 /// A sentence, if there is none, or the search was stopped.

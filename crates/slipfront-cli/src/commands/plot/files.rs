@@ -1,4 +1,4 @@
-//! The folders of `slipfront plot`: those that pictures are drawn of, and that in which they are written.
+//! Folders of `slipfront plot`: the results folders that are drawn, and the output folder of the pictures.
 
 use std::path::Path;
 
@@ -16,11 +16,11 @@ use crate::failure::Failure;
 use crate::print::print_message;
 use crate::signals::Signals;
 
-/// Files of pictures: their names and contents.
+/// Names and contents of picture files.
 pub(super) type PictureFiles = Vec<(String, Vec<u8>)>;
 
-/// Writes pictures to a folder, until a stop, and prints their names; `own` is the run in the folder whose
-/// pictures they are.
+/// Writes pictures to a folder, unless a signal stops the command, and prints their names; `own` is the run
+/// in that folder if the pictures are its own.
 pub(super) fn write(
     out: &Path,
     files: &PictureFiles,
@@ -52,7 +52,7 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Refuses the name of a picture where a folder for several is asked for, unless there is such a folder.
+/// Refuses a picture name as the output folder for several pictures, unless a folder of this name exists.
 pub(super) fn expect_a_folder(out: &Path) -> Result<(), Failure> {
     let is_picture = PictureFormat::ALL
         .iter()
@@ -68,7 +68,7 @@ pub(super) fn expect_a_folder(out: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses pictures for which there is no memory: `bytes` beside the program.
+/// Refuses pictures that need too much memory: `bytes` in addition to the program.
 pub(in crate::commands) fn expect_memory(bytes: f64) -> Result<(), Failure> {
     let needed = PROGRAM + bytes;
     let available = available_of(needed);
@@ -106,7 +106,7 @@ pub(in crate::commands) fn expect_results(folder: &Path) -> Result<(), Failure> 
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// The sentence about a folder that is not there, with the one among the results that was probably meant.
+/// Error message for a missing folder, with the folder in `results` that was probably meant.
 fn missing_folder(folder: &Path) -> String {
     let among_results = Path::new("results").join(folder);
     let meant = if among_results.is_dir() {
@@ -117,7 +117,7 @@ fn missing_folder(folder: &Path) -> String {
     format!("there is no folder {}{meant}", folder.display())
 }
 
-/// Refuses a folder of a run to which these pictures do not belong.
+/// Refuses the folder of a run to which these pictures do not belong.
 pub(in crate::commands) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     let manifest = out.join(MANIFEST);
     let sentence = match manifest.try_exists() {
@@ -131,8 +131,8 @@ pub(in crate::commands) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// Refuses to replace files where the pictures go, unless they are equal, or pictures that the run in the
-/// folder has drawn there, if the new ones are its `own`.
+/// Refuses to replace existing files in the output folder, unless they are equal. If the pictures belong to
+/// the run in the folder (`own`), pictures that this run has drawn may also be replaced.
 fn refuse_to_replace(out: &Path, files: &PictureFiles, own: Option<&Inspection>) -> Result<(), Failure> {
     for (name, bytes) in files {
         let is_same = |path: &Path| read_limited(path, bytes.len() as u64).is_ok_and(|found| found == *bytes);
@@ -145,8 +145,8 @@ fn refuse_to_replace(out: &Path, files: &PictureFiles, own: Option<&Inspection>)
     Ok(())
 }
 
-/// Reason for which a file cannot replace another, unless the run in the folder has drawn that one and the
-/// new file is its `own`.
+/// Reason why a new file cannot replace an existing one; none if the run in the folder has drawn the existing
+/// file and the new file belongs to that run (`own`).
 pub(in crate::commands) fn in_the_way(
     out: &Path,
     name: &str,

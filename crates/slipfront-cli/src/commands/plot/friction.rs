@@ -1,4 +1,4 @@
-//! Options of the picture of friction: its axes, its names, and a measured record over the curves.
+//! Options of the friction picture: its axes, its names, and a measured record over the curves.
 
 use std::path::{Path, PathBuf};
 
@@ -101,12 +101,12 @@ enum AgainstName {
 }
 
 impl FrictionArgs {
-    /// Whether an option asks for the picture of friction, where a run has others.
+    /// Whether an option requests the friction picture, in place of the other pictures of a run.
     pub(super) fn is_asked_for(&self) -> bool {
         self.option().is_some()
     }
 
-    /// An option that asks for the picture of friction; none if there is none.
+    /// An option that requests the friction picture; none if there is none.
     pub(super) fn option(&self) -> Option<&'static str> {
         let options = [
             ("--units", self.units.is_some()),
@@ -122,7 +122,7 @@ impl FrictionArgs {
             .map(|(option, _)| *option)
     }
 
-    /// Draws friction alone, and prints what there is to say of it.
+    /// Draws friction alone, and prints notes on it.
     pub(super) fn draw(&self, folders: &[PathBuf], size: PictureSize) -> Result<Picture, Failure> {
         let Overlay { picture, note, fit } = self.overlay(folders, size)?;
         if let Some(note) = note {
@@ -143,7 +143,7 @@ impl FrictionArgs {
         }
     }
 
-    /// Refuses names of which there are not as many as runs, or one more for a record.
+    /// Refuses names unless there is one for each run, and optionally one more for a record.
     pub(super) fn expect_names(&self, runs: usize) -> Result<(), Failure> {
         let given = self.names.len();
         let most = runs + usize::from(self.data.is_some());
@@ -164,7 +164,7 @@ impl FrictionArgs {
         })
     }
 
-    /// Friction alone, on the axes that were asked for, with a measured record if there is one.
+    /// Friction alone, on the requested axes, with a measured record if there is one.
     fn overlay(&self, folders: &[PathBuf], size: PictureSize) -> Result<Overlay, Failure> {
         let look = self.look(size);
         let drawn = match (self.units, &self.data) {

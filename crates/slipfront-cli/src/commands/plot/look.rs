@@ -1,4 +1,4 @@
-//! Options on the look of pictures: their size, the formats of their files, and which of them are drawn.
+//! Options on the look of pictures: their size, their file formats, and the choice of pictures.
 
 use clap::{Args, ValueEnum};
 use slipfront_case::case_file::nearest;
@@ -44,12 +44,12 @@ enum FormatName {
     Pdf,
 }
 
-/// A side of a picture in mm.
+/// Parses the side of a picture in mm.
 fn millimetres(text: &str) -> Result<f64, String> {
     within(text, 20.0, PictureSize::MAX_MM, "mm")
 }
 
-/// A size of letters in pt.
+/// Parses a font size in pt.
 fn points(text: &str) -> Result<f64, String> {
     within(text, 3.0, 40.0, "pt")
 }
@@ -76,12 +76,12 @@ impl LookArgs {
         }
     }
 
-    /// Name of the only picture that is asked for.
+    /// Name of the only picture to draw, if one was requested.
     pub(super) fn picture(&self) -> Option<&str> {
         self.picture.as_deref()
     }
 
-    /// Refuses a picture that is none of these.
+    /// Refuses a requested picture that is not among these.
     pub(super) fn expect_one_of(&self, names: &[&str]) -> Result<(), Failure> {
         let Some(asked) = self.picture().filter(|asked| !names.contains(asked)) else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! `slipfront plot`: pictures again, from the files of runs and of studies.
+//! `slipfront plot`: redraws pictures from the files of runs and studies.
 
 mod files;
 mod friction;
@@ -67,10 +67,10 @@ pub(crate) struct PlotCommand {
     force: bool,
 }
 
-/// The kymograph as `--field` names it, and its picture.
+/// Name of the kymograph in `--field`, and of its picture.
 const KYMOGRAPH: &str = "kymograph";
 
-/// Folder for pictures that are not those of a folder of results.
+/// Output folder for pictures that do not belong to a single results folder.
 const ELSEWHERE: &str = "results/overlay";
 
 impl PlotCommand {
@@ -82,8 +82,7 @@ impl PlotCommand {
             self.refuse_options_of_runs()?;
             let names: Vec<&str> = project.names.iter().map(String::as_str).collect();
             self.look.expect_one_of(&names)?;
-            // A signal ends the work and not the process, so that nothing of it is left in the folder for
-            // temporary files.
+            // A signal ends the work, not the process, so no file is left in the folder for temporary files.
             let signals = Signals::catch().map_err(Failure::running)?;
             let drawn = project.draw(&look, &signals.stop);
             Failure::if_stopped(&signals)?;
@@ -99,12 +98,13 @@ impl PlotCommand {
             [run] if self.draws_as_usual(&look) && is_same(&run.path, &out) => Some(run),
             _ => None,
         };
-        // Not before: until here a signal ends the process, and nothing is left behind.
+        // Signals are caught only now: until here they may simply end the process, because nothing is left
+        // behind.
         let signals = Signals::catch().map_err(Failure::running)?;
         write(&out, &files, own, self.force, &signals)
     }
 
-    /// The folders, which are those of runs.
+    /// Opens the folders, which must be folders of runs.
     fn runs(&self) -> Result<Vec<Inspection>, Failure> {
         let run = |folder: &PathBuf| {
             expect_results(folder)?;
@@ -115,7 +115,7 @@ impl PlotCommand {
         self.folders.iter().map(run).collect()
     }
 
-    /// Refuses options that ask for pictures of runs.
+    /// Refuses options that request pictures of runs.
     fn refuse_options_of_runs(&self) -> Result<(), Failure> {
         let field = self.field.as_ref().map(|_| "--field");
         let Some(option) = field.or_else(|| self.friction.option()) else {
@@ -128,7 +128,7 @@ impl PlotCommand {
         )))
     }
 
-    /// Draws the pictures of the runs that are asked for.
+    /// Draws the requested pictures of the runs.
     fn draw_runs(&self, look: &PictureLook) -> Result<PictureFiles, Failure> {
         let drawn = match (self.field.as_deref(), self.folders.as_slice()) {
             (Some(name), [folder]) => {
@@ -168,7 +168,7 @@ impl PlotCommand {
         Ok(files.collect())
     }
 
-    /// Refuses a run that has kept nothing for the picture that is asked for.
+    /// Refuses a run without data for the requested picture.
     fn expect_drawn(&self, folder: &Path, is_empty: bool) -> Result<(), Failure> {
         match self.look.picture() {
             Some(name) if is_empty => Err(Failure::input(anyhow::anyhow!(
@@ -179,13 +179,13 @@ impl PlotCommand {
         }
     }
 
-    /// Whether the pictures are those that stand in the folder of results.
+    /// Whether the pictures are the same as in the results folder.
     fn draws_as_usual(&self, look: &PictureLook) -> bool {
         let is_own = self.field.is_none() && !self.friction.is_asked_for() && self.folders.len() == 1;
         is_own && look.size == PictureSize::default()
     }
 
-    /// Folder for the pictures.
+    /// Output folder of the pictures.
     fn place(&self, look: &PictureLook) -> PathBuf {
         let usual = || match self.folders.as_slice() {
             [folder] if self.draws_as_usual(look) => folder.clone(),

@@ -9,10 +9,10 @@ use slipfront_study::{PicturesOf, is_of_figures, pictures_of};
 
 use crate::failure::Failure;
 
-/// Kinds of projects beside studies.
+/// Kinds of projects besides studies.
 static OTHERS: [Derivation; 2] = [DESIGNS, CALIBRATIONS];
 
-/// The project whose folder is named; none if all folders are of runs.
+/// The project in the named folder; none if all folders are folders of runs.
 pub(super) fn of(folders: &[PathBuf]) -> Result<Option<PicturesOf<'_>>, Failure> {
     for folder in folders {
         if is_of_figures(folder) {

@@ -1,4 +1,4 @@
-//! The part of `slipfront run` that a new run and a resumed one share: from the first step to the manifest.
+//! Part of `slipfront run` that new and resumed runs share: from the first step to the manifest.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -22,8 +22,7 @@ use crate::print::{print, print_message};
 use crate::progress::run::RunProgress;
 use crate::report;
 
-/// Takes a run to its end and writes its results to the folder of its checkpoints, which the first rank
-/// holds.
+/// Runs to the end and writes the results to the folder of the checkpoints, which the first rank holds.
 pub(super) fn complete(
     mut running: Running,
     folder: Option<RunFolder>,
@@ -41,8 +40,8 @@ pub(super) fn complete(
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
-                // It would diverge again: there is nothing to go on with. All ranks see it at once, by sums
-                // over the lattice.
+                // The run would diverge again, so there is nothing to resume. All ranks detect it at the same
+                // step, from sums over the lattice.
                 if let Some(folder) = folder {
                     folder.discard();
                 }
@@ -102,7 +101,7 @@ fn files(case: &Case, out: &Path) -> String {
     let files = files.map(|(name, shows)| (name.to_owned(), shows));
     let mut text = format!("files in {}\n", out.display());
     for (name, what) in pictures.into_iter().chain(files) {
-        // A look that fails does not say that a file is missing.
+        // A check that fails is no proof that a file is missing.
         let first = name.split(' ').next().unwrap_or(&name);
         if out.join(first).try_exists().unwrap_or(true) {
             text += &format!("  {name:<18} {what}\n");

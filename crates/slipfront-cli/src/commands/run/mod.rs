@@ -1,4 +1,4 @@
-//! `slipfront run`: one case, from the file to the pictures.
+//! `slipfront run`: one case, from the case file to the pictures.
 
 mod complete;
 mod options;
@@ -140,8 +140,8 @@ impl RunCommand {
         complete(running, folder, checkpoints, options)
     }
 
-    /// The options that all ranks must share. Each rank may have its own threads and folder, and the options
-    /// on printing count on the first rank.
+    /// The options that all ranks must share. Each rank may have its own number of threads and folder, and
+    /// only the first rank's printing options count.
     fn shared_options(&self) -> NamedInputs {
         let flag = |is_given: bool| if is_given { "given" } else { "not given" }.to_owned();
         let options = [
@@ -156,7 +156,7 @@ impl RunCommand {
     }
 
     fn options(&self, ranks: &CommandRanks) -> Result<RunOptions, Failure> {
-        // Who starts several ranks on a machine has them share its cores.
+        // Ranks on the same machine share its cores.
         let default = (ranks.size() > 1).then_some(1);
         Ok(RunOptions {
             ranks: ranks.clone(),
@@ -170,7 +170,7 @@ impl RunCommand {
     }
 }
 
-/// Makes the folder of a new run ready, but for the files of an earlier one.
+/// Prepares the folder of a new run, but does not yet remove the files of an earlier one.
 fn claim_folder(
     out: &Path,
     case_path: Option<&Path>,
@@ -196,8 +196,8 @@ fn claim_folder(
     })
 }
 
-/// Writes the case and its inputs to the folder of a new run, in the place of an earlier one, so that the run
-/// can go on if it is stopped. A signal ends the copying, and leaves nothing of it.
+/// Writes the case and its inputs to the folder of a new run, in place of an earlier one, so that the run can
+/// be resumed if it is stopped. A signal stops the copying and removes the copies.
 fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Result<RunFolder, Failure> {
     let mut folder = claimed.take().map_err(Failure::input)?;
     folder.stop_on(Arc::clone(&signals.stop));
@@ -212,19 +212,19 @@ fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Resul
     }
 }
 
-/// Why a folder was not claimed.
+/// Reasons why a folder was not claimed.
 enum FolderRefusal {
-    /// There are other files in it, those of a complete run among them.
+    /// The folder contains other files, such as the files of a complete run.
     Taken(FolderError),
-    /// A run that was stopped is in it.
+    /// The folder contains a run that was stopped.
     Interrupted(FolderError),
-    /// The case to be run, or a file that it reads, is in it.
+    /// The folder contains the case to run, or a file that the case reads.
     HoldsInput(Failure),
     Other(Failure),
 }
 
 impl FolderRefusal {
-    /// The refusal; where a folder is taken, with the name of one that is free.
+    /// The error message; if a folder is taken, it names a free one.
     fn failure(self, out: &Path) -> Failure {
         let error = match self {
             Self::Other(failure) | Self::HoldsInput(failure) => return failure,
@@ -241,10 +241,10 @@ impl FolderRefusal {
     }
 }
 
-/// Number of folders of one name that are tried.
+/// Largest number of folder names to try.
 const MOST_FOLDERS: usize = 1000;
 
-/// The folder itself for the number 1, its name and the number for others.
+/// The folder itself for the number 1, and its name with the number for others.
 fn numbered(folder: &Path, number: usize) -> PathBuf {
     if number == 1 {
         return folder.to_owned();
@@ -254,8 +254,8 @@ fn numbered(folder: &Path, number: usize) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with
-/// `--force` the file would be replaced, and lost if the run fails.
+/// Refuses an output folder that contains the case to run, or a file that the case reads: `--force` would
+/// replace this file, and it would be lost if the run fails.
 fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(), Failure> {
     let inputs = case.inputs.iter().map(|input| input.original.as_path());
     let replaced = path.into_iter().chain(inputs).find(|path| {

@@ -9,7 +9,7 @@ pub(super) struct RunOptions {
     pub(super) ranks: CommandRanks,
     pub(super) threads: usize,
     pub(super) interval: Interval,
-    /// Whether pictures are drawn, and the movie that the case asks for.
+    /// Whether to draw pictures, and the movie if the case requests one.
     pub(super) draws: bool,
     pub(super) signals: Signals,
     pub(super) quiet: bool,
@@ -17,7 +17,7 @@ pub(super) struct RunOptions {
 }
 
 impl RunOptions {
-    /// Whether physics and summary are printed for a reader.
+    /// Whether to print physics and summary for a human reader.
     pub(super) fn is_verbose(&self) -> bool {
         !self.quiet && !self.json
     }

@@ -1,4 +1,4 @@
-//! `slipfront run --resume DIR`: goes on with a run that was interrupted.
+//! `slipfront run --resume DIR`: resumes a run that was interrupted.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -30,11 +30,11 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     let folder = ranks.agree(open(path, ranks.is_first()))?;
     let run = &folder.inspection;
     let is_complete = matches!(run.contents, Contents::Complete(_));
-    // What is there for one rank a moment earlier than for another is what the first says.
+    // Ranks may see the folder at slightly different times: the first rank decides.
     if ranks.any(ranks.is_first() && is_complete) {
         return ranks.first(|| report_complete(run, &options)).map(|_| ());
     }
-    // Agreed on first: a rank without a case would leave the others waiting for it.
+    // Ranks must agree before this: a rank without a case would leave the others waiting for it.
     let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
     let case = Arc::new(ranks.agree(case_to_resume(run, file, &options))?);
     let loaded = ranks.agree(load(run, &case, previous, &ranks))?;
@@ -67,7 +67,7 @@ fn check_disk(run: &Inspection, case: &Case, options: &RunOptions) -> Result<(),
         .map_err(Failure::input)
 }
 
-/// Goes on from a checkpoint, if there is one, and names its step.
+/// Starts from a checkpoint, if there is one, and reports its step.
 fn begin(
     run: &Inspection,
     case: &Arc<Case>,
@@ -92,7 +92,7 @@ fn begin(
         }
         Some(loaded) => {
             let checkpoints = Checkpoints::after(case, &loaded);
-            // How many steps a run under a held drive takes is not known before.
+            // The number of steps of a run with held drive is not known in advance.
             let of = if case.model.drive.is_held() {
                 String::new()
             } else {
@@ -113,10 +113,10 @@ fn begin(
     })
 }
 
-/// The remedy where no checkpoint can be used.
+/// The remedy if no checkpoint can be used.
 const ANEW: &str = "remove the checkpoints to start again with --resume";
 
-/// The case of the folder, made by all ranks together.
+/// The case of the folder, built by all ranks together.
 fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Result<Case, Failure> {
     let path = &run.path;
     // Results are named after their folder, not after the file in it.
@@ -126,7 +126,7 @@ fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Res
         Case::to_run(file, &name, path, watch, ranks)
     });
     let case = made.map_err(|failure| match failure {
-        // What differs between ranks is no trace of a stop.
+        // A difference between ranks is no sign of an interrupted run.
         Failure::Input(error) if !matches!(error.downcast_ref(), Some(CaseError::Differs(_))) => {
             let hint =
                 "if the run was stopped before all its inputs were copied, start it again with --force";
@@ -140,12 +140,12 @@ fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Res
     Ok(case)
 }
 
-/// Answers for a run that is complete already.
+/// Reports that a run is already complete.
 fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure> {
     run.case_to_resume().map_err(Failure::input)?;
     run.manifest().map_err(Failure::input)?;
     let path = &run.path;
-    // A kill may have come before it was removed. On a disk that cannot be written it does no harm.
+    // A kill may have left this folder behind. If the disk is read-only, the folder does no harm.
     let unfinished = Unfinished::of(path);
     if unfinished.is_managed().map_err(Failure::input)? {
         let _ = unfinished.remove();
@@ -159,7 +159,7 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
             error => Failure::input(error),
         })
     };
-    // Whoever wants a longer run may have changed its case.
+    // A user who wants a longer run may have changed its case.
     let is_case = |name: &str| name == "case.toml" || name.starts_with("inputs/");
     unchanged(&is_case, "run a changed case in another folder with --out")?;
     if options.json {
@@ -176,7 +176,7 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
     Ok(())
 }
 
-/// The checkpoint to go on from, if the run has saved one.
+/// Loads the checkpoint to resume from, if the run has saved one.
 fn load(
     run: &Inspection,
     case: &Case,
@@ -196,8 +196,8 @@ fn load(
     }
 }
 
-/// Failure of a checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which
-/// prints, looks for the remedy.
+/// The failure for a checkpoint that cannot be used, with the remedy. All ranks refuse it; the first rank,
+/// which prints, finds the remedy.
 fn refused(
     ranks: &CommandRanks,
     error: &CheckpointError,

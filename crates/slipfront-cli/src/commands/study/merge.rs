@@ -1,4 +1,4 @@
-//! `slipfront study merge`: unites the shards of a study in one folder.
+//! `slipfront study merge`: merges the shards of a study in one folder.
 
 use std::path::PathBuf;
 
@@ -33,14 +33,14 @@ impl Merge {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
         let mut folders = self.shards.clone();
-        // Merging may be repeated: the folder then holds a study, which must be the one that the shards
-        // belong to.
+        // Merging may be repeated: the folder then already holds a study, which must be the study of the
+        // shards.
         folders.extend(is_study(&self.out).then(|| self.out.clone()));
         refuse_foreign(&folders).map_err(Failure::input)?;
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
         let plan = Plan::new(&study, None).map_err(Failure::input)?;
         plan.check_memory(0).map_err(Failure::input)?;
-        // A signal leaves nothing of what is copied to the folder.
+        // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut folder = StudyFolder::open(&self.out, &study, self.force).map_err(Failure::of_folder)?;
         let mut taken = 0;

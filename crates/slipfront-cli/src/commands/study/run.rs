@@ -1,4 +1,4 @@
-//! `slipfront study STUDY.toml`: runs what is missing, then writes tables and pictures.
+//! `slipfront study STUDY.toml`: computes missing runs, then writes tables and pictures.
 
 use std::path::{Path, PathBuf};
 
@@ -55,10 +55,10 @@ pub(crate) struct StudyRun {
     yes: bool,
 }
 
-/// Reason for which the runs of some studies are computed on the CPU.
+/// Reason why runs of some studies are computed on the CPU.
 const FOLDERS_ON_CPU: &str = "folders of all runs (`study.keep = \"all\"`) are only written on the CPU: keep those of failed runs, or none";
 
-/// Largest number of runs of a study that is run without `--yes`.
+/// Largest number of runs of a study without `--yes`.
 const MAX_UNCONFIRMED_RUNS: u64 = 10_000;
 
 /// Refuses a very large study unless the user has confirmed it.
@@ -96,7 +96,7 @@ impl StudyRun {
         let is_changed_unsaid = self.out.is_none() && !self.overrides.is_empty();
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, file.has_base_file() || is_changed_unsaid, &out)?;
-        // A signal leaves nothing of what is copied to the folder.
+        // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
@@ -110,7 +110,7 @@ impl StudyRun {
             Shown::Tables
         };
         finish(&plan, &results, &folder, shown, &signals)?;
-        // What a part of the points lacks, the others may have.
+        // Values that one shard lacks may be in the other shards.
         if self.shard.is_some() {
             return Ok(());
         }
@@ -118,8 +118,9 @@ impl StudyRun {
     }
 }
 
-/// Refuses the folder of the study file itself if the study as it is run `differs` from it: with its base
-/// written out where the file names it by a path, and with the keys of `--set`, it would replace the file.
+/// Refuses the folder of the study file itself as the output folder if the study as run `differs` from the
+/// file: the results folder contains the study with its base written out and the keys of `--set`, which would
+/// replace the file.
 fn refuse_to_replace(path: &Path, differs: bool, out: &Path) -> Result<(), Failure> {
     if !differs || !is_same(path, &out.join("study.toml")) {
         return Ok(());
@@ -140,7 +141,7 @@ fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
     PathBuf::from("results").join(name)
 }
 
-/// Makes the runs that the folder lacks.
+/// Computes the runs that are missing in the folder.
 pub(in crate::commands) fn run_all(
     plan: &Plan,
     folder: &StudyFolder,
@@ -163,23 +164,23 @@ pub(in crate::commands) fn run_all(
     done.map_err(|error| Failure::of_results(signals, error))
 }
 
-/// Prints notes before the runs: on axes that change nothing, and on a folder that has been used before.
+/// Prints notes before the runs: on axes that change nothing, and on a folder that was used before.
 fn note_before_runs(plan: &Plan, folder: &StudyFolder) {
     print_notes(study::idle_axes(plan));
     print_notes(folder.notes());
 }
 
-/// Form in which the answer of a study is printed.
+/// Form in which the results of a study are printed.
 #[derive(Clone, Copy)]
 pub(super) enum Shown {
-    /// Tables for a reader.
+    /// Tables for a human reader.
     Tables,
-    /// One object of JSON.
+    /// One JSON object.
     Json,
     Nothing,
 }
 
-/// Writes tables and pictures, and prints the answer of the study; fails if runs have failed.
+/// Writes tables and pictures, and prints the results of the study; fails if runs have failed.
 pub(super) fn finish(
     plan: &Plan,
     results: &StudyResults,
@@ -197,9 +198,9 @@ pub(super) fn finish(
     results.expect_no_failures(plan).map_err(Failure::running)
 }
 
-/// The plan of a study, and its cost as measured on this machine.
+/// The plan of a study, with its cost as measured on this machine.
 pub(in crate::commands) fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
-    // Only one run must fit into this machine: the study may be meant for another one.
+    // Only one run must fit into this machine: the study may be meant for another machine.
     plan.check_memory(1).map_err(Failure::input)?;
     let time = study::estimated_time(plan, threads).map_err(Failure::input)?;
     Ok(report::plan(plan, time, threads))

@@ -33,7 +33,7 @@ impl Slurm {
         set_threads(None)?;
         let study = StudyFile::load(&self.study).map_err(Failure::input)?;
         refuse_large(&study, self.yes)?;
-        // An invalid study is refused here, not by a task that has waited in the queue.
+        // An invalid study is refused now, not by a task that has waited in the queue.
         let points = Plan::new(&study, None).map_err(Failure::input)?.points.len();
         let out = self
             .out
@@ -45,7 +45,7 @@ impl Slurm {
             command,
             study: absolute(self.study)?,
             out: absolute(out)?,
-            // More tasks than points would have nothing to do.
+            // Tasks beyond the number of points would have nothing to do.
             tasks: usize::from(self.tasks).min(points),
         }))
     }

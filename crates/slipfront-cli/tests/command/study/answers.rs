@@ -1,4 +1,4 @@
-//! Content of tables and pictures, and its independence of the way they were made.
+//! Contents of tables and pictures, which must not depend on how they were made.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -8,7 +8,8 @@ use crate::fixtures::unwrapped;
 use crate::support::process::{stderr, stdout};
 use crate::support::workspace::Workspace;
 
-/// Until the interval of mu_s* is narrow: some points need more than the fewest replicates, none the most.
+/// Replicates until the interval of mu_s* is narrow: some points need more than the minimum, and none the
+/// maximum.
 fn adaptive(half_width: &str, max: &str) -> String {
     let until = format!(
         "until = {{ key = 'static_friction_star', half_width = {half_width}, min = 3, max = {max} }}"
@@ -16,8 +17,8 @@ fn adaptive(half_width: &str, max: &str) -> String {
     SMALL.replace("replicates = 3", &until)
 }
 
-/// A key of the base that `--set` changes gives the bytes of a study file that has it so, and the folder
-/// holds that study.
+/// A key of the base changed by `--set` gives the same bytes as a study file with that key, and the folder
+/// contains that study.
 #[test]
 fn keys_of_the_base_can_be_set() {
     let workspace = Workspace::with_study(SMALL);
@@ -39,7 +40,7 @@ fn keys_of_the_base_can_be_set() {
     );
 }
 
-/// The answer for programs has the numbers of `points.csv`, and nothing else is printed with it.
+/// The JSON output has the numbers of `points.csv`, and nothing else is printed.
 #[test]
 fn the_answer_is_printed_as_json() {
     let workspace = Workspace::with_study(SMALL);
@@ -63,7 +64,7 @@ fn the_answer_is_printed_as_json() {
         }
     }
     assert!(rows.len() > 6 && answer["failures"].as_array().unwrap().is_empty());
-    // The study is done: the same is printed again.
+    // A complete study prints the same output again.
     assert_eq!(
         workspace.succeed("study study.toml -o out --json --quiet"),
         printed
@@ -98,8 +99,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
     );
 }
 
-/// Tables have columns of precursors where a run has some, with the values of its summary, and none
-/// otherwise.
+/// Tables have columns of precursors if some run has precursors, with the values of its summary.
 #[test]
 fn tables_tell_of_precursors() {
     let study = |list: &str| {
@@ -151,7 +151,7 @@ fn where_the_interval_stays_wide_it_is_said() {
 
 #[test]
 fn the_same_replicate_has_the_same_surface_at_every_point() {
-    // The first slip of a bare surface is at t* = (8/3) min(mu)/V*, up to a step: it tells the surface.
+    // The first slip of a bare surface is at t* = (8/3) min(mu)/V*, up to a step: it identifies the surface.
     let workspace = Workspace::with_study(
         "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 8\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.05, 0.1]",
     );
@@ -177,7 +177,7 @@ fn the_same_replicate_has_the_same_surface_at_every_point() {
 
 #[test]
 fn reductions_are_paired_and_their_statistics_those_of_the_pairs() {
-    // What a little more speed does is small beside what another surface does.
+    // A small change of speed has little effect compared with another surface.
     let workspace = Workspace::with_study(
         "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 12\n\
          reference = { drive.v_star = 0.12 }\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.08]",
@@ -212,7 +212,7 @@ fn reductions_are_paired_and_their_statistics_those_of_the_pairs() {
         .unwrap();
     let number = |name: &str| -> f64 { row[name].parse().unwrap() };
     assert_eq!(number("n"), 12.0);
-    // t(11, 97.5 %) of a printed table.
+    // t(11, 97.5 %) from a printed table.
     let half = 2.200985 * deviation(&paired) / 12f64.sqrt();
     for (name, expected) in [
         ("mean", mean(&paired)),
@@ -236,7 +236,7 @@ fn a_reference_that_points_share_is_run_once() {
         "0.12, 0.14, 0.16, 0.18]",
         "]\n[[axes]]\nkey = 'texture.0.coverage'\nlist = [17, 34]",
     ));
-    // 2 speeds, 2 coverages, 3 surfaces; the bare slider knows no coverage.
+    // 2 speeds, 2 coverages, 3 surfaces; the bare slider does not depend on the coverage.
     workspace.study("out").assert_each_run_once(12 + 6);
 }
 
@@ -244,7 +244,7 @@ fn a_reference_that_points_share_is_run_once() {
 fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
     let workspace = Workspace::with_study(SMALL);
     let results = workspace.study("out");
-    // No valid case diverges, so that one is made to have failed: the sixth line is some run of a point.
+    // No valid case diverges, so one run is changed to a failed one: the sixth line is some run of a point.
     let text = std::fs::read_to_string(results.records()).unwrap();
     let failed: String = text
         .lines()
@@ -296,7 +296,7 @@ fn a_dry_run_tells_the_plan_and_runs_nothing() {
         "36 runs",
         "block-steps, ",
         " of memory for ",
-        // A line of the records and of the tables for each run.
+        // One line in the records and one in the tables for each run.
         "144.0 KiB on the disk",
         "drive.v_star: 0.08, 0.1, 0.12, 0.14, 0.16, 0.18",
     ] {
@@ -322,7 +322,7 @@ fn pictures_are_those_that_the_axes_ask_for() {
             assert!(two_numbers.has(&file), "{file}");
         }
     }
-    // A study that has changed keeps no picture of what it was.
+    // A changed study keeps no picture of the previous one.
     workspace.succeed("study names.toml -o numbers");
     assert!(two_numbers.has("static_friction_star.svg"));
     assert!(
@@ -330,8 +330,8 @@ fn pictures_are_those_that_the_axes_ask_for() {
     );
 }
 
-/// Quantities are numbers: curves and a map with the unit of their ticks, and the meaning of the intervals.
-/// Where there are no curves, the plan and the answer say why.
+/// Quantities are numbers: there are curves and a map with the unit of their ticks and the meaning of the
+/// intervals. If there are no curves, the plan and the results say why.
 #[test]
 fn axes_of_quantities_are_drawn_in_their_unit() {
     let study = |levels: [usize; 2]| {
@@ -377,8 +377,7 @@ fn axes_of_quantities_are_drawn_in_their_unit() {
     assert!(!workspace.results("out").has("static_friction_star.svg"));
 }
 
-/// Directions are drawn around a centre and listed in a table of their own, which belongs to the study as the
-/// others do.
+/// Directions have a polar picture and their own table, which belongs to the study like the other files.
 #[test]
 fn directions_have_a_polar_picture_and_their_table() {
     let study = |key: &str| {
@@ -402,10 +401,10 @@ fn directions_have_a_polar_picture_and_their_table() {
     for text in ["x 0\u{b0}", "friction \u{3bc}*"] {
         assert!(picture.contains(&format!(">{text}</text>")), "{text}");
     }
-    // Friction is much the same in all directions.
+    // Friction is nearly the same in all directions.
     assert!(picture.contains(">95 % interval of the mean, n = 3; the centre is 0."));
     workspace.succeed("verify out");
-    // Two surfaces are too few for numbers, and a sentence says so.
+    // Two surfaces are too few for these numbers, and a note says so.
     let two = study("drive.direction")
         .replace("1.5, 6", "300, 6")
         .replace("= 3", "= 2");
@@ -423,11 +422,11 @@ fn directions_have_a_polar_picture_and_their_table() {
             .iter()
             .all(|column| rows[0][*column].is_empty())
     );
-    // A study without directions keeps neither.
+    // A study without directions keeps neither of them.
     workspace.write("study.toml", study("slider.omega_star"));
     workspace.succeed("study study.toml -o out");
     assert!(!results.has("anisotropy.csv") && !results.has("friction_polar.svg"));
-    // Many textures are in the table alone, with the reason.
+    // Many textures are only in the table, with a note on the reason.
     let textures = "[[axes]]\nkey = 'texture.0.coverage'\nlinspace = [13, 63, 5]\n";
     workspace.write("many.toml", study("drive.direction") + "\n" + textures);
     let said = unwrapped(&workspace.succeed("study many.toml -o many"));
@@ -439,8 +438,7 @@ fn directions_have_a_polar_picture_and_their_table() {
     assert!(!many.has("friction_polar.svg") && many.table("anisotropy.csv").len() == 10);
 }
 
-/// Runs without a transition are pointed out: the largest mu* of a run which never slid must not enter a
-/// mean.
+/// Runs without a transition are pointed out: the largest mu* of a run that never slid must not enter a mean.
 #[test]
 fn runs_without_a_transition_are_pointed_out() {
     let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
@@ -453,7 +451,7 @@ fn runs_without_a_transition_are_pointed_out() {
     };
     assert!(row("0.08").contains("(no transition in 3 of 3 pairs)"), "{said}");
     assert!(!row("0.18").contains("no transition"), "{said}");
-    // References are shared by points.
+    // Points share references.
     let without: BTreeSet<String> = workspace
         .results("out")
         .table("runs.csv")
@@ -464,7 +462,8 @@ fn runs_without_a_transition_are_pointed_out() {
     assert!(without.len() >= 6, "{without:?}");
     let note = format!("{} runs have no transition", without.len());
     assert!(unwrapped(&said).contains(&note), "{said}");
-    // No table has a static friction of them: not of the run, and not of a point where all are without.
+    // No table has a static friction for them: neither for the run, nor for a point where all runs are
+    // without a transition.
     let results = workspace.results("out");
     for row in results.table("runs.csv") {
         let is_without = row["transition"].starts_with('0');
@@ -502,8 +501,7 @@ fn runs_without_a_transition_are_pointed_out() {
     assert!(row("0.08").contains("none"), "{said}");
 }
 
-/// A study of which no run has its main quantity does not end as one that has an answer; a part of it may
-/// lack what the others have.
+/// A study fails if no run has a value of its main quantity; a shard of it may lack values.
 #[test]
 fn a_study_without_an_answer_has_status_1() {
     let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 5"));
@@ -522,7 +520,7 @@ fn a_study_without_an_answer_has_status_1() {
         ));
     }
     refused("study merge part1 part2 --quiet -o whole");
-    // Kinetic friction may be asked for where nothing else is.
+    // The main quantity may exist even if no run has a transition, such as the largest mu*.
     let file = workspace.read_text("study.toml");
     let largest = "[study]\nuntil = { key = 'mu_star_max', half_width = 1.0, min = 2, max = 3 }";
     workspace.write(
@@ -533,9 +531,9 @@ fn a_study_without_an_answer_has_status_1() {
     workspace.succeed("study study.toml --quiet -o other");
 }
 
-/// A tenth of a random surface touches, and mu* goes up and down about the level of sliding for ever. On the
-/// second seed it takes 130 t* to fall half-way, where the drive needs 83 to load the slider: that is creep,
-/// however long the run. `duration_star = "auto"` leaves time for the kinetic window all the same.
+/// A tenth of a random surface is in contact, and mu* fluctuates about the level of sliding for ever. On the
+/// second seed mu* takes 130 t* to fall half-way, while the drive needs only 83 t* to load the slider: this
+/// is creep, however long the run. `duration_star = "auto"` still leaves time for the kinetic window.
 #[test]
 fn a_slider_that_creeps_has_no_static_friction() {
     const SIDE: usize = 30;
@@ -543,7 +541,7 @@ fn a_slider_that_creeps_has_no_static_friction() {
         "[base]\nslider.blocks = [30, 30]\n[[base.texture]]\nshape = 'height_map'\nfile = 'heights.csv'\n\
          height_unit = '1 um'\npixel_size = '1 um'\nbearing_percent = 10\n[study]\nreplicates = 2\nreference = { texture = [] }\n",
     );
-    // A multiplicative generator modulo a prime; heights are means of two times two of its numbers.
+    // A multiplicative generator modulo a prime; heights are means over 2 x 2 of its numbers.
     let mut state = 1_u64;
     let drawn: Vec<u64> = (0..SIDE * SIDE)
         .map(|_| {
@@ -569,7 +567,8 @@ fn a_slider_that_creeps_has_no_static_friction() {
         (creeping[0]["role"].as_str(), creeping[0]["seed"].as_str()),
         ("point", "2")
     );
-    // It did fall half-way from its peak, to 0.57; the largest mu* stands, and no reduction is taken of it.
+    // It did fall half-way from its peak, to 0.57: the largest mu* is listed, but no reduction is computed
+    // from it.
     assert!(
         creeping[0]["static_friction_star"].is_empty() && creeping[0]["static_reduction_percent"].is_empty()
     );
@@ -582,14 +581,14 @@ fn a_slider_that_creeps_has_no_static_friction() {
     let counts = ["n", "runs_without_transition"].map(|column| reduction[column].as_str());
     assert_eq!(counts, ["1", "1"]);
     assert!(reduction["low"].is_empty(), "one value has no interval");
-    // The run with a transition, whose onset comes at t* = 254, reaches its kinetic window.
+    // The run with a transition, with its onset at t* = 254, reaches its kinetic window.
     assert!(
         runs.iter()
             .all(|row| creeps(row) || !row["kinetic_friction_star"].is_empty())
     );
 }
 
-/// Remarks on the cases of a study are printed once, because there is no other place for them.
+/// Remarks on the cases of a study are printed once, because they appear nowhere else.
 #[test]
 fn what_deserves_a_word_is_said_once() {
     let workspace = Workspace::with_study(
@@ -610,7 +609,7 @@ fn what_deserves_a_word_is_said_once() {
         );
         let merged = "`texture.0.coverage` = 0.2 and 4 have the same coverage on this mesh: use more blocks to distinguish them";
         assert_eq!(said.matches(merged).count(), 1, "{said}");
-        // Both levels cover the same blocks, which is said where nothing has run yet.
+        // Both levels cover the same blocks, which is reported before anything has run.
         let idle = said.contains("the axis of `texture.0.coverage` changes nothing");
         assert_eq!(idle, line.ends_with("--dry-run"), "{said}");
         let small = "`coverage` = 0.2 of texture 1 means 0.2 percent of the area; for 20 percent write `coverage` = 20";
@@ -619,8 +618,8 @@ fn what_deserves_a_word_is_said_once() {
     }
 }
 
-/// Coverages are drawn and listed as they are meshed: of 25 columns, 5 % are one and 15 % are three, 4 and 12
-/// %. A study that asks for these has the same runs, and the same pictures.
+/// Coverages are drawn and listed as meshed: with 25 columns, 5 % are one column and 15 % are three, that is
+/// 4 % and 12 %. A study with these values has the same runs and the same pictures.
 #[test]
 fn coverages_are_drawn_and_told_as_they_are_meshed() {
     let study = |axes: &str| {
@@ -683,8 +682,8 @@ fn coverages_are_drawn_and_told_as_they_are_meshed() {
     }
 }
 
-/// 5 and 6 % of 25 columns are one column: a note names the points that are drawn at one place, and a map
-/// keeps its columns apart.
+/// 5 % and 6 % of 25 columns are both one column: a note names the points that are drawn at the same place,
+/// and a map keeps their columns separate.
 #[test]
 fn coverages_that_are_meshed_to_one_are_told() {
     let workspace = Workspace::with_study(
@@ -701,7 +700,8 @@ fn coverages_that_are_meshed_to_one_are_told() {
     assert!(picture("static_friction_star_map").contains(">asked texture coverage "));
 }
 
-/// Pressures of one V* are one dimensionless model: the study says so before it runs, and how to mean it.
+/// Different pressures at the same V* are the same dimensionless model: the study says so before it runs,
+/// with the remedy.
 #[test]
 fn an_axis_that_changes_nothing_is_pointed_out() {
     let axes = "[[axes]]\nkey = 'load.pressure'\nlist = ['50 kPa', '100 kPa', '200 kPa']\n\
@@ -714,8 +714,8 @@ fn an_axis_that_changes_nothing_is_pointed_out() {
     assert!(said.contains("9 points, 1 replicate: at most 9 runs"), "{said}");
     let output = workspace.output("study study.toml -o out --threads 1");
     assert!(stderr(&output).contains(note), "{}", stderr(&output));
-    // So it is: of nine points six repeat what the others found, but for the digits that the strain of the
-    // load moves.
+    // Of nine points, six repeat the results of others, except for digits that change with the strain under
+    // the load.
     let rows = workspace.results("out").table("runs.csv");
     let found: BTreeSet<String> = rows
         .iter()
@@ -726,7 +726,7 @@ fn an_axis_that_changes_nothing_is_pointed_out() {
     assert!(stderr(&quiet).is_empty(), "{}", stderr(&quiet));
 }
 
-/// An interval is printed to three figures, with the number of values where that is small.
+/// An interval is printed to three digits, with the number of values if that is small.
 #[test]
 fn intervals_are_rounded_and_say_what_varies() {
     let study = "base.slider.blocks = [30, 30]\nbase.time.stop = 'after_onset'\nbase.drive.v_star = 0.2\n\
@@ -753,7 +753,8 @@ fn intervals_are_rounded_and_say_what_varies() {
     );
 }
 
-/// Few values are soon close together, and none never: neither is an interval that is narrow enough.
+/// Few values may be close together by chance, and no values have no interval: neither counts as a narrow
+/// interval.
 #[test]
 fn runs_without_the_number_that_decides_do_not_count_for_it() {
     let until = "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n\
@@ -780,8 +781,8 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
     assert_eq!((row["n"].as_str(), row["narrow_enough"].as_str()), ("0", "false"));
 }
 
-/// The tables of the guides on slow loading, soft springs, smaller blocks and dimples on steel hold what
-/// their studies give.
+/// The tables of the guides on slow loading, soft springs, smaller blocks and dimples on steel contain the
+/// results of their studies.
 #[test]
 fn the_guides_have_the_reductions_of_their_studies() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -854,7 +855,7 @@ fn the_guides_have_the_reductions_of_their_studies() {
         let row = format!(" | {} |\n", of_surface.join(" | "));
         assert!(text.contains(&row), "{row}");
     }
-    // The coarsest of three meshes; the others take minutes.
+    // This is the coarsest of three meshes; the others take minutes.
     let coarsest = |case: &str, blocks: u32, size: &str, replicates: u32| {
         workspace.write(
             "coarsest.toml",

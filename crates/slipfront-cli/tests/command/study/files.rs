@@ -1,11 +1,11 @@
-//! Content of a study file.
+//! Contents of a study file.
 
 use crate::support::process::stderr;
 use crate::support::workspace::Workspace;
 
 const BASE: &str = "[base.slider]\nblocks = [4, 4]\n[base.time]\nstop = 'after_onset'\n";
 
-/// The levels of the columns of `runs.csv` between `role` and `seed`, row by row.
+/// The levels in the columns of `runs.csv` between `role` and `seed`, row by row.
 fn levels(axes: &str) -> Vec<String> {
     let workspace = Workspace::with_study(&format!("{BASE}{axes}"));
     let table = std::fs::read_to_string(workspace.study("out").path.join("runs.csv")).unwrap();
@@ -108,7 +108,7 @@ fn a_reference_may_set_what_an_axis_sets() {
     results.assert_each_run_once(3);
 }
 
-/// A study that works in its own results folder may read what stands where a copy goes.
+/// A study in its own results folder may read a file from a place to which another copy goes.
 #[test]
 fn copies_do_not_overwrite_what_is_still_to_be_copied() {
     let workspace = Workspace::new();
@@ -125,15 +125,15 @@ fn copies_do_not_overwrite_what_is_still_to_be_copied() {
         let copied = std::fs::read_to_string(workspace.path("out/inputs").join(copy)).unwrap();
         assert_eq!(copied, table(value), "{copy}");
     }
-    // A copy had another name from then on, and the runs that were still to come read what they are recorded
-    // by.
+    // From then on a copy had another name, and the remaining runs read the files that they are recorded
+    // with.
     workspace.write("fresh/study.toml", twice("'../one/mu.csv', '../two/mu.csv'"));
     workspace.succeed("study fresh/study.toml -o fresh_out");
     let points = |folder: &str| std::fs::read_to_string(workspace.path(folder).join("points.csv")).unwrap();
     assert_eq!(points("out"), points("fresh_out"));
 }
 
-/// Copies do not go behind a link, whose target is somebody else's.
+/// Copies are not written through a link, because its target may belong to somebody else.
 #[cfg(unix)]
 #[test]
 fn copies_do_not_go_behind_a_link() {

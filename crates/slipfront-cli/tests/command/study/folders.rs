@@ -9,7 +9,7 @@ use crate::support::workspace::Workspace;
 #[test]
 fn run_folders_are_kept_on_request() {
     for (keep, kept) in [("all", true), ("none", false), ("failed", false)] {
-        // The runs are few, since each draws its pictures.
+        // There are few runs, because each draws its pictures.
         let small = SMALL
             .replace("replicates = 3", &format!("replicates = 1\nkeep = '{keep}'"))
             .replace("[0.08, 0.1, 0.12, 0.14, 0.16, 0.18]", "[0.1]");
@@ -65,7 +65,7 @@ fn a_changed_study_adds_what_is_new_and_says_what_no_longer_belongs() {
     results.assert_same(&workspace.study("fresh"));
 }
 
-/// Damages the records, and demands that a restart mends the answer with `again` runs.
+/// Damages the records, and asserts that a restart restores the results with `again` runs.
 fn mends(damage: impl Fn(&mut Vec<u8>), again: usize) -> String {
     let workspace = Workspace::with_study(SMALL);
     let results = workspace.study("out");
@@ -86,7 +86,8 @@ fn a_damaged_line_is_run_again() {
     let said = mends(
         |bytes| {
             let middle = bytes.len() / 2;
-            // Within a number or a name: the line is still JSON or not, but not what was written.
+            // The change is inside a number or a name: the line may still be JSON, but differs from the
+            // written one.
             bytes[middle] ^= 1;
         },
         1,
@@ -116,7 +117,7 @@ fn a_folder_with_other_things_is_left_alone() {
     }
 }
 
-/// Numbers of the study that was must not stand beside the one that is, should this be stopped.
+/// Numbers of the previous study must not remain next to those of the present one if that is stopped.
 #[test]
 fn a_changed_study_leaves_no_tables_of_what_it_was() {
     let workspace = Workspace::with_study(SMALL);
@@ -131,12 +132,12 @@ fn a_changed_study_leaves_no_tables_of_what_it_was() {
     for name in ["runs.csv", "points.csv", "static_friction_star.svg"] {
         assert!(!results.has(name), "{name}");
     }
-    // They follow from the records at any time.
+    // They can be computed from the records at any time.
     workspace.write("study.toml", SMALL);
     workspace.study("out").assert_same(&workspace.study("fresh"));
 }
 
-/// The study of a results folder has the name of this folder, and goes on there.
+/// The study in a results folder has the name of this folder, and continues there.
 #[test]
 fn a_recorded_study_goes_on_in_its_folder() {
     let workspace = Workspace::with_study(SMALL);
@@ -144,7 +145,7 @@ fn a_recorded_study_goes_on_in_its_folder() {
     let before = workspace.files("results");
     workspace.succeed("study results/out/study.toml");
     assert!(workspace.files("results") == before);
-    // What is recorded there is not replaced unasked.
+    // The records there are not replaced without request.
     let changed = "study results/out/study.toml --quiet --set friction.mu_static=0.7";
     let refused = workspace.fail(changed, 2);
     assert!(
@@ -155,8 +156,8 @@ fn a_recorded_study_goes_on_in_its_folder() {
     workspace.succeed(&format!("{changed} -o results/other"));
 }
 
-/// The results folder holds the study with its base inside, which is no place for the only file that names
-/// the base.
+/// The results folder contains the study with its base written out, which must not replace the only file that
+/// refers to the base.
 #[test]
 fn a_study_file_that_names_its_base_is_not_replaced() {
     let workspace = Workspace::with_study(SMALL);
@@ -177,7 +178,7 @@ fn a_study_file_that_names_its_base_is_not_replaced() {
     );
 }
 
-/// Pictures of others stay, whatever their names: only pictures that a study has drawn are its own.
+/// Pictures of others stay, whatever their names: only pictures drawn by a study belong to it.
 #[test]
 fn pictures_of_others_stay() {
     let workspace = Workspace::with_study(SMALL);
@@ -261,7 +262,7 @@ fn the_folder_repeats_the_study_without_the_files_it_came_from() {
     let second: Results = workspace.results("second");
     second.assert_same(&first);
     second.assert_each_run_once(first.recorded().len());
-    // And of the copy another copy.
+    // A copy can be made of the copy.
     std::fs::rename(workspace.path("first"), workspace.path("gone")).unwrap();
     workspace.succeed("study second/study.toml -o third");
     workspace.results("third").assert_same(&second);
@@ -287,7 +288,7 @@ fn a_file_with_new_contents_is_a_new_case() {
     );
 }
 
-/// A point whose runs diverge beside one whose runs do not: see the same case among the tests of the command.
+/// A point with diverging runs next to a point without: the command tests use the same case.
 #[test]
 fn a_run_that_diverges_is_recorded_and_kept_and_stops_nothing_else() {
     let workspace = Workspace::with_study(

@@ -1,4 +1,4 @@
-//! Killed, stopped, without disk: nothing is lost and nothing repeated.
+//! A study that is killed, stopped or out of disk space loses nothing and repeats nothing.
 
 use std::process::{Child, Output};
 use std::thread::sleep;
@@ -31,7 +31,7 @@ fn start(workspace: &Workspace, out: &str) -> Child {
     workspace.start(&format!("study study.toml --quiet --out {out}"))
 }
 
-/// A small generator, so that the random moments are the same ones every time.
+/// A small generator, so that the random moments are the same in every test run.
 fn random(state: &mut u64) -> u64 {
     *state = state
         .wrapping_mul(6_364_136_223_846_793_005)
@@ -50,7 +50,7 @@ fn killed_ten_times_the_answer_is_the_same_to_the_byte() {
     for kill in 0..10 {
         let mut child = start(&workspace, "killed");
         if kill > 0 {
-            // The first is killed at any moment, however early.
+            // The first one is killed at any moment, however early.
             killed.wait_for_runs(1 + (random(&mut state) % 5) as usize);
         }
         sleep(Duration::from_micros(random(&mut state) % 12_000));
@@ -71,7 +71,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
         let results = workspace.results("stopped");
         let child = start(&workspace, "stopped");
         results.wait_for_runs(3);
-        // The first of them is no reason to stop.
+        // SIGUSR1, the first of them, does not stop the study.
         for signal in ["-USR1", signal] {
             send(&child, signal);
         }
@@ -91,7 +91,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
         .assert_same(&workspace.study("whole"));
 }
 
-/// Runs `study.toml` under a limit of `ulimit`.
+/// Runs `study.toml` under a limit set with `ulimit`.
 fn limited(workspace: &Workspace, limit: &str, arguments: &str) -> Output {
     let program = program();
     workspace.shell(&format!(
@@ -116,15 +116,15 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
     full.assert_same(&workspace.study("whole"));
 }
 
-/// A study that the system refuses memory or threads is refused before it begins, as a run is, and does not
-/// abort on the way.
+/// A study for which the system refuses memory or threads is refused before it begins, like a run, and does
+/// not abort later.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_the_system_does_not_give_is_refused_before_it_begins() {
     let workspace = Workspace::with_study(
         "base.slider.blocks = [2000, 2000]\nbase.time.duration_star = 1\nstudy.replicates = 1",
     );
-    // There is room for a thread, and not for the blocks.
+    // There is memory for a thread, but not for the blocks.
     let output = limited(&workspace, "-v 400000", "--threads 1 -o out");
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(

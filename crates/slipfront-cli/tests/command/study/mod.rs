@@ -1,4 +1,4 @@
-//! The command `slipfront study` from outside: its answers, interruptions and refusals.
+//! Tests of the command `slipfront study`: its results, interruptions and refusals.
 
 mod answers;
 mod files;

@@ -1,4 +1,4 @@
-//! Refusals before any run, with their sentences.
+//! Errors that are reported before any run.
 
 use super::results::SMALL;
 use crate::support::process::stderr;
@@ -46,7 +46,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (axis("key = 'drive.v_star'\nlinspace = [0.1, 1, 1]"), "give 2 to"),
         (axis("key = 'drive.v_star'\nlits = [0.1]"), "did you mean `list`?"),
-        // Sixty lines that would make six million levels.
+        // Sixty axes that would make six million levels.
         (
             axis(&vec!["key = 'drive.v_star'\nlinspace = [0.1, 1, 100000]"; 60].join("\n[[axes]]\n")),
             "give more than 1000000 points",
@@ -173,7 +173,7 @@ fn bad_studies_are_refused_with_a_sentence() {
     }
 }
 
-/// Errors of a base that the study file holds point at its lines as they are written there.
+/// Errors of a base inside the study file refer to the lines of this file.
 #[test]
 fn errors_of_the_base_show_the_lines_of_the_study_file() {
     let large = "study.replicates = 2\n\n[base]\ndrive.v_star = 0.1\nslider.blocks = [60000, 60000]\n";
@@ -192,7 +192,7 @@ fn errors_of_the_base_show_the_lines_of_the_study_file() {
     }
 }
 
-/// A key that an axis sets cannot be set beside it.
+/// A key that an axis sets cannot also be set by `--set`.
 #[test]
 fn keys_of_axes_are_not_set() {
     let workspace = Workspace::with_study(SMALL);
@@ -243,13 +243,13 @@ fn a_very_large_study_is_asked_for() {
             .contains("10100 runs")
     );
     assert_eq!(workspace.output("study slurm study.toml").status.code(), Some(2));
-    // With --yes it starts: its first part, which is small.
+    // With --yes the study starts; its first shard is small.
     workspace.succeed("study study.toml --yes --quiet --shard 1/100 -o out");
     workspace.results("out").assert_each_run_once(101);
 }
 
-/// The command that tests build has no feature `gpu`; one that has it names the remedy, too. All run folders
-/// are made on the CPU alone, whatever there is.
+/// The command that tests build lacks the feature `gpu`; one with that feature names the remedy as well.
+/// Folders of all runs are made only on the CPU.
 #[test]
 fn a_device_that_is_missing_is_refused_or_replaced_by_the_cpu() {
     let workspace = Workspace::with_study(SMALL);

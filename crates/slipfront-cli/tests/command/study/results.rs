@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::support::process::wait_for;
 use crate::support::workspace::Workspace;
 
-/// Six points on a lattice of 36 blocks, three surfaces and their references: 36 runs of a millisecond or so.
+/// Six points on a lattice of 36 blocks, three surfaces and their references: 36 runs of about a millisecond.
 pub(crate) const SMALL: &str = r#"
 [base.slider]
 blocks = [6, 6]
@@ -23,11 +23,11 @@ key = "drive.v_star"
 list = [0.08, 0.1, 0.12, 0.14, 0.16, 0.18]
 "#;
 
-/// Runs of [`SMALL`].
+/// Number of runs of [`SMALL`].
 pub(crate) const SMALL_RUNS: usize = 36;
 
 impl Workspace {
-    /// A workspace that holds `study.toml`.
+    /// A workspace with `study.toml`.
     pub(crate) fn with_study(study: &str) -> Self {
         let workspace = Self::new();
         workspace.write("study.toml", study);
@@ -40,7 +40,7 @@ impl Workspace {
         self.results(out)
     }
 
-    /// The results in a folder, which need not be there yet.
+    /// The results in a folder, which need not exist yet.
     pub(crate) fn results(&self, out: &str) -> Results {
         Results { path: self.path(out) }
     }
@@ -52,7 +52,7 @@ pub(crate) struct Results {
 }
 
 impl Results {
-    /// Tables and pictures by their names: all files that must not depend on the way they were made.
+    /// Tables and pictures by name: all files that must not depend on how they were made.
     pub(crate) fn answer(&self) -> BTreeMap<String, Vec<u8>> {
         let files = std::fs::read_dir(&self.path)
             .unwrap()
@@ -85,7 +85,7 @@ impl Results {
         self.path.join("runs.jsonl")
     }
 
-    /// Identities of recorded runs, in their order; none where there is no journal yet.
+    /// Identities of the recorded runs, in order; none if there is no journal yet.
     pub(crate) fn recorded(&self) -> Vec<String> {
         if !self.records().exists() {
             return Vec::new();
@@ -94,25 +94,25 @@ impl Results {
         let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
         whole
             .filter_map(|line| serde_json::from_str::<serde_json::Value>(line.get(17..)?).ok())
-            // A damaged line may have lost its very name.
+            // A damaged line may have lost its identity.
             .filter_map(|record| Some(record["id"].as_str()?.to_owned()))
             .collect()
     }
 
-    /// Waits until `more` runs are recorded beyond those that are.
+    /// Waits until `more` further runs are recorded.
     pub(crate) fn wait_for_runs(&self, more: usize) {
         let before = self.recorded().len();
         wait_for("new record of a run", || self.recorded().len() >= before + more);
     }
 
-    /// Demands that this many runs were made, each once.
+    /// Asserts that `count` runs were made, each once.
     pub(crate) fn assert_each_run_once(&self, count: usize) {
         let recorded = self.recorded();
         let different: BTreeSet<&String> = recorded.iter().collect();
         assert_eq!((recorded.len(), different.len()), (count, count));
     }
 
-    /// Rows of a table by the names of its columns.
+    /// Rows of a table, by column names.
     pub(crate) fn table(&self, name: &str) -> Vec<BTreeMap<String, String>> {
         let mut table = csv::Reader::from_path(self.path.join(name)).unwrap();
         table.deserialize().map(|row| row.unwrap()).collect()
@@ -142,7 +142,7 @@ pub(crate) fn deviation(values: &[f64]) -> f64 {
     (squares / (values.len() - 1) as f64).sqrt()
 }
 
-/// The bytes of a file of a mask, exactly `nx` by `ny` blocks, textured where `textured` says so.
+/// A mask file of exactly `nx` by `ny` blocks; `textured` says which blocks are textured.
 pub(crate) fn mask(nx: usize, ny: usize, textured: impl Fn(usize, usize) -> bool) -> Vec<u8> {
     let header = format!("{{'descr': '|b1', 'fortran_order': False, 'shape': ({ny}, {nx}), }}");
     let padded = format!("{header:<117}\n");
@@ -155,7 +155,7 @@ pub(crate) fn mask(nx: usize, ny: usize, textured: impl Fn(usize, usize) -> bool
     bytes
 }
 
-/// A table of numbers, one row of blocks a line.
+/// A table of numbers with one line per row of blocks.
 pub(crate) fn field(nx: usize, ny: usize, value: impl Fn(usize, usize) -> f64) -> String {
     let row = |j: usize| {
         let cells: Vec<String> = (0..nx).map(|i| value(i, j).to_string()).collect();

@@ -1,4 +1,4 @@
-//! Parts of a study on several machines.
+//! Shards of a study on several machines.
 
 use super::results::{SMALL, SMALL_RUNS};
 use crate::support::process::{ended_with, stderr, stdout};
@@ -30,7 +30,7 @@ fn two_shards_merged_are_one_study() {
     }
     let again = workspace.output("study merge part2 part1 -o merged");
     assert!(stderr(&again).contains("0 runs taken over"), "{}", stderr(&again));
-    // A united folder is a study folder like any other.
+    // A merged folder is a study folder like any other.
     workspace.succeed("study merged/study.toml -o merged");
     workspace.results("merged").assert_each_run_once(SMALL_RUNS);
 }
@@ -46,8 +46,8 @@ fn run_folders_that_shards_kept_are_taken_over() {
         let out = format!("part{part}");
         workspace.succeed(&format!("study study.toml --shard {part}/2 -o {out}"));
     }
-    // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one
-    // holds whole.
+    // Leftovers of kills: of an earlier merge, of a run in the folder, and of a run in one shard that another
+    // shard has completed.
     workspace.write("merged/runs.jsonl", "");
     let hash = blake3::hash(b"an old case").to_hex();
     let journal = format!("{{\"name\":\"case.toml\",\"bytes\":11,\"blake3\":\"{hash}\"}}\n");
@@ -132,7 +132,7 @@ fn a_shard_of_slurm_is_read_from_its_environment() {
             .env("SLURM_ARRAY_TASK_COUNT", "3");
         command
     };
-    // An array may begin at any number; without one it is taken to begin at 1.
+    // An array may begin at any number; by default it begins at 1.
     ended_with(&mut task("one", "2"), 0);
     ended_with(task("zero", "1").env("SLURM_ARRAY_TASK_MIN", "0"), 0);
     for out in ["one", "zero"] {

@@ -1,4 +1,4 @@
-//! `slipfront verify` of a study: its tables and pictures are those of its records.
+//! `slipfront verify` of a study: its tables and pictures must follow from its records.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::support::process::stderr;
 use crate::support::workspace::Workspace;
 use crate::verify::verified;
 
-/// Every file of a folder, those in folders of it left out.
+/// Every file of a folder, without those in subfolders.
 fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
     let files = entries.filter(|entry| entry.file_type().unwrap().is_file());
@@ -82,7 +82,7 @@ fn run_folders_of_a_study_are_verified_too() {
     std::fs::remove_file(run.path().join("manifest.json")).unwrap();
     let (status, said, _) = verified(&workspace, "out");
     assert!(status == 1 && said.contains("has no manifest.json"), "{said}");
-    // A user may have no use for them.
+    // A user may have removed the run folders.
     std::fs::remove_dir_all(results.path.join("runs")).unwrap();
     let (status, said, _) = verified(&workspace, "out");
     assert!(status == 0 && said.contains(", 0 run folders"), "{said}");
@@ -92,8 +92,8 @@ fn run_folders_of_a_study_are_verified_too() {
     );
 }
 
-/// Records of something else are reported as such, as after a new version of the program, whose runs would
-/// differ.
+/// Records of another study are reported as such, for example after an update of the program that changes its
+/// runs.
 #[test]
 fn records_of_something_else_are_called_so() {
     let workspace = Workspace::with_study(SMALL);
@@ -155,8 +155,7 @@ fn single_runs_are_repeated_and_studies_are_not() {
     );
 }
 
-/// Lists of tables stand last in a table that TOML writes in full; the columns follow the study as it was
-/// written.
+/// TOML writes lists of tables last in a table; the columns still have the order of the original study file.
 #[test]
 fn the_study_in_the_folder_has_its_axes_in_order() {
     let workspace = Workspace::with_study(

@@ -1,4 +1,4 @@
-//! The files of the lessons, as they are read.
+//! The files of the lessons, as they are parsed.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,7 +21,7 @@ pub(crate) struct Lesson {
     pub(crate) steps: Vec<Step>,
 }
 
-/// A step: its case runs from rest beside its text.
+/// A step: the page runs its case from rest next to its text.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Step {
@@ -47,7 +47,7 @@ pub(crate) struct View {
     _kymograph: bool,
 }
 
-/// A button: it changes keys of the case, which then runs from rest, or what is seen.
+/// A button: it changes keys of the case, which then runs from rest, or changes the view.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Button {
@@ -95,13 +95,13 @@ pub(crate) struct StepWords {
     pub(crate) title: String,
     /// Paragraphs up to the question.
     pub(crate) text: Vec<String>,
-    /// Paragraphs that are shown when the reader asks for them.
+    /// Paragraphs shown on request of the reader.
     pub(crate) answer: Vec<String>,
     /// Labels of the buttons of the step.
     pub(crate) set: BTreeMap<String, String>,
 }
 
-/// A number that a text says.
+/// A number in a text.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Number {
@@ -110,16 +110,16 @@ pub(crate) struct Number {
     #[serde(default)]
     pub(crate) set: Keys,
     pub(crate) quantity: Quantity,
-    /// The key whose value is meant, of the quantity `key`.
+    /// The key that a number of the quantity `key` refers to.
     pub(crate) key: Option<String>,
-    /// Keys of the reference of a reduction, which is otherwise the same case.
+    /// Keys that change in the reference case of a reduction; all others are the same.
     pub(crate) against: Option<Keys>,
-    /// Surfaces over which the mean is taken; that of the case if there are none.
+    /// Seeds of the surfaces over which the mean is taken; without any, the seed of the case.
     #[serde(default)]
     pub(crate) seeds: Vec<u64>,
 }
 
-/// The quantity whose value a text says.
+/// The quantity that a number in a text gives.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Quantity {
@@ -135,9 +135,9 @@ pub(crate) enum Quantity {
     FirstSlipTimeStar,
     /// mu* at the instant E, where it is lowest after the peak.
     FrictionAfterFall,
-    /// Eq. 16: by how much mu_s* is below that of `against`, %.
+    /// Eq. 16: reduction of mu_s* relative to `against`, %.
     StaticReductionPercent,
-    /// Share of the blocks in contact that have slipped by t_s*, %.
+    /// Percentage of the blocks in contact that have slipped by t_s*.
     SlippedPercentAtPeak,
     /// Meshed coverage, %.
     TexturePercent,
@@ -150,7 +150,7 @@ pub(crate) enum Quantity {
 }
 
 impl Quantity {
-    /// The unit that a text writes behind a number; empty for none.
+    /// The unit behind a number in a text; empty for none.
     pub(crate) fn unit(self, key: Option<&str>) -> &'static str {
         match self {
             Self::StaticReductionPercent | Self::SlippedPercentAtPeak | Self::TexturePercent => "%",
@@ -162,7 +162,7 @@ impl Quantity {
 }
 
 impl StepWords {
-    /// All paragraphs of a step, those of its answer last.
+    /// All paragraphs of a step, with those of its answer at the end.
     pub(crate) fn paragraphs(&self) -> impl Iterator<Item = &String> {
         self.text.iter().chain(&self.answer)
     }
@@ -190,7 +190,7 @@ pub(crate) fn numbers() -> BTreeMap<String, Number> {
     read("lesson_numbers.json")
 }
 
-/// The case of a file of the page, changed by keys.
+/// The case of a file of the page, with some keys changed.
 pub(crate) fn case(name: &str, keys: &Keys) -> Case {
     let text = fs::read_to_string(web().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let value = |value| toml::Value::try_from(value).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -9,7 +9,7 @@ use slipfront_run::summary::Summary;
 
 use super::content::{Keys, Number, Quantity, case};
 
-/// Runs of which numbers are taken, each made once.
+/// Runs from which numbers are taken, each computed once.
 pub(crate) struct Runs(BTreeMap<String, Run>);
 
 struct Run {
@@ -18,13 +18,12 @@ struct Run {
     v_star_n_x: f64,
 }
 
-/// A run as text: the file of its case and the keys that are changed.
+/// A run as text: the file of its case and the changed keys.
 fn name(file: &str, keys: &Keys) -> String {
     format!("{file} {keys:?}")
 }
 
-/// The runs that a number is made of: pairs of its own and of the one it is relative to, one for each
-/// surface.
+/// Runs behind a number, one pair for each surface: its own run, and the run that it is relative to.
 fn parts(number: &Number) -> Vec<(Keys, Option<Keys>)> {
     let on = |seed: Option<&u64>| {
         let mut keys = number.set.clone();
@@ -61,7 +60,7 @@ impl Runs {
         Self(wanted.into_par_iter().map(run).collect())
     }
 
-    /// The value of a number, the mean over its surfaces.
+    /// The value of a number: the mean over its surfaces.
     pub(crate) fn value(&self, number: &Number) -> f64 {
         let get = |keys: &Keys| &self.0[&name(&number.case, keys)];
         let of = |(keys, against): &(Keys, Option<Keys>)| {

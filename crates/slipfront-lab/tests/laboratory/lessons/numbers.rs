@@ -1,4 +1,4 @@
-//! Every number that is said is the one that the engine computes.
+//! Every number in a text is the one that the engine computes.
 
 use slipfront_case::case::Case;
 
@@ -7,7 +7,7 @@ use super::measured::Runs;
 use super::said::Said;
 use super::words::ids;
 
-/// Value of a key of a case in which every default is filled in.
+/// Value of a key of a case with all defaults filled in.
 fn value_of_key(case: &Case, key: &str) -> toml::Value {
     let text = case.file.to_toml().expect("the case is within its bounds");
     let table: toml::Table = text.parse().expect("what is written can be read");
@@ -20,7 +20,8 @@ fn value_of_key(case: &Case, key: &str) -> toml::Value {
     found.unwrap_or_else(|| panic!("the case {} has no value of {key}", case.name))
 }
 
-/// Whether a text says the value of a key, which is not rounded: quantities with a unit letter by letter.
+/// Whether a text gives the value of a key, which is not rounded; quantities with a unit must match
+/// literally.
 fn says_key(says: &str, unit: &str, value: &toml::Value) -> bool {
     let is = |says: &str, value: f64| Said::parse(says, unit).is_some_and(|said| said.value == value);
     match value {
@@ -39,7 +40,7 @@ fn says_key(says: &str, unit: &str, value: &toml::Value) -> bool {
     }
 }
 
-/// Whether a text says the value that a key has in this case.
+/// Whether a text gives the value of a key in this case.
 fn says_key_of(number: &Number, key: &str, case: &Case) -> bool {
     let unit = number.quantity.unit(Some(key));
     says_key(&number.says, unit, &value_of_key(case, key))
@@ -87,7 +88,7 @@ fn numbers_have_the_fields_that_their_quantity_needs() {
     }
 }
 
-/// The keys that buttons of steps with this case set.
+/// The keys that are set by buttons of steps with this case.
 fn buttons<'a>(lessons: &'a [Lesson], file: &str) -> Vec<&'a Keys> {
     let steps = lessons.iter().flat_map(|lesson| &lesson.steps);
     let buttons = steps.filter(|step| step.case == file).flat_map(|step| &step.set);
@@ -103,7 +104,7 @@ fn numbers_are_of_cases_that_the_reader_can_see() {
             steps.any(|step| step.case == number.case)
         });
         assert!(is_shown, "{id}: no step shows {}", number.case);
-        // A slider without its texture is seen beside every one with it.
+        // Each slider with a texture is shown next to its twin without one.
         let mut keys = number.set.clone();
         keys.remove("texture");
         let is_button = |button: &&Keys| {

@@ -1,6 +1,6 @@
-//! A number as a text says it.
+//! A number as it appears in a text.
 
-/// Digits and what the last of them is worth.
+/// The digits of a number, and the value of one unit in the last place.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Said {
     pub(crate) value: f64,
@@ -8,7 +8,7 @@ pub(crate) struct Said {
 }
 
 impl Said {
-    /// Reads a number followed by a unit, or by nothing; none if it is another text.
+    /// Parses a number followed by a unit, or by nothing; none if the text is something else.
     pub(crate) fn parse(says: &str, unit: &str) -> Option<Self> {
         let digits = match unit {
             "" => says,
@@ -27,10 +27,10 @@ impl Said {
         })
     }
 
-    /// Tells whether the number in the text is `value` rounded to as many digits as the text has.
+    /// Whether the number in the text is `value` rounded to as many digits as the text has.
     pub(crate) fn is(&self, value: f64) -> bool {
-        // Rounding moves by half of the last place; what a decimal fraction lacks as a double is far below a
-        // billionth of it.
+        // Rounding changes a value by at most half a unit in the last place; the error of a decimal fraction
+        // as a double is far below a billionth of that unit.
         (value - self.value).abs() <= self.last_place * (0.5 + 1e-9)
     }
 }

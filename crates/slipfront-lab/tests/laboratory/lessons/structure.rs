@@ -1,13 +1,13 @@
-//! Lessons, steps and buttons fit each other, and cases run.
+//! Lessons, steps and buttons are consistent, and their cases run.
 
 use std::collections::BTreeSet;
 use std::fs;
 
 use super::content::{Keys, Lesson, LessonWords, Step, case, lessons, web, words};
 
-/// Largest side of a slider, blocks: each case runs within some seconds.
+/// Largest side of a slider, blocks, so that each case runs within some seconds.
 const MAX_SIDE: u32 = 100;
-/// Words a minute of a reader.
+/// Reading speed, words per minute.
 const WORDS_PER_MINUTE: f64 = 150.0;
 /// Longest lesson, minutes.
 const MAX_MINUTES: f64 = 5.0;
@@ -83,7 +83,7 @@ fn cases_are_small_and_each_is_used() {
     assert_eq!(used, files.collect());
 }
 
-/// How long a lesson takes that is read once, with each of its cases run once, minutes.
+/// Duration of a lesson that is read once, with each of its cases run once, minutes.
 fn minutes(lesson: &Lesson, said: &LessonWords) -> f64 {
     let count = |text: &String| text.split_whitespace().count();
     let mut n_words = count(&said.title) + count(&said.summary);

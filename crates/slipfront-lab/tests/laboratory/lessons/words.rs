@@ -1,12 +1,12 @@
-//! Texts of the lessons hold no digits but those of numbers that are checked, and use every such number.
+//! Texts of the lessons contain no digits except those of checked numbers, and use every checked number.
 
 use std::collections::BTreeSet;
 
 use super::content::{LessonWords, numbers, words};
 
-/// Words behind which a number is a name.
+/// Words after which a number is part of a name.
 const NAMES: [&str; 3] = ["Fig. ", "Table ", "Eq. "];
-/// Words of a step.
+/// Allowed number of words of a step.
 const STEP_WORDS: std::ops::RangeInclusive<usize> = 40..=120;
 
 /// The texts of a lesson.
