@@ -281,7 +281,7 @@ fn print_costs(size: usize, threads: usize) -> Result<(), Box<dyn Error + Send +
     let mut best = vec![f64::INFINITY; simulations.len()];
     for _ in 0..TURNS {
         for (best, simulation) in best.iter_mut().zip(&mut simulations) {
-            // Evicts the arrays of the other simulations from the cache.
+            // Brings its arrays into the cache, which holds those of the other simulations.
             simulation.step();
             let (began, mut steps) = (Instant::now(), 0);
             while began.elapsed() < SLICE {

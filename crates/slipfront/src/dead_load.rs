@@ -32,7 +32,7 @@ pub struct LoadField {
 }
 
 impl DeadLoad {
-    /// The same force along x and y on every block, in units of `P mu_s l^2`.
+    /// Dead load with the same force along x and y on every block, in units of `P mu_s l^2`.
     pub fn uniform(force: [f64; 2]) -> Self {
         Self { force, field: None }
     }

@@ -74,7 +74,7 @@ fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64
 /// t_stop = (pi - atan(2 w/Omega))/w,   where its spring pulls with   F_stop = mu_k F_n - sqrt(k) v exp(-Omega t_stop/2)
 /// ```
 ///
-/// as the solution of `v'' + Omega v' + k v = 0`, `v(0) = v`, `v'(0) = 0`. It holds for `Omega^2 < 4 k`; a
+/// The motion solves `v'' + Omega v' + k v = 0`, `v(0) = v`, `v'(0) = 0`. This holds for `Omega^2 < 4 k`; a
 /// block with more damping creeps and never stops.
 ///
 /// ```

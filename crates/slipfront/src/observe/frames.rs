@@ -23,7 +23,7 @@ pub struct Frame {
     /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
     /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on.
-    /// The arrays are as large as the lattice: code that serializes a frame writes them beside it.
+    /// The arrays are as large as the lattice: code that serializes a frame writes them separately.
     #[serde(skip)]
     pub values: Vec<Vec<f32>>,
 }

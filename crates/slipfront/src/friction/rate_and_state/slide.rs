@@ -89,9 +89,9 @@ pub(super) fn slide<const BLOCKS: usize>(
         let w = roots.w[k].max(0.0);
         let friction = normal_force[k] * a * w;
         let [sinh, cosh] = sinh_and_cosh(roots.rising[k], roots.falling[k]);
-        // Rounding leaves an error of cosh(w) e^-L units in the last place in `sinh`, and of these units in
-        // the difference from the free speed: where friction has nearly vanished sinh is the difference of
-        // two large numbers.
+        // Of two formulas for the speed, takes the one with the smaller rounding error, in units of the last
+        // place: cosh(w) e^-L for `sinh`, target + per_unit for `left`. Where friction has nearly vanished,
+        // sinh is the difference of two large numbers.
         let left = (equations.target[k] - equations.per_unit[k] * w).max(0.0);
         let is_left = cosh > equations.target[k] + equations.per_unit[k];
         let speed = if is_left { left } else { sinh };
