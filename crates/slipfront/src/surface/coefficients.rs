@@ -27,7 +27,7 @@ impl Distribution {
 }
 
 /// Local coefficients of every block, as if there were no texture. Draws may be negative:
-/// [`Surface`](super::Surface) sets such draws to 0, and counts those of blocks in contact.
+/// [`Surface`](super::Surface) sets these to 0, and counts those of blocks in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     /// Static coefficients `mu_si`, one per block.
@@ -52,13 +52,13 @@ pub const STREAMS: [(&str, u64); 2] = [
 impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for `n_blocks` blocks, textured or not, in block order.
     ///
-    /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and
+    /// The standard normals depend only on `seed` and the index of the block; mean and deviation shift and
     /// scale them.
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
         Self::draw_blocks(0..n_blocks, mu_static, mu_kinetic, seed)
     }
 
-    /// Draws `mu_si` and `mu_ki` as [`draw`](Self::draw) does, for these blocks of a lattice alone.
+    /// Draws `mu_si` and `mu_ki` as [`draw`](Self::draw) does, but only for these blocks of a lattice.
     pub fn draw_blocks(
         blocks: Range<usize>,
         mu_static: Distribution,
