@@ -20,7 +20,7 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
 
 /// Through onset and far beyond. The balance misses the kinetic energy that a block loses in the last step of
 /// a slip, at most (mu_k F_n dt)^2/2 = 5e-5, in slips that dissipate R V T = 1 each: a few 1e-5. It is less
-/// where strong damping lets few blocks stop.
+/// where few blocks stop because of strong damping.
 #[test_case(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5; "baseline")]
 #[test_case(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5; "undamped")]
 #[test_case(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-5; "steady")]

@@ -415,7 +415,7 @@ impl Engine for General {
         self.read(first, values, |band| match column {
             BlockColumn::DisplacementX => &band.state.displacement.x,
             BlockColumn::DisplacementY => &band.state.displacement.y,
-            // Half a step before the present instant, which is evaluated again when it resumes.
+            // Velocity half a step before the present instant, which a resumed run evaluates again.
             BlockColumn::VelocityX => &band.forces.velocity.x,
             BlockColumn::VelocityY => &band.forces.velocity.y,
             BlockColumn::FirstSlip => &band.first_slip,
