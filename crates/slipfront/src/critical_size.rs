@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use crate::communicator::Communicator;
 use crate::model::Model;
 
-/// Critical length `h` of a line of contacts, times `W` and over the elastic stiffness `mu*` of the line: `h
-/// = 1.158 mu*/W` (Uenishi and Rice, 2003).
+/// Critical length `h` of a line of contacts, times `W` and over the elastic stiffness `mu*` of the line:
+/// `h = 1.158 mu*/W` (Uenishi and Rice, 2003).
 const OF_A_LINE: f64 = 1.158;
 
 /// Stiffness `mu*` of a line along x in the middle of a sheet, in units of `E h`. The other blocks of the
@@ -33,9 +33,9 @@ impl Model {
     /// Where some blocks are not in contact, this size is the lower bound, with the mean strength of those in
     /// contact. The upper bound is the smaller of two. The first is the size of the strip if strength is
     /// spread over all blocks, `c W` with the share `c` in contact: the limit of fine patterns. The second is
-    /// the length of a single line along x with the largest share in contact of any row, `c_r`: `1.158
-    /// mu*/(c_r W)` with `mu* = 9/4`. At the edge of an upright sheet both bounds are the length of a line
-    /// there, with `mu* = 1`, and with the stiffness `k_e = 3/8` of the springs along the edge, which a
+    /// the length of a single line along x with the largest share in contact of any row, `c_r`:
+    /// `1.158 mu*/(c_r W)` with `mu* = 9/4`. At the edge of an upright sheet both bounds are the length of a
+    /// line there, with `mu* = 1`, and with the stiffness `k_e = 3/8` of the springs along the edge, which a
     /// continuum lacks; `k_e = 0` where these springs are halved:
     ///
     /// ```text

@@ -225,8 +225,8 @@ impl Lattice {
     /// Fewest blocks along a periodic axis.
     pub const MIN_PERIODIC: usize = 3;
 
-    /// Stiffness against a strain along an axis, uniform in the other direction, in units of `E h`: `k_1 +
-    /// k_2 = 9/8` for a sheet, `k_1` for a chain.
+    /// Stiffness against a strain along an axis, uniform in the other direction, in units of `E h`:
+    /// `k_1 + k_2 = 9/8` for a sheet, `k_1` for a chain.
     pub(crate) fn stiffness_along(&self) -> f64 {
         if self.nx == 1 || self.ny == 1 {
             K_STRAIGHT
@@ -304,8 +304,8 @@ fn neighbour_coordinate(coordinate: usize, offset: isize, count: usize, edges: E
     }
 }
 
-/// Stiffness of two springs in series, each half as long as a whole spring of the same modulus: `2 a b/(a +
-/// b)`; 0 if both are 0.
+/// Stiffness of two springs in series, each half as long as a whole spring of the same modulus:
+/// `2 a b/(a + b)`; 0 if both are 0.
 #[inline(always)]
 pub(crate) fn harmonic_mean(a: f64, b: f64) -> f64 {
     if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 }

@@ -55,8 +55,8 @@ impl CurvePoint {
 /// (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
 /// ```
 ///
-/// If the drive springs differ, with relative stiffness `w_i`, and for a rotation, with `g_i = z x
-/// r_i/r_max`:
+/// If the drive springs differ, with relative stiffness `w_i`, and for a rotation, with
+/// `g_i = z x r_i/r_max`:
 ///
 /// ```text
 /// (k_s/N) (X sum_i w_i - sum_i w_i u_i . d)

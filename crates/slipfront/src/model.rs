@@ -15,8 +15,8 @@ use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::{dot, length};
 
-/// Path of the drive to the onset of sliding where all blocks are in contact, in units of displacement: t_s*
-/// = 2.5/V* (Eq. 12).
+/// Path of the drive to the onset of sliding where all blocks are in contact, in units of displacement:
+/// t_s* = 2.5/V* (Eq. 12).
 pub const ONSET_PATH: f64 = 2.5;
 
 /// The slider with its surface and drive.

@@ -20,8 +20,9 @@ impl Model {
     /// is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks transmits
     /// to blocks in contact is known only for a drive on every block. Any other drive has no `load_factor`,
     /// and pulls all blocks together. A dead load tau shortens each path by tau/k_2, and adhesion lengthens
-    /// it by its part of the threshold over k_2. Contact springs take longer to load, by the factor (k_s +
-    /// k_t)/k_t. Under a program the results are the times at which the drive has moved by these paths.
+    /// it by its part of the threshold over k_2. Contact springs take longer to load, by the factor
+    /// (k_s + k_t)/k_t. Under a program the results are the times at which the drive has moved by these
+    /// paths.
     pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
         let together = ONSET_PATH * self.share_of_load();

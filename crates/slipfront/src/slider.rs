@@ -16,8 +16,8 @@ pub struct Slider {
     pub density: Option<Vec<f64>>,
     /// Mean mass of all existing blocks of the whole lattice, in units of `rho l^3`.
     pub mean_mass: f64,
-    /// Mean time in which a wave passes a block, over all existing blocks of the whole lattice, `sqrt(rho_i
-    /// E/(rho E_i))`, relative to a block of `E` and `rho`.
+    /// Mean time in which a wave passes a block, over all existing blocks of the whole lattice,
+    /// `sqrt(rho_i E/(rho E_i))`, relative to a block of `E` and `rho`.
     pub mean_slowness: f64,
     /// Drive springs of different stiffness.
     pub drive_springs: Option<DriveSprings>,
@@ -114,8 +114,8 @@ impl Outline {
 
 impl Slider {
     /// A slider with the given moduli, densities and outline of the blocks that this rank holds. All `ranks`
-    /// must call this together. The drive spring of each block is proportional to its modulus: `k_s,i = k_s
-    /// E_i/E`.
+    /// must call this together. The drive spring of each block is proportional to its modulus:
+    /// `k_s,i = k_s E_i/E`.
     pub fn new(
         stiffness: Option<Vec<f64>>,
         mut density: Option<Vec<f64>>,

@@ -16,8 +16,8 @@ use crate::slider::Slider;
 /// (dt^2 + 2 tau_v dt) springs + dt^2 held = 4
 /// ```
 ///
-/// The first term bounds the contribution of the neighbours for any motion, since `(x - y)^2 <= 2 x^2 + 2
-/// y^2`.
+/// The first term bounds the contribution of the neighbours for any motion, since
+/// `(x - y)^2 <= 2 x^2 + 2 y^2`.
 ///
 /// ```
 /// use slipfront::stability::stable_step;

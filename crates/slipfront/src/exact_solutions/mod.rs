@@ -1,8 +1,8 @@
 //! Problems with exact solutions, shared by tests and benches.
 //!
-//! Quantities are in the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in `P mu_s
-//! l^2`). The chapters of slipfront-family and the tests in `tests/physics` compare the kernels with these
-//! solutions.
+//! Quantities are in the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
+//! `P mu_s l^2`). The chapters of slipfront-family and the tests in `tests/physics` compare the kernels with
+//! these solutions.
 
 mod edge_drive;
 mod friction;
@@ -66,8 +66,8 @@ pub fn steady_level(mean_kinetic_star: f64, omega_star: f64, v_star: f64) -> f64
 /// e'' + Omega e' + k_s e = R* + Omega V,   e(0) = 1/k_s,  e'(0) = V,   Omega = sqrt(3/4) Omega*
 /// ```
 ///
-/// until `e' = V` again, when the block has come to rest. With `y = e - (R + Omega V)/k_s` the solution is `y
-/// = exp(-Omega t/2) (a cos w t + b sin w t)`, `w^2 = k_s - Omega^2/4`.
+/// until `e' = V` again, when the block has come to rest. With `y = e - (R + Omega V)/k_s` the solution is
+/// `y = exp(-Omega t/2) (a cos w t + b sin w t)`, `w^2 = k_s - Omega^2/4`.
 ///
 /// ```
 /// use slipfront::exact_solutions::SlipCycle;

@@ -108,8 +108,8 @@ pub fn lagged_decay_rate(omega_squared: f64, viscosity_time: f64, dt: f64) -> f6
 /// mu* = max(mu_1, f R* mu_1 + (1 - f) mu_2)
 /// ```
 ///
-/// at the slip of the first or of the second zone. A faster drive adds the drag of the first zone, at most `f
-/// Omega V*`.
+/// at the slip of the first or of the second zone. A faster drive adds the drag of the first zone, at most
+/// `f Omega V*`.
 ///
 /// ```
 /// use slipfront::exact_solutions::composite_peak;

@@ -50,8 +50,8 @@ pub fn torsion_of_decoupled_blocks(radii: &[f64], stuck: f64, r_star: f64) -> f6
 /// T/T_full = 3/4 rho^3 + R* (1 - rho^3)
 /// ```
 ///
-/// The stuck part bears `integral of (r/rho) r 2 pi r dr = pi rho^3/2`, the sliding part `2 pi/3 R* (1 -
-/// rho^3)`, and `2 pi/3` is the torque that all blocks could bear.
+/// The stuck part bears `integral of (r/rho) r 2 pi r dr = pi rho^3/2`, the sliding part
+/// `2 pi/3 R* (1 - rho^3)`, and `2 pi/3` is the torque that all blocks could bear.
 ///
 /// ```
 /// use slipfront::exact_solutions::torsion_of_decoupled_disc;

@@ -382,8 +382,8 @@ mod tests {
         assert!(meshed.clipped.is_empty());
     }
 
-    /// Radii for which block centres lie on the outline: 19, 21 and 35 are represented exactly, and 35^2 =
-    /// 28^2 + 21^2.
+    /// Radii for which block centres lie on the outline: 19, 21 and 35 are represented exactly, and
+    /// 35^2 = 28^2 + 21^2.
     #[test]
     fn the_mesh_of_a_circle_is_as_symmetric_as_the_circle() {
         for (n, lambda) in [

@@ -188,7 +188,7 @@ impl Sweep<'_> {
                 semi_axes: [a, b],
                 axis: [c, s],
             } => {
-                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic in x.
+                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic inequality in x.
                 let dy = y - self.center;
                 let (p, q, r) = (c / a, s / b, dy * s / a);
                 let t = dy * c / b;

@@ -137,9 +137,9 @@ impl Piecewise {
 }
 
 /// Compares one block with the exact solution, through hold, slide and hold. A break and a stop are detected
-/// up to a step late. The force is wrong by at most 1 - mu_k then, so that the error of the speed is (1 -
-/// mu_k) dt. The error of the position, which oscillates with the frequency sqrt(k + k_t), is this over the
-/// frequency, for each of the two events.
+/// up to a step late. The force is wrong by at most 1 - mu_k then, so that the error of the speed is
+/// (1 - mu_k) dt. The error of the position, which oscillates with the frequency sqrt(k + k_t), is this over
+/// the frequency, for each of the two events.
 #[test_matrix([0.05, 0.005])]
 fn one_block_slides_and_is_held_again(dt_star: f64) {
     let exact = Piecewise {

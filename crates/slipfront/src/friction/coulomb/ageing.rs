@@ -37,9 +37,8 @@ impl Ageing {
         self.beta * libm::log1p(age / self.time)
     }
 
-    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from the
-    /// threshold at age 0. Adhesion does not age: the law applies to the coefficient.
-    /// 0. Adhesion does not age: the law is one of the coefficient.
+    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from the threshold
+    /// at age 0. Adhesion does not age: the law applies to the coefficient.
     ///
     /// The operations have this order in every kernel: `x = age/tau`, `g = beta log1p(x)`,
     /// `m = max(S - tau_a l^2, 0)`, `S + g m`.

@@ -1,10 +1,10 @@
 //! Positions of the blocks of the lattice in the arrays of the fused kernel.
 //!
-//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1, e
-//! + stride and e + stride +- 1 in every row. Vectors of eight elements may contain the end of a row. Springs
-//! that do not exist at a free edge are masked. Along a periodic x axis every row has a ghost at either end,
-//! a copy of the block at its other end. Elements that are no blocks never move, because their threshold is
-//! infinite, and are excluded from all sums.
+//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1,
+//! e + stride and e + stride +- 1 in every row. Vectors of eight elements may contain the end of a row.
+//! Springs that do not exist at a free edge are masked. Along a periodic x axis every row has a ghost at
+//! either end, a copy of the block at its other end. Elements that are no blocks never move, because their
+//! threshold is infinite, and are excluded from all sums.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};

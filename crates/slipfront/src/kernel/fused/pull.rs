@@ -61,8 +61,8 @@ impl Above<'_> {
     }
 }
 
-/// Force from above on eight blocks at displacement `u`: from the springs to the sheet there, `g (u_k+1 -
-/// u_k)`, or from the drive springs (Eq. 2), with the dead load.
+/// Force from above on eight blocks at displacement `u`: from the springs to the sheet there,
+/// `g (u_k+1 - u_k)`, or from the drive springs (Eq. 2), with the dead load.
 #[inline(always)]
 pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
     simd: S,

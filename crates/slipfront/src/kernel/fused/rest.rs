@@ -1,8 +1,8 @@
 //! Time for which blocks at rest will stay at rest.
 //!
-//! While a block and its neighbours are stuck, only the force of its drive spring grows, linearly: `F(t) = F
-//! + k_s V t`, with the dead load in F. The block slips when `|F(t)|` exceeds its threshold `T = max(mu_s,
-//! mu_k) F_n` (D12):
+//! While a block and its neighbours are stuck, only the force of its drive spring grows, linearly:
+//! `F(t) = F + k_s V t`, with the dead load in F. The block slips when `|F(t)|` exceeds its threshold
+//! `T = max(mu_s, mu_k) F_n` (D12):
 //!
 //! ```text
 //! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2

@@ -219,8 +219,8 @@ struct FreeLoop<'a> {
 }
 
 /// Eqs. 5-7 without friction, `h m u'' = h F_c + g_above (u_above - u) - g (u - u_below) - h m Omega u'`, in
-/// the order of the general kernel. Returns the sums over the blocks, and the sum of the energies `g (u -
-/// u_below)^2` if energies are needed.
+/// the order of the general kernel. Returns the sums over the blocks, and the sum of the energies
+/// `g (u - u_below)^2` if energies are needed.
 #[inline(always)]
 fn accelerate<S: Simd, const ENERGY: bool, const HAS_ABOVE: bool>(
     simd: S,

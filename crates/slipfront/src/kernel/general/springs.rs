@@ -30,8 +30,9 @@ pub(super) fn lattice_forces(
     sum_all(rows, blocks, (&spring, model.springs), relative, force, springs);
 }
 
-/// Forces of dampers in parallel with all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j -
-/// v_i)) e_ij`, with the velocities half a step before. Arguments as for [`lattice_forces`].
+/// Forces of dampers in parallel with all springs (Kelvin-Voigt),
+/// `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, with the velocities half a step before. Arguments as
+/// for [`lattice_forces`].
 #[inline(always)]
 pub(super) fn damper_forces(
     model: &Model,
