@@ -47,7 +47,7 @@ fn sliding(n: usize, kernel: Kernel) -> Simulation {
     simulation
 }
 
-/// Lattices of `n` x `n` blocks whose steps are timed.
+/// Sizes of the lattices of `n` x `n` blocks that are stepped.
 const SIZES: [usize; 4] = [25, 50, 200, 512];
 
 /// Fields that are read.
@@ -62,7 +62,7 @@ const FIELDS: [Field; 5] = [
 /// Lattices and kernels from which fields are read.
 const READ: [(usize, Kernel); 3] = [(256, Kernel::Fused), (512, Kernel::Fused), (256, Kernel::General)];
 
-/// Lattices of `n` x `n` blocks whose coefficients are drawn.
+/// Sizes of the lattices of `n` x `n` blocks for which coefficients are drawn.
 const DRAWN: [usize; 3] = [25, 50, 200];
 
 /// Duration of a measurement.

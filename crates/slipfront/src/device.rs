@@ -148,7 +148,7 @@ pub struct DeviceLattice {
 /// Flags of a block. The springs of a block are numbered east, north, north-east, north-west, west, south,
 /// south-west, south-east; a flag is set for each that exists.
 pub mod flag {
-    /// Number of springs, whose flags are the lowest bits.
+    /// Number of springs; their flags are the lowest bits.
     pub const SPRINGS: u32 = 8;
     /// The block exists.
     pub const EXISTS: u16 = 1 << 8;

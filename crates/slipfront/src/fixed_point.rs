@@ -252,7 +252,7 @@ pub(crate) fn split(sum: i128) -> [i64; 2] {
     [low as i64, (sum >> LOW_BITS) as i64]
 }
 
-/// Sum whose words, or sums of words, are `low` and `high`: see [`split`].
+/// Sum with the words, or sums of words, `low` and `high`: see [`split`].
 pub(crate) fn join([low, high]: [i64; 2]) -> i128 {
     (i128::from(high) << LOW_BITS) + i128::from(low)
 }

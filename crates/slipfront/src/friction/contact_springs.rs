@@ -20,11 +20,11 @@ use crate::vector_field::{VectorField, dot};
 pub struct ContactSprings {
     /// Stiffness `k_t` per block, in units of `E h`.
     pub stiffness: f64,
-    /// Friction of a block whose spring has broken.
+    /// Friction of a block after its spring has broken.
     pub after_break: AfterBreak,
 }
 
-/// Friction of a block whose spring to the substrate has broken.
+/// Friction of a block after its spring to the substrate has broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterBreak {
     /// The spring forms again at once, without stress: the anchor becomes `u`.

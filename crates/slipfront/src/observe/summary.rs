@@ -250,7 +250,7 @@ const MAX_VALUES: usize = 512;
 /// Number of terms of the autoregressive model over the square root of the number of values.
 const TERMS: f64 = 1.5;
 
-/// Standard error of the mean of a correlated series of n values, from an autoregressive model of the series,
+/// Standard error of the mean of a correlated series of n values, from an autoregressive model of the series:
 ///
 /// ```text
 /// x_t = sum_i a_i x_t-i + noise,    i = 1 .. (3/2) sqrt(n)

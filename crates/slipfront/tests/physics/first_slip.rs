@@ -73,7 +73,7 @@ fn the_scale_of_coefficients_is_their_static_mean() {
     );
 }
 
-/// D12: a block whose kinetic coefficient exceeds the static one sticks up to the kinetic threshold.
+/// D12: a block with a kinetic coefficient above the static one sticks up to the kinetic threshold.
 #[test]
 fn a_block_holds_up_to_the_larger_of_its_coefficients() {
     let lattice = Lattice::free(1, 1);

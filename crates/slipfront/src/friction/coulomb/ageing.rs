@@ -37,8 +37,8 @@ impl Ageing {
         self.beta * libm::log1p(age / self.time)
     }
 
-    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from the threshold
-    /// at age 0. Adhesion does not age: the law applies to the coefficient.
+    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from the
+    /// threshold at age 0. Adhesion does not age: the law applies to the coefficient.
     ///
     /// The operations have this order in every kernel: `x = age/tau`, `g = beta log1p(x)`,
     /// `m = max(S - tau_a l^2, 0)`, `S + g m`.
@@ -66,7 +66,7 @@ pub(super) struct Aged {
     law: Ageing,
     adhesion: f64,
     pub(super) static_limit: Vec<f64>,
-    /// Blocks whose thresholds are raised by their ages.
+    /// Blocks with thresholds that are raised by their ages.
     is_old: Vec<bool>,
     /// Time t* at which a stuck block has stopped: the memory of the law.
     pub(super) stopped_at: Vec<f64>,

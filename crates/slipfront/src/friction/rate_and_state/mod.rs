@@ -16,7 +16,7 @@ use crate::vector_field::{VectorField, length};
 
 /// Rate-and-state friction with Dieterich's law for the state:
 /// `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients over `mu_s`.
-/// The logarithm of the speed is regularised at V = 0,
+/// The logarithm of the speed is regularised at V = 0:
 ///
 /// ```text
 /// mu = a asinh(V/(2 V_0) exp((mu_0 + b ln(V_0 theta/D_c))/a))

@@ -10,7 +10,7 @@ use crate::lattice::Lattice;
 
 /// Least number of blocks of a nucleation site.
 const SITE_MIN_BLOCKS: usize = 9;
-/// All blocks in contact over the least number of blocks of a nucleation site.
+/// Number of blocks in contact per block of the smallest nucleation site.
 const SITE_MIN_SHARE: usize = 100;
 
 /// Least share of the windows through which a front must pass for it to have a speed. For random times,
@@ -20,8 +20,8 @@ const LEAST_SHARE: f64 = 0.5;
 /// How slip has spread over a slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
-    /// The blocks at which slip nucleated, the earliest first; blocks that slip at the same time in the order
-    /// of their indices.
+    /// The first block of every nucleation site, the earliest first; of blocks that slip at the same time,
+    /// the one with the lowest index counts as the first.
     pub nucleations: Vec<usize>,
     /// Speed of the front, in blocks per unit of time; none if a front passes through less than half of the
     /// windows, as when all blocks slip at once or each by itself.
