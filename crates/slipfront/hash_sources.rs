@@ -1,9 +1,9 @@
-//! Hashes the sources of the crate that is being built, for the identity of the build: two programs made of
-//! the same sources give the same bits.
+//! Hashes the sources of the crate that is being built, for the identity of the build: two programs built
+//! from the same sources give the same bits.
 //!
-//! This file stands in slipfront, and every crate that makes recorded numbers links to it.
-//! `locked-versions.toml` of slipfront-run is a link to the lock file of the workspace. Packages hold such
-//! links as files, so that a package gives the hash of the checkout that it was made of.
+//! This file is in slipfront, and every crate that computes recorded numbers links to it.
+//! `locked-versions.toml` of slipfront-run is a link to the lock file of the workspace. Packages contain such
+//! links as files, so that a package gives the same hash as the checkout from which it was made.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub(crate) fn hash_sources() -> io::Result<()> {
     for path in files {
         let bytes = std::fs::read(&path)?;
         let name = path.to_string_lossy().replace('\\', "/");
-        // The length tells where a file ends and the next name begins.
+        // The length marks where a file ends and the next name begins.
         hasher.update(format!("{name}\n{}\n", bytes.len()).as_bytes());
         hasher.update(&bytes);
     }

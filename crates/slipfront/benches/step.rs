@@ -1,5 +1,5 @@
-//! Cost of a step of either kernel, in block-steps per second, and of reading a field of all blocks, on the
-//! baseline of Fig. 3 once it slides; cost of drawing its coefficients, beside that of all steps of a run.
+//! Time of a step of either kernel, in block-steps per second, and of reading a field of all blocks, on the
+//! baseline of Fig. 3 once it slides. Time of drawing the coefficients, compared with all steps of a run.
 
 use std::time::{Duration, Instant};
 
@@ -47,7 +47,7 @@ fn sliding(n: usize, kernel: Kernel) -> Simulation {
     simulation
 }
 
-/// Lattices of `n` x `n` blocks whose steps are timed.
+/// Sizes of the lattices of `n` x `n` blocks that are stepped.
 const SIZES: [usize; 4] = [25, 50, 200, 512];
 
 /// Fields that are read.
@@ -62,14 +62,14 @@ const FIELDS: [Field; 5] = [
 /// Lattices and kernels from which fields are read.
 const READ: [(usize, Kernel); 3] = [(256, Kernel::Fused), (512, Kernel::Fused), (256, Kernel::General)];
 
-/// Lattices of `n` x `n` blocks whose coefficients are drawn.
+/// Sizes of the lattices of `n` x `n` blocks for which coefficients are drawn.
 const DRAWN: [usize; 3] = [25, 50, 200];
 
 /// Duration of a measurement.
 const MEASURED: Duration = Duration::from_millis(500);
 
-/// Prints the least and the median time of what is done again and again, and how many of `items` the median
-/// is in a second.
+/// Runs `work` repeatedly, and prints its least and its median time and the number of `items` per second at
+/// the median.
 fn measure(name: &str, items: usize, mut work: impl FnMut()) {
     let began = Instant::now();
     let mut times = Vec::new();
@@ -122,8 +122,8 @@ fn main() {
     }
 }
 
-/// Measures coefficients that are alike over `length` blocks, each time of another seed, as the runs of a
-/// study have them.
+/// Measures drawing coefficients with correlation length `length`, each time from another seed, as in the
+/// runs of a study.
 fn draw(n: usize, length: f64) {
     let lattice = Lattice::free(n, n);
     let mut seed = 0;

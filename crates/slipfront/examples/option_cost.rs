@@ -4,11 +4,11 @@
 //! $ cargo run --release -p slipfront --example option_cost -- 1 50 200 1024
 //! ```
 //!
-//! The first number is that of the threads, the others are sizes: square sliders with the coefficients of
+//! The first number is the number of threads. The others are sizes: square sliders with the coefficients of
 //! Fig. 3. They begin in steady sliding, and after a hundred steps some blocks stick and others slip. Every
-//! block is computed at every step. The options are measured by turns, and the best of each counts:
-//! nanoseconds per step and block of the lattice, and how many times as long it takes as the plain model on
-//! the fused kernel. What that kernel does not compute stands below the plain model on the general kernel.
+//! block is computed at every step. The options are measured in turn, and the best time of each counts:
+//! nanoseconds per step and block of the lattice, and the ratio to the plain model on the fused kernel.
+//! Options that this kernel does not compute are listed below the plain model on the general kernel.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -28,9 +28,9 @@ use slipfront::{
 const V_STAR: f64 = 0.03;
 const DT_STAR: f64 = 0.1;
 
-/// Time for which each option runs at a time: so short that most other programs do not interrupt it.
+/// Time for which each option runs in a turn: so short that other programs interrupt few turns.
 const SLICE: Duration = Duration::from_millis(2);
-/// How often every option has its turn.
+/// Number of turns of every option.
 const TURNS: usize = 150;
 /// Steps after which a simulation that begins in steady sliding is measured.
 const WARM_UP: usize = 100;
@@ -59,7 +59,7 @@ pub(crate) enum Choice {
     Literal,
     RateAndState,
     ContactSprings,
-    /// A sheet above the lattice, as a deep body has.
+    /// A sheet above the lattice, as in a deep body.
     Stack,
 }
 
@@ -219,8 +219,8 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     Ok(model)
 }
 
-/// State in which every block slides at about the speed of the drive, behind it by the stretch that keeps it
-/// sliding.
+/// State in which every block slides at about the speed of the drive. Blocks lag behind the drive by the
+/// stretch of the drive springs that keeps them sliding.
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,
@@ -281,7 +281,7 @@ fn print_costs(size: usize, threads: usize) -> Result<(), Box<dyn Error + Send +
     let mut best = vec![f64::INFINITY; simulations.len()];
     for _ in 0..TURNS {
         for (best, simulation) in best.iter_mut().zip(&mut simulations) {
-            // The arrays of the others are in the cache.
+            // Brings its arrays into the cache, which holds those of the other simulations.
             simulation.step();
             let (began, mut steps) = (Instant::now(), 0);
             while began.elapsed() < SLICE {

@@ -1,9 +1,9 @@
 //! State that a run needs to continue later with the same bits.
 //!
-//! A checkpoint is small. Beside it stand the columns: numbers of every block in the order of the lattice, so
-//! that they do not depend on how the kernel lays out its arrays, on the number of threads or ranks, or on
-//! the SIMD width. They are handed over part by part, and nothing of the size of the lattice is copied.
-//! Everything else that a kernel keeps is found again by its next sweep.
+//! A checkpoint is small. The columns are stored next to it: numbers of every block in the order of the
+//! lattice, so that they do not depend on how the kernel lays out its arrays, on the number of threads or
+//! ranks, or on the SIMD width. They are passed part by part, so that no array of the size of the lattice is
+//! copied. The next sweep computes everything else that a kernel keeps.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ pub struct Checkpoint {
     pub step: u64,
     /// Number of steps in which the drive moved.
     pub drive_steps: u64,
-    /// Number of steps just before this one through which the drive has stood.
+    /// Number of consecutive steps up to this one in which the drive stood still.
     pub(crate) standing: u64,
     pub(crate) rest: Rest,
     pub(crate) totals: Totals,
@@ -45,7 +45,7 @@ impl Checkpoint {
         }
     }
 
-    /// Whether the counts of steps can be those of a run of this model.
+    /// Whether a run of this model can have these counts of steps.
     pub fn is_consistent_with(&self, model: &Model) -> bool {
         let stood = self.step.checked_sub(self.drive_steps);
         let is_held = model.drive.is_held();
@@ -60,16 +60,16 @@ impl Model {
         BlockColumn::ALL.len() + self.n_memory_columns()
     }
 
-    /// Number of columns beside [`BlockColumn::ALL`]: those of the law of friction, then for every sheet
-    /// above the lowest one displacement and velocity along x and y, at the instants of the columns of that
+    /// Number of columns in addition to [`BlockColumn::ALL`]: those of the law of friction, then displacement
+    /// and velocity along x and y of every sheet above the lowest one, at the same instants as for the lowest
     /// one.
     pub(crate) fn n_memory_columns(&self) -> usize {
         self.friction.n_columns() + 4 * self.sheets.len()
     }
 }
 
-/// A number that is kept of every block, whatever the law of friction. After these columns a law of friction
-/// that remembers more has [columns](crate::Friction::n_columns) of its own.
+/// A number that is kept for every block, whatever the law of friction. A law of friction with more memory
+/// adds [columns](crate::Friction::n_columns) of its own after these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockColumn {
     /// u_x at t_n.
@@ -86,7 +86,7 @@ pub enum BlockColumn {
 }
 
 impl BlockColumn {
-    /// All columns, in the order in which they are handed over.
+    /// All columns, in the order in which they are passed.
     pub const ALL: [Self; 5] = [
         Self::DisplacementX,
         Self::DisplacementY,
@@ -98,8 +98,8 @@ impl BlockColumn {
     /// Number of blocks in a part of a column.
     const PART: usize = 1 << 16;
 
-    /// Takes all columns of `n_blocks` blocks part by part through `work`, which is given the column, the
-    /// first block, and room for the values. The first error ends it.
+    /// Passes all columns of `n_blocks` blocks part by part to `work`: the column, the first block, and room
+    /// for the values. Stops at the first error.
     pub(crate) fn for_each_part<E>(
         n_blocks: usize,
         mut work: impl FnMut(Self, usize, &mut [f64]) -> Result<(), E>,
@@ -109,7 +109,7 @@ impl BlockColumn {
         })
     }
 
-    /// Takes one column of `n_blocks` blocks part by part through `work`, as [`for_each_part`] does for all
+    /// Passes one column of `n_blocks` blocks part by part to `work`, as [`for_each_part`] does for all
     /// columns.
     pub(crate) fn for_each_part_of_one<E>(
         n_blocks: usize,
@@ -124,9 +124,9 @@ impl BlockColumn {
 }
 
 /// Upper bounds on displacements, on the differences of displacement between the ends of springs, and on
-/// speeds: the values of the latest measurement, and the most by which they may have grown since. The fused
-/// kernel chooses by them how it computes spring forces, and the quanta of its sums. They are part of a
-/// checkpoint, so that a resumed run chooses the same at every step.
+/// speeds: the values of the latest measurement, and the most by which they may have grown since. From them
+/// the fused kernel chooses how to compute spring forces, and the quanta of its sums. They are part of a
+/// checkpoint, so that a resumed run makes the same choices at every step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MotionBounds {
     /// Largest u_x, -u_x, u_y, -u_y at the latest measurement.
@@ -139,8 +139,8 @@ pub(crate) struct MotionBounds {
     pub(crate) speed: f64,
     /// Ranges of the displacements along x and y, for their sums.
     pub(crate) windows: [Window; 2],
-    /// Differences of displacement between the ends of a spring, x and y together, for the sum of their
-    /// energies.
+    /// Range of the differences of displacement between the ends of a spring, for both axes, used by the sum
+    /// of spring energies.
     pub(crate) spring_range: FixedPoint,
 }
 
@@ -159,10 +159,10 @@ impl Default for MotionBounds {
 }
 
 impl MotionBounds {
-    /// Number of numbers in which bounds are handed over.
+    /// Number of values in [`to_numbers`](Self::to_numbers).
     pub(crate) const LEN: usize = 13;
 
-    /// The bounds as numbers, in the order of the fields: of a window its centre and the limit of its
+    /// The bounds as numbers, in the order of the fields; a window gives its centre and the limit of its
     /// differences.
     pub(crate) fn to_numbers(self) -> [f64; Self::LEN] {
         let [right, left, up, down] = self.extent;
@@ -187,7 +187,7 @@ impl MotionBounds {
         ]
     }
 
-    /// The bounds that [`to_numbers`](Self::to_numbers) gave.
+    /// Bounds from the numbers that [`to_numbers`](Self::to_numbers) returned.
     pub(crate) fn of_numbers(numbers: [f64; Self::LEN]) -> Self {
         let [
             right,
@@ -242,7 +242,7 @@ impl MotionBounds {
             }
         }
         let difference = self.spring_difference(0) + self.spring_difference(1);
-        // Not so of numbers that are none, either.
+        // False for NaN, too.
         let is_within = difference <= self.spring_range.limit();
         if moved || !is_within {
             self.spring_range = FixedPoint::new(difference.max(MIN_SPRING_RANGE));

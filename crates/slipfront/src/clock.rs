@@ -1,33 +1,32 @@
-//! The two times of a run: the time of the blocks, and the time of the drive, which stands while a held drive
-//! does.
+//! The two times of a run: the time of the blocks, and the time of the drive, which stops while a held drive
+//! waits.
 
 use serde::{Deserialize, Serialize};
 
-/// How a held drive knows that slip has come to rest.
+/// Criterion by which a held drive decides that slip has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Rest {
     /// No block in contact slides.
     #[default]
     Exact,
-    /// The force that keeps the blocks moving is next to nothing, in a run in which exact rest did not come
-    /// once.
+    /// The force that keeps the blocks moving is negligible. Used in runs in which exact rest never came.
     ByForce {
-        /// Whether this force is next to nothing at t_n.
+        /// Whether this force is negligible at t_n.
         at_rest: bool,
     },
 }
 
-/// An instant t_n, as counts of steps: times are products of these and of the time step, so that no rounding
-/// errors add up.
+/// An instant t_n, as counts of steps. Times are products of these counts and the time step, so that rounding
+/// errors do not add up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
     /// Number of the step, n.
     pub(crate) step: u64,
     /// Steps up to t_n in which the drive moved: n at constant loading.
     pub(crate) drive_steps: u64,
-    /// Steps just before t_n through which the drive has stood.
+    /// Consecutive steps up to t_n in which the drive stood still.
     pub(crate) standing: u64,
-    /// Rest under a held drive.
+    /// Criterion of rest under a held drive.
     pub(crate) rest: Rest,
     pub(crate) dt_star: f64,
 }
@@ -44,7 +43,7 @@ impl Clock {
         }
     }
 
-    /// The next instant, up to which the drive moves or stands.
+    /// The next instant; the drive moves up to it or stands still.
     pub(crate) fn next(self, drive_moves: bool) -> Self {
         Self {
             step: self.step + 1,
@@ -54,7 +53,7 @@ impl Clock {
         }
     }
 
-    /// Steps in which the drive had moved by the instant before, or by t = 0.
+    /// Steps in which the drive had moved by the instant before, or by t = 0 if this is the start.
     pub(crate) fn drive_steps_before(&self) -> u64 {
         self.drive_steps.saturating_sub(u64::from(self.drive_moved()))
     }

@@ -1,12 +1,12 @@
-//! How the processes that share one lattice talk to each other. The physics knows nothing else of other
+//! Communication between the processes that share one lattice. The physics knows nothing else about other
 //! processes.
 //!
-//! Each process, a *rank*, holds consecutive rows of the lattice: rank 0 the lowest. Everything that ranks
-//! agree on is a maximum or a sum of integers, so that it does not depend on how many they are.
+//! Each process, a *rank*, holds consecutive rows of the lattice, rank 0 the lowest. Everything that ranks
+//! agree on is a maximum or a sum of integers, so that it does not depend on the number of ranks.
 
 use std::fmt::Debug;
 
-/// The connection of a rank with the others.
+/// The connection of a rank to the other ranks.
 pub trait Communicator: Debug + Send + Sync {
     /// Number of this rank, from 0.
     fn rank(&self) -> usize;
@@ -20,7 +20,7 @@ pub trait Communicator: Debug + Send + Sync {
     /// empty.
     fn exchange(&self, to: [&[f64]; 2], from: [&mut [f64]; 2], meanwhile: &mut dyn FnMut());
 
-    /// Replaces every value by the largest that any rank has in its place.
+    /// Replaces every value by the maximum over all ranks of the values at its index.
     fn largest(&self, values: &mut [f64]);
 
     /// Replaces every value by its sum over all ranks, modulo 2^64.

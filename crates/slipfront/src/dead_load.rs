@@ -1,4 +1,4 @@
-//! The dead load: constant forces on the blocks, whatever these do.
+//! The dead load: constant forces on the blocks, whatever their motion.
 
 use std::ops::Range;
 
@@ -6,8 +6,8 @@ use crate::communicator::Communicator;
 use crate::fixed_point::sum_over;
 use crate::slider::Slider;
 
-/// Constant forces on the blocks beside those of the drive springs, from t = 0 on: a shear stress that loads
-/// the contact without a spring. Forces of a stack act on the blocks of its highest sheet.
+/// Constant forces on the blocks from t = 0 on, in addition to the drive springs: a shear stress that loads
+/// the contact without a spring. In a stack they act on the blocks of the highest sheet.
 ///
 /// ```
 /// use slipfront::DeadLoad;
@@ -25,20 +25,20 @@ pub struct DeadLoad {
 /// Forces of a [`DeadLoad`] that differ from block to block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadField {
-    /// Force on each block that this rank holds over [`DeadLoad::force`]; 0 where no block exists.
+    /// Ratio of the force on each block that this rank holds to [`DeadLoad::force`]; 0 where no block exists.
     pub relative: Vec<f64>,
     /// Sum of the relative forces over the whole lattice.
     pub sum: f64,
 }
 
 impl DeadLoad {
-    /// An equal force along x and y on every block, in units of `P mu_s l^2`.
+    /// Dead load with the same force along x and y on every block, in units of `P mu_s l^2`.
     pub fn uniform(force: [f64; 2]) -> Self {
         Self { force, field: None }
     }
 
-    /// A force along x and y, in units of `P mu_s l^2`, times a `relative` one for each block of a slider
-    /// that this rank holds. All `ranks` call this at once.
+    /// A force along x and y, in units of `P mu_s l^2`, times a `relative` force for each block of a slider
+    /// that this rank holds. All `ranks` must call this together.
     pub fn of_blocks(
         force: [f64; 2],
         mut relative: Vec<f64>,
@@ -57,12 +57,12 @@ impl DeadLoad {
         }
     }
 
-    /// Whether there is a force.
+    /// Whether any force acts.
     pub fn acts(&self) -> bool {
         self.force != [0.0, 0.0]
     }
 
-    /// Force on block `b`, which exists, over [`force`](Self::force).
+    /// Ratio of the force on block `b`, which must exist, to [`force`](Self::force).
     pub fn relative(&self, b: usize) -> f64 {
         self.field.as_ref().map_or(1.0, |field| field.relative[b])
     }

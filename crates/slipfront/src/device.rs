@@ -1,9 +1,9 @@
-//! Plain lattices whose steps a device beside this processor computes, such as a GPU, with the bits of the
-//! fused kernel.
+//! Plain lattices with steps that are computed on a device other than this processor, such as a GPU. The
+//! results have the same bits as those of the fused kernel.
 //!
-//! A [`Device`] takes many lattices at once through some steps and records the totals of each step. A
-//! [`Simulation`](crate::Simulation) that [replays](crate::Simulation::replay) them measures peaks, instants
-//! and means by the code that measures every run.
+//! A [`Device`] computes some steps of many lattices at once and records the totals of each step. A
+//! [`Simulation`](crate::Simulation) that [replays](crate::Simulation::replay) the records finds peaks,
+//! instants and means by the code that is used for every run.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -21,13 +21,13 @@ pub const NEVER: u32 = u32::MAX;
 
 /// Computes the steps of lattices.
 pub trait Device: fmt::Debug + Send + Sync {
-    /// Most blocks of a lattice that the device takes.
+    /// Largest number of blocks of a lattice that the device accepts.
     fn most_blocks(&self) -> usize;
 
-    /// Takes each of the lattices through `steps` steps, whose records it adds to those of the lattice.
+    /// Computes `steps` steps of each lattice, and adds the records of these steps to the lattice.
     ///
     /// # Errors
-    /// When the device fails. The lattices can then not go on.
+    /// When the device fails. The lattices cannot continue then.
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError>;
 }
 
@@ -36,7 +36,7 @@ pub trait Device: fmt::Debug + Send + Sync {
 #[error("{0}")]
 pub struct DeviceError(pub String);
 
-/// Why a model is computed on the CPU alone.
+/// Reason why a model can be computed only on the CPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{0} computed on the CPU alone")]
 pub struct CpuOnly(pub(crate) &'static str);
@@ -64,19 +64,20 @@ pub struct Equations {
     /// Coefficients of the series for the forces of straight and of diagonal springs. The short series has
     /// the first four of them.
     pub series: [[f64; 8]; 2],
-    /// Largest strains for the short and for the long series; springs that stretch more take a square root.
+    /// Largest strains for the short and for the long series; the forces of springs with larger strains are
+    /// computed with a square root.
     pub strain_limits: [f64; 2],
     /// Number of blocks.
     pub n_blocks: f64,
 }
 
-/// Numbers of a lattice that change from step to step, beside those of its blocks.
+/// Values of a lattice that change from step to step, in addition to those of its blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Motion {
-    /// Largest u_x, -u_x, u_y, -u_y when displacements were last measured, largest differences of u_x and
-    /// u_y between the ends of a spring, distance by which displacements may have moved apart since, highest
-    /// speed, centre and limit of the windows for u_x and for u_y, limit of the stretch of springs.
+    /// Largest u_x, -u_x, u_y, -u_y at the latest measurement of displacements, largest differences of u_x
+    /// and u_y between the ends of a spring, distance by which displacements may have moved apart since,
+    /// highest speed, centre and limit of the windows for u_x and for u_y, limit of the stretch of springs.
     pub bounds: [f64; MotionBounds::LEN],
     /// Sum of the velocities half a step after the latest step.
     pub velocity_after: [f64; 2],
@@ -98,30 +99,30 @@ pub struct StepRecord {
     pub friction_power: f64,
     /// Largest square of a contact stress up to this step.
     pub stress_square_max: f64,
-    /// Blocks that slide, and those of them that are in contact.
+    /// Numbers of blocks that slide, and of sliding blocks in contact.
     pub n_sliding: [u32; 2],
-    /// Kinetic energy, energy of the springs between blocks and of the drive springs, at the steps for which
-    /// they are [wanted](EnergySteps).
+    /// Kinetic energy, energy of the springs between blocks, and energy of the drive springs, at the steps at
+    /// which they are [needed](EnergySteps).
     pub stored: [f64; 3],
 }
 
-/// Steps at which energies are found.
+/// Steps at which energies are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EnergySteps {
-    /// Steps whose numbers are multiples of this.
+    /// Energies are computed at all multiples of this number of a step.
     pub every: u64,
-    /// Number of one more step.
+    /// Number of one more step at which they are computed.
     pub last: u64,
 }
 
-/// A lattice on its way through the steps, as a device takes it.
+/// State of a lattice between steps, in the form that a device takes.
 #[derive(Clone, Debug)]
 pub struct DeviceLattice {
     /// Blocks along x and y.
     pub blocks: [usize; 2],
     /// Numbers that all blocks and steps share.
     pub equations: Equations,
-    /// Steps at which energies are found.
+    /// Steps at which energies are computed.
     pub energies: EnergySteps,
     /// Squares of the static thresholds `mu_s F_n` of the blocks, row by row.
     pub static_limit_squares: Vec<f64>,
@@ -137,7 +138,7 @@ pub struct DeviceLattice {
     pub state: State,
     /// Step at which each block first slipped in contact, or [`NEVER`].
     pub first_slips: Vec<u32>,
-    /// Records of the latest steps, without those that have been replayed.
+    /// Records of the latest steps that have not been replayed yet.
     pub records: VecDeque<StepRecord>,
     /// Sum of velocities half a step before t = 0.
     pub(crate) velocity_at_start: [f64; 2],
@@ -147,7 +148,7 @@ pub struct DeviceLattice {
 /// Flags of a block. The springs of a block are numbered east, north, north-east, north-west, west, south,
 /// south-west, south-east; a flag is set for each that exists.
 pub mod flag {
-    /// Number of springs, whose flags are the lowest bits.
+    /// Number of springs; their flags are the lowest bits.
     pub const SPRINGS: u32 = 8;
     /// The block exists.
     pub const EXISTS: u16 = 1 << 8;
@@ -170,14 +171,14 @@ impl DeviceLattice {
             .map(|step| self.model.drive.position(step as f64 * self.equations.dt_star))
     }
 
-    /// Whether energies are found at a step.
+    /// Whether energies are computed at a step.
     pub fn needs_energies(&self, step: u64) -> bool {
         step.is_multiple_of(self.energies.every) || step == self.energies.last
     }
 }
 
 impl StepRecord {
-    /// The totals of the step, after one with this sum of velocities.
+    /// Totals of the step, with the sum of velocities `velocity_before` of the step before.
     pub(crate) fn totals(&self, velocity_before: [f64; 2], energies: bool) -> Totals {
         let [before, after] = [velocity_before, self.velocity_after];
         let [kinetic, lattice, drive_springs] = self.stored;

@@ -1,4 +1,4 @@
-//! How the slider is pulled: the far ends of the drive springs, which move together.
+//! Drive of the slider: the far ends of the drive springs, which move together.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,20 +9,20 @@ use crate::lattice::{K_DIAGONAL, K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::vector_field::{length, unit_vector};
 
-/// How the slider is pulled.
+/// Drive of the slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Dimensionless speed `V*` (Eq. 11a); the largest of a program; for a rotation the speed at the largest
-    /// radius.
+    /// Dimensionless speed `V*` (Eq. 11a): the largest speed of a program, and for a rotation the speed at
+    /// the largest radius.
     pub v_star: f64,
     /// Unit vector of the sliding direction.
     pub direction: [f64; 2],
     /// Stiffness `k_s` of the spring on every block, in units of `E h`; see
     /// [`Slider::drive_springs`](crate::Slider::drive_springs).
     pub k_drive: f64,
-    /// Speeds that follow one another; the drive moves at `v_star` all the time if there are none.
+    /// Program of speeds; without one the drive moves at `v_star` all the time.
     pub program: Option<Arc<Program>>,
-    /// A rotation in place of the translation along `direction`.
+    /// A rotation instead of the translation along `direction`.
     pub rotation: Option<Rotation>,
     /// Whether the drive waits for slip to end.
     pub loading: Loading,
@@ -34,16 +34,16 @@ pub enum Loading {
     /// The far ends move in every step, at the speed of the drive.
     #[default]
     Constant,
-    /// The far ends move only in steps before which no block in contact slid: slow loading, however large the
-    /// speed. The drive's own time, which path, program and windows count in, is then `dt*` times the number
-    /// of steps in which it moved.
+    /// The far ends move only in steps before which no block in contact slid. This is slow loading, at any
+    /// speed of the drive. The time of the drive, which path, program and windows use, is then `dt*` times
+    /// the number of steps in which it moved.
     Held {
-        /// Steps of the drive up to which the largest mu* counts as static friction.
+        /// Number of steps of the drive up to which the largest mu* counts as static friction.
         onset_steps: u64,
     },
 }
 
-/// The speed of the drive, constant over each of several segments. The far ends move without a jump.
+/// Speed of the drive, constant over each of several segments. The far ends move without a jump.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     segments: Vec<Segment>,
@@ -74,9 +74,9 @@ pub struct Rotation {
 }
 
 impl Drive {
-    /// Lengths in blocks over which the mount, a drive spring on every block, screens a local change of
-    /// stress: blocks farther away are pulled as before. First the length along the drive, then across it.
-    /// The stiffness of the lattice against a strain along the drive is 9/8, 3/4 for a chain:
+    /// Screening lengths in blocks, along the drive and across it: the mount, a drive spring on every block,
+    /// screens a local change of stress, so that blocks farther away are pulled as before. The stiffness of
+    /// the lattice against a strain along the drive is 9/8, 3/4 for a chain:
     ///
     /// ```text
     /// lambda = sqrt(K_el/k_s),   K_el = 9/8 along and 3/8 across
@@ -93,8 +93,8 @@ impl Drive {
 }
 
 impl Rotation {
-    /// A rotation about the centroid of all blocks of the whole lattice that exist, of which this rank holds
-    /// some `rows`. All `ranks` must call this together.
+    /// A rotation about the centroid of all blocks that exist in the whole lattice. This rank holds some
+    /// `rows` of it. All `ranks` must call this together.
     pub fn about_centroid(
         lattice: &Lattice,
         rows: &Range<usize>,
@@ -102,10 +102,9 @@ impl Rotation {
         ranks: &dyn Communicator,
     ) -> Self {
         let held = lattice.blocks_of(rows);
-        // Number of each in the whole lattice, and on this rank.
+        // Number of each block in the whole lattice, and on this rank.
         let blocks: Vec<(usize, usize)> = held.zip(0..).filter(|&(_, b)| slider.exists(b)).collect();
-        // Twice the coordinates of the centres of blocks are odd whole numbers, which no order of summation
-        // rounds.
+        // Twice the coordinates of block centres are odd integers, so that sums are exact in any order.
         let mut sums = blocks.iter().fold([0, 0, 0], |[x, y, n], &(block, _)| {
             let (i, j) = lattice.column_row(block);
             [x + 2 * i as i64 + 1, y + 2 * j as i64 + 1, n + 1]
@@ -164,7 +163,7 @@ impl Program {
         }
     }
 
-    /// The segments one after the other.
+    /// All segments in order of time.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
@@ -204,13 +203,13 @@ impl Drive {
         self.loading != Loading::Constant
     }
 
-    /// Speed of steady sliding: V*; 0 for a held drive, which stands while blocks slide.
+    /// Speed of steady sliding: V*; 0 for a held drive, which stands still while blocks slide.
     pub(crate) fn steady_speed(&self) -> f64 {
         if self.is_held() { 0.0 } else { self.v_star }
     }
 
-    /// Path of the driven ends at `time_star` of the drive, along the direction; for a rotation at its
-    /// largest radius.
+    /// Path of the driven ends along the direction at time `time_star` of the drive; for a rotation the path
+    /// at the largest radius.
     #[inline]
     pub fn path(&self, time_star: f64) -> f64 {
         match &self.program {
@@ -251,7 +250,7 @@ impl Drive {
     }
 
     /// Displacement of the driven end over block `b` of the whole lattice per path of the drive, `g`: the
-    /// direction, or `z x r/r_max` of a rotation. Power and work of the drive belong to `sum F_s . g`.
+    /// direction, or `z x r/r_max` for a rotation. Power and work of the drive follow from `sum F_s . g`.
     pub fn direction_at(&self, lattice: &Lattice, b: usize) -> [f64; 2] {
         match &self.rotation {
             None => self.direction,
@@ -276,7 +275,7 @@ impl Drive {
         reached.unwrap_or(f64::INFINITY)
     }
 
-    /// The farthest that the driven ends have moved by `time_star`, forwards or backwards.
+    /// Largest distance by which the driven ends have moved up to `time_star`, forwards or backwards.
     pub fn farthest_path(&self, time_star: f64) -> f64 {
         let segments = self.program.iter().flat_map(|program| &program.segments);
         let ends = segments
@@ -305,7 +304,7 @@ mod tests {
         let speeds = [0.0, 9.9, 10.0, 20.0].map(|t| drive.speed_after(t));
         assert_eq!(speeds, [0.5, 0.5, 0.0, -1.0]);
         let times = [0.0, 4.0, 5.0, 6.0].map(|path| drive.time_of_path(path));
-        // 5.0 is reached before the stop, -6 eleven units of time after the return begins.
+        // Path 5 is reached before the stop, and -6 eleven units of time after the return begins.
         assert_eq!(times, [0.0, 8.0, 10.0, 31.0]);
         assert_eq!(
             [15.0, 25.0, 31.0].map(|t| drive.farthest_path(t)),

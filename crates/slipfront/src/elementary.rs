@@ -1,18 +1,17 @@
-//! Exponential and logarithm of a fixed number of sums, products and quotients in a fixed order, without
-//! branches: the compiler computes them for several blocks at once, which it cannot do with those of `libm`,
-//! and they have the same bits on every machine.
+//! Exponential and logarithm, computed by a fixed number of sums, products and quotients in a fixed order,
+//! without branches. The compiler can vectorise them over several blocks, unlike those of `libm`, and they
+//! have the same bits on every machine.
 
-/// ln 2 in two parts, of which the first has so few digits that its products with small whole numbers are
-/// exact.
+/// ln 2 as the sum of two parts. The first has so few digits that its products with small integers are exact.
 const LN_2: [f64; 2] = [
     f64::from_bits(0x3fe6_2e42_fee0_0000),
     f64::from_bits(0x3dea_39ef_3579_3c76),
 ];
 
-/// Constant whose sum with a number has the number, rounded to a whole one, in its lowest bits.
+/// Constant for rounding: the sum of this and a number has the nearest integer in its lowest bits.
 const TO_WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
 
-/// Largest exponent: [`exp`] of a larger one gives the value at this one.
+/// Largest exponent: [`exp`] of a larger one returns the value at this one.
 const MAX_EXPONENT: f64 = 700.0;
 
 /// Inverse factorials `1/k!` from k = 0 on.
@@ -26,7 +25,7 @@ const INVERSE_FACTORIALS: [f64; 16] = {
     inverse
 };
 
-/// The polynomial `sum_k c_k x^k`, evaluated by pairs so that few operations wait for each other.
+/// The polynomial `sum_k c_k x^k`, evaluated in pairs of terms so that few operations wait for each other.
 #[inline(always)]
 fn polynomial<const TERMS: usize>(c: [f64; TERMS], x: f64) -> f64 {
     let (mut sum, square) = (0.0, x * x);
@@ -58,11 +57,11 @@ pub(crate) fn exp(x: f64) -> f64 {
 /// The logarithm `ln x` of a positive number that is not subnormal, to four units in the last place.
 #[inline(always)]
 pub(crate) fn ln(x: f64) -> f64 {
-    /// Bits of 1, and of a number just below the root of 1/2.
+    /// Bits of 1, and of a number just below sqrt(1/2).
     const ONE: u64 = 0x3ff0_0000_0000_0000;
     const LEAST: u64 = 0x3fe6_a09e_0000_0000;
     const MANTISSA: u64 = (1 << 52) - 1;
-    // x = 2^n m with m from the root of 1/2 to that of 2.
+    // x = 2^n m with m from sqrt(1/2) to sqrt(2).
     let bits = x.to_bits().wrapping_sub(LEAST).wrapping_add(ONE);
     let n = f64::from_bits((bits >> 52) | TO_WHOLE.to_bits()) - (TO_WHOLE + 1023.0);
     let m = f64::from_bits((bits & MANTISSA).wrapping_add(LEAST));
@@ -71,7 +70,7 @@ pub(crate) fn ln(x: f64) -> f64 {
     n * LN_2[0] + (n * LN_2[1] + s * polynomial(c, s * s))
 }
 
-/// Bound below which [`small_mean_decay`] is exact to the last digit with the terms that it has.
+/// Bound on x below which [`small_mean_decay`] has enough terms to be exact to the last digit.
 pub(crate) const SMALL_DECAY: f64 = 0.5;
 
 /// Mean of `e^-x` over an interval, `(1 - e^-x)/x` for x >= 0; 1 at 0.
@@ -108,7 +107,7 @@ mod tests {
             let x = f64::from(k) * 0.009_999;
             assert_close(exp(x), libm::exp(x), x);
             let y = libm::exp(x);
-            // Near 1 the logarithm is as exact as y - 1 itself.
+            // Near 1 the error of the logarithm is that of y - 1.
             let bound = 8e-16 * libm::log(y).abs() + 1e-17;
             assert!((ln(y) - libm::log(y)).abs() <= bound, "{y:e}");
             let near = 1.0 + 1e-6 * f64::from(k);

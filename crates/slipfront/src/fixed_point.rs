@@ -1,28 +1,28 @@
-//! Sums that do not depend on the order in which they are added.
+//! Sums that do not depend on the order of their terms.
 //!
-//! Numbers of a known size become integers, multiples of a quantum, and integers add up exactly: in any
-//! order, over any number of lanes, tiles, threads and ranks the sum has the same bits. Each term is rounded
-//! to the nearest multiple of the quantum, by at most `2^-51` of the largest size that it might have.
+//! Numbers with a known bound become integers, multiples of a quantum. Integers add up exactly: in any order,
+//! over any number of lanes, tiles, threads and ranks the sum has the same bits. Each term is rounded to the
+//! nearest multiple of the quantum, with an error of at most `2^-51` of the bound.
 
 use serde::{Deserialize, Serialize};
 
 use crate::communicator::{Alone, Communicator};
 use crate::reductions;
 
-/// Numbers of at most a given size as multiples of a quantum, which is a power of two.
+/// Numbers with a given bound on their size, as multiples of a quantum, which is a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FixedPoint {
     /// Power of two above the bound; NaN if there is no bound, so that all sums are NaN.
     limit: f64,
 }
 
-/// Largest bound: quanta and what is added to them must stay finite.
+/// Largest bound: quanta and their sums with numbers must stay finite.
 const MAX_BOUND: f64 = 1e300;
 
 /// Least bound: a smaller one is replaced by it, so that quanta do not underflow.
 const MIN_BOUND: f64 = 1e-270;
 
-/// Quanta in the largest number.
+/// Number of quanta in the largest number.
 const QUANTA: f64 = (1_u64 << 51) as f64;
 
 /// Most integers that can be added without overflow of 64 bits.
@@ -51,8 +51,8 @@ impl FixedPoint {
         Self { limit }
     }
 
-    /// Shift of `1.5 2^52` quanta. A number added to it is rounded to a multiple of the quantum, and the bits
-    /// of the sum are those of the shift plus the multiple.
+    /// Shift by `1.5 2^52` quanta. Adding it to a number rounds the number to a multiple of the quantum, and
+    /// the bits of the sum are the bits of the shift plus the multiple.
     pub(crate) fn shift(self) -> f64 {
         3.0 * self.limit
     }
@@ -64,9 +64,9 @@ impl FixedPoint {
         (x + shift).to_bits().wrapping_sub(shift.to_bits()) as i64
     }
 
-    /// Sum of the integers of `term(k)` over `0..n`. The integer of a term beyond the bound, or of one that
-    /// is no number, is arbitrary, so that sums with such terms may wrap around: without a bound
-    /// [`value`](Self::value) is NaN of any sum.
+    /// Sum of the integers of `term(k)` over `0..n`. The integer of a term that is NaN or exceeds the bound
+    /// is arbitrary, so that sums with such terms may wrap around. Without a bound, [`value`](Self::value)
+    /// returns NaN for any sum.
     #[inline(always)]
     pub(crate) fn sum(self, n: usize, term: impl Fn(usize) -> f64) -> i128 {
         let mut sum = 0;
@@ -78,7 +78,7 @@ impl FixedPoint {
         sum
     }
 
-    /// Number that a sum of integers stands for, rounded to the nearest double.
+    /// Number that a sum of integers represents, rounded to the nearest double.
     pub(crate) fn value(self, sum: i128) -> f64 {
         sum as f64 * (self.limit / QUANTA)
     }
@@ -92,11 +92,11 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// Least difference between the ends of the range for which a window is made: displacements differ by
-    /// more as soon as blocks slide.
+    /// Least difference between the ends of the range of a window: displacements differ by more as soon as
+    /// blocks slide.
     const MIN_RANGE: f64 = 1e-9;
 
-    /// A window of at least twice the range from `low` to `high`, which lies in its middle.
+    /// A window of at least twice the range from `low` to `high`, with this range in its middle.
     pub(crate) fn around(low: f64, high: f64) -> Self {
         let differences = FixedPoint::new((high - low).max(Self::MIN_RANGE));
         let grid = differences.limit() / 8.0;
@@ -130,24 +130,24 @@ impl Window {
         self.differences
     }
 
-    /// Constant whose sum with a number has, in its bits, the nearest multiple for the difference of the
-    /// number from the centre: see [`FixedPoint::shift`].
+    /// Constant for rounding: its sum with a number has, in its bits, the nearest multiple for the difference
+    /// of the number from the centre. See [`FixedPoint::shift`].
     pub(crate) fn shift(&self) -> f64 {
         self.differences.shift() - self.centre
     }
 }
 
-/// Sum of `term(k)` over `0..n`, equal for any order of the terms.
+/// Sum of `term(k)` over `0..n`, with the same bits for any order of the terms.
 #[inline(always)]
 pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     sum_over(&Alone, n, term)
 }
 
-/// Sum of `term(k)` over the blocks of all `ranks`, equal for any order. All ranks call this together, each
-/// with its own `n` terms.
+/// Sum of `term(k)` over the blocks of all `ranks`, with the same bits for any order. All ranks must call
+/// this together, each with its own `n` terms.
 #[inline(always)]
 pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
-    // A term that is no number makes the bound infinite.
+    // A NaN term makes the bound infinite.
     let size = |term: f64| if term.is_nan() { f64::INFINITY } else { term.abs() };
     let mut largest = [reductions::largest(n, |k| size(term(k)))];
     ranks.largest(&mut largest);
@@ -157,15 +157,15 @@ pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) 
     fixed_point.value(join(words))
 }
 
-/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of
-/// two that bounds them, or fall below it. They are added up with the bound of the step before while the
-/// largest is found, and once more if the bound has changed. So the sum equals [`sum`] of the terms, whatever
-/// was before.
+/// A sum over blocks that is computed at every step, part by part. Its largest term rarely passes the power
+/// of two that bounds the terms, or falls below half of it. The terms are added with the bound of the step
+/// before, while the largest is found, and are added once more if the bound has changed. So the sum equals
+/// [`sum`] of the terms, whatever came before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RunningSum {
     bound: FixedPoint,
-    /// Bits of the largest size of a term so far. As integers, bits have the order of the sizes; NaN lies
-    /// beyond all of them.
+    /// Bits of the largest size of a term so far. As integers, bits have the order of the sizes, and NaN is
+    /// larger than all of them.
     largest: i64,
     sum: i128,
 }
@@ -188,7 +188,7 @@ impl RunningSum {
         }
     }
 
-    /// Size of the largest term so far; infinite if one is no number.
+    /// Size of the largest term so far; infinite if one is NaN.
     fn largest(&self) -> f64 {
         let size = f64::from_bits(self.largest as u64);
         if size.is_nan() { f64::INFINITY } else { size }
@@ -202,8 +202,8 @@ impl RunningSum {
         }
     }
 
-    /// Empties the sum and sets the bound of the next terms by the `largest` of those before. Returns whether
-    /// those were added up with that bound.
+    /// Empties the sum and sets the bound of the next terms from the `largest` of the terms before. Returns
+    /// whether those were added with this bound.
     fn restart(&mut self, largest: f64) -> bool {
         let bound = FixedPoint::new(largest);
         let was_bound = bound.limit.to_bits() == self.bound.limit.to_bits();
@@ -240,19 +240,19 @@ impl Default for RunningSum {
     }
 }
 
-/// Bits of a sum in the lower of its two words.
+/// Number of bits of a sum in the lower of its two words.
 const LOW_BITS: u32 = 40;
 
-/// A sum of integers as two words, each of which may be added over up to 2^23 ranks: [`join`] makes the sum
-/// of them.
+/// A sum of integers as two words, each of which may be added over up to 2^23 ranks. [`join`] restores the
+/// sum.
 ///
-/// The sum over all ranks has 2^102 as its bound, the integers of 2^51 numbers.
+/// The sum over all ranks is below 2^102, the integers of 2^51 numbers.
 pub(crate) fn split(sum: i128) -> [i64; 2] {
     let low = sum & ((1 << LOW_BITS) - 1);
     [low as i64, (sum >> LOW_BITS) as i64]
 }
 
-/// Sum whose words, or sums of words, are `low` and `high`: see [`split`].
+/// Sum with the words, or sums of words, `low` and `high`: see [`split`].
 pub(crate) fn join([low, high]: [i64; 2]) -> i128 {
     (i128::from(high) << LOW_BITS) + i128::from(low)
 }
@@ -281,8 +281,7 @@ mod tests {
         }
     }
 
-    /// Whatever came before, a sum is that of its own terms: larger ones, smaller ones, none, and some that
-    /// are no numbers.
+    /// A sum depends only on its own terms, whatever came before: larger terms, smaller ones, none, or NaN.
     #[test]
     fn a_running_sum_is_the_sum_of_its_step() {
         let scales = [1.0, 1e-3, 1.5e-3, 1e9, 0.0, f64::NAN, 2.0, f64::INFINITY, 1e-12];

@@ -8,13 +8,13 @@ use crate::vector_field::VectorField;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Forces {
     pub(crate) drive: VectorField,
-    /// Sum over the springs between blocks and the dampers beside them, per block.
+    /// Sum over the springs between blocks and the dampers in parallel with them, per block.
     pub(crate) lattice: VectorField,
     pub(crate) friction: VectorField,
     /// Velocities after the update within a step; between steps the velocities before the update.
     pub(crate) velocity: VectorField,
     pub(crate) slides: Vec<bool>,
-    /// Force of the spring along each bond, before they are summed into `lattice`.
+    /// Force of the spring along each bond, before the forces are summed into `lattice`.
     pub(crate) springs: [VectorField; 4],
 }
 

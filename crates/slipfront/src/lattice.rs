@@ -1,7 +1,7 @@
 //! The slider's blocks, their neighbours and the springs between them.
 //!
-//! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at ((i +
-//! 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
+//! Block (i, j) has index `j nx + i`: i runs along x, and row 0 lies at y = 0. Its centre is at ((i + 1/2),
+//! (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) takes the springs from here.
 
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -17,7 +17,7 @@ pub const K_STRAIGHT: f64 = 0.75;
 pub const K_DIAGONAL: f64 = 0.375;
 /// Stiffness of the spring that drives a block, `k_s = k_2`, in units of `E h`.
 pub const K_DRIVE: f64 = 0.375;
-/// Poisson's ratio of this lattice, which follows from the springs.
+/// Poisson's ratio of this lattice, which follows from its springs.
 pub const POISSON_RATIO: f64 = 1.0 / 3.0;
 /// Square of the lattice's highest frequency, `omega_max^2 = 6.5 k_1/m`.
 pub const OMEGA_MAX_SQUARED: f64 = 6.5 * K_STRAIGHT;
@@ -27,9 +27,9 @@ pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()
 }
 
-/// Number of drive springs whose force a block bears that is held alone in a large sheet of free blocks, with
-/// drive springs of stiffness `k_drive`: the lattice passes on the pull on its neighbours. The response of
-/// the free sheet, an integral over the waves of the lattice, is
+/// Force on a block that is held alone in a large sheet of free blocks, over the force of its drive spring,
+/// with drive springs of stiffness `k_drive`: the lattice transmits the pull on its neighbours. The response
+/// of the free sheet, an integral over the waves of the lattice, gives
 ///
 /// ```text
 /// 1/G_xx(0)/k_s     G(0) = mean over q of [k_s + D(q)]^-1
@@ -37,10 +37,10 @@ pub fn dt_star_limit() -> f64 {
 /// ```
 pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
     /// Number of waves along each axis with q between 0 and pi, enough for four digits down to a tenth of
-    /// [`K_DRIVE`]: waves of -q give the same.
+    /// [`K_DRIVE`]. Waves of -q contribute the same.
     const WAVES: usize = 32;
     let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::PI;
-    // Every one stands in many terms of the sum.
+    // Each cosine occurs in many terms of the sum.
     let cosines: [f64; WAVES] = std::array::from_fn(|n| libm::cos(wave(n)));
     let sines: [f64; WAVES] = std::array::from_fn(|n| libm::sin(wave(n)));
     let response = |n: usize| {
@@ -81,7 +81,7 @@ impl Default for SpringStiffness {
 
 impl SpringStiffness {
     /// Springs with which a lattice is `ratio` times as stiff along a long wave that runs along an axis as
-    /// across it, with the geometric mean of both that the paper's springs have:
+    /// across it. The geometric mean of both stiffnesses is that of the paper's springs:
     ///
     /// ```text
     /// k_2 = sqrt(27/ratio)/8   k_1 = (ratio - 1) k_2   along: (k_1 + k_2) q^2 = ratio k_2 q^2   across: k_2 q^2
@@ -96,12 +96,12 @@ impl SpringStiffness {
         }
     }
 
-    /// The four bonds that, over all blocks, make every spring once, with these springs.
+    /// The four bonds per block that together give every spring once, with these springs.
     pub fn bonds(self) -> [Bond; 4] {
         Bond::ALL.map(|bond| self.bond(bond))
     }
 
-    /// A bond with one of these springs.
+    /// The given bond with one of these springs.
     #[inline(always)]
     pub(crate) fn bond(self, bond: Bond) -> Bond {
         Bond {
@@ -110,13 +110,13 @@ impl SpringStiffness {
         }
     }
 
-    /// Stiffness against a strain along an axis that is uniform across it, `k_1 + k_2`.
+    /// Stiffness against a strain along an axis, uniform in the other direction: `k_1 + k_2`.
     pub fn along(self) -> f64 {
         self.straight + self.diagonal
     }
 
-    /// Speed of long shear waves along an axis, `c_S = sqrt(k_2)`, in blocks per unit of t*, of a slider
-    /// whose blocks are alike.
+    /// Speed of long shear waves along an axis, `c_S = sqrt(k_2)`, in blocks per unit of t*, of a slider with
+    /// equal blocks.
     pub fn shear_wave_speed(self) -> f64 {
         self.diagonal.sqrt()
     }
@@ -164,17 +164,17 @@ impl Edge {
         }
     }
 
-    /// Blocks from the edge to the one opposite.
+    /// Number of blocks from the edge to the opposite edge.
     pub fn n_across(self, lattice: &Lattice) -> usize {
         [lattice.nx, lattice.ny][self.axis()]
     }
 
-    /// Blocks along the edge.
+    /// Number of blocks along the edge.
     pub fn n_blocks(self, lattice: &Lattice) -> usize {
         [lattice.ny, lattice.nx][self.axis()]
     }
 
-    /// Blocks between the edge and block `b`.
+    /// Number of blocks between the edge and block `b`.
     pub fn distance(self, lattice: &Lattice, b: usize) -> usize {
         let (i, j) = lattice.column_row(b);
         match self {
@@ -189,11 +189,11 @@ impl Edge {
 /// The blocks and their arrangement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
-    /// Blocks along x.
+    /// Number of blocks along x.
     pub nx: usize,
-    /// Blocks along y.
+    /// Number of blocks along y.
     pub ny: usize,
-    /// Ends along x and along y.
+    /// Boundaries along x and along y.
     pub edges: [Edges; 2],
 }
 
@@ -207,7 +207,7 @@ impl Lattice {
         }
     }
 
-    /// A lattice with the given ends along x and along y.
+    /// A lattice with the given boundaries along x and along y.
     ///
     /// # Panics
     /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two springs would join the same
@@ -225,7 +225,7 @@ impl Lattice {
     /// Fewest blocks along a periodic axis.
     pub const MIN_PERIODIC: usize = 3;
 
-    /// Stiffness against a strain along an axis that is uniform across it, in units of `E h`:
+    /// Stiffness against a strain along an axis, uniform in the other direction, in units of `E h`:
     /// `k_1 + k_2 = 9/8` for a sheet, `k_1` for a chain.
     pub(crate) fn stiffness_along(&self) -> f64 {
         if self.nx == 1 || self.ny == 1 {
@@ -245,7 +245,7 @@ impl Lattice {
         j * self.nx + i
     }
 
-    /// The rows that a rank holds: consecutive ones, as many as the others hold or one more, rank 0 the
+    /// The consecutive rows that a rank holds: as many as the other ranks hold or one more; rank 0 holds the
     /// lowest.
     ///
     /// ```
@@ -273,7 +273,7 @@ impl Lattice {
         (bond.offset[1] as usize * self.nx).wrapping_add_signed(bond.offset[0])
     }
 
-    /// The block `[di, dj]` away from block (i, j), each -1, 0 or 1, or none beyond a free edge.
+    /// The block `[di, dj]` away from block (i, j), with offsets of -1, 0 or 1, or none beyond a free edge.
     pub fn neighbour(&self, i: usize, j: usize, offset: [isize; 2]) -> Option<usize> {
         let i = neighbour_coordinate(i, offset[0], self.nx, self.edges[0])?;
         let j = neighbour_coordinate(j, offset[1], self.ny, self.edges[1])?;
@@ -304,14 +304,14 @@ fn neighbour_coordinate(coordinate: usize, offset: isize, count: usize, edges: E
     }
 }
 
-/// Stiffness of two springs in series, each half as long as one of the same modulus: `2 a b/(a + b)`; 0 if
-/// both are 0.
+/// Stiffness of two springs in series, each half as long as a whole spring of the same modulus:
+/// `2 a b/(a + b)`; 0 if both are 0.
 #[inline(always)]
 pub(crate) fn harmonic_mean(a: f64, b: f64) -> f64 {
     if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 }
 }
 
-/// A spring between a block and one of its eight neighbours. Four bonds per block make all of them.
+/// A spring between a block and one of its eight neighbours. Four bonds per block give all springs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bond {
     /// Columns and rows from the block to its neighbour.
@@ -333,7 +333,7 @@ impl Bond {
     pub const NORTH_EAST: Bond = Bond::new([1, 1], K_DIAGONAL, SQRT_2);
     /// The bond to the neighbour at (x - 1, y + 1).
     pub const NORTH_WEST: Bond = Bond::new([-1, 1], K_DIAGONAL, SQRT_2);
-    /// The four bonds that, over all blocks, make every spring once.
+    /// The four bonds per block that together give every spring once.
     pub const ALL: [Bond; 4] = [Bond::EAST, Bond::NORTH, Bond::NORTH_EAST, Bond::NORTH_WEST];
 
     const fn new(offset: [isize; 2], stiffness: f64, rest_length: f64) -> Self {
@@ -353,8 +353,8 @@ impl Bond {
     /// ```
     ///
     /// `e`: displacement of the neighbour less that of the block, in units of `P mu_s l^2/(E h)`; `epsilon`:
-    /// the strain `P mu_s l/(E h)` that ties this unit to the block size. No two nearly equal lengths are
-    /// subtracted, so that small displacements lose no digits.
+    /// the strain `P mu_s l/(E h)`, the ratio of this unit to the block size. The formula never subtracts two
+    /// nearly equal lengths, so that small displacements lose no digits.
     ///
     /// ```
     /// use slipfront::lattice::Bond;
@@ -370,8 +370,8 @@ impl Bond {
         [tension * rx, tension * ry]
     }
 
-    /// Force on the block from a damper beside this spring, over the time `tau_v` of its damping constant
-    /// `eta = tau_v k`:
+    /// Force on the block from a damper in parallel with this spring, over the time `tau_v` of its damping
+    /// constant `eta = tau_v k`:
     ///
     /// ```text
     /// F_v/tau_v = k (r/|r| . w) r/|r|,   r = d + eps e
@@ -423,7 +423,7 @@ mod tests {
 
     #[test]
     fn a_spring_is_exact_where_lengths_would_cancel() {
-        // At a strain of 1e-9 the naive r - d keeps 7 digits; the small-strain limit is known.
+        // At a strain of 1e-9 the direct difference r - d keeps 7 digits; the small-strain limit is known.
         let force = Bond::NORTH_EAST.force([1e-6, 3e-6], 1e-9);
         assert!((force[0] / (K_DIAGONAL * 2e-6) - 1.0).abs() < 1e-14, "{force:?}");
     }

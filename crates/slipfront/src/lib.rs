@@ -1,9 +1,9 @@
 //! Two-dimensional lattice spring-block model of the transition from static to kinetic friction.
 //!
-//! A slider of `nx` x `ny` blocks lies on a rigid plane, is pulled at constant speed through one spring per
-//! block, and is held together by springs between each block and its eight neighbours. Every block obeys
-//! Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) have no
-//! contact with the plane. The model is that of Tribology International (2023), doi
+//! A slider of `nx` x `ny` blocks lies on a rigid plane. Each block is pulled at constant speed by its own
+//! spring, and springs between each block and its eight neighbours hold the slider together. Every block
+//! obeys Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) have
+//! no contact with the plane. The model is that of Tribology International (2023), doi
 //! 10.1016/j.triboint.2023.108866, with the numbered deviations D1... that the project's book explains.
 //!
 //! This crate is the physics alone: no files, no terminal, no clock. Everything is dimensionless: lengths in

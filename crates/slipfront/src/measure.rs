@@ -1,4 +1,4 @@
-//! Measures of one instant of a run: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks
+//! Measures at one instant of a run: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks
 //! N*, the largest mu* and the first peak of mu*.
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use crate::vector_field::dot;
 /// The whole slider at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
-    /// mu*, the force of drive springs and dead load along the sliding direction over the load; can be
+    /// mu*, the force of drive springs and dead load along the sliding direction over the load; it can be
     /// negative.
     pub mu_star: f64,
     /// The force of drive springs and dead load across the sliding direction, to the left of it, over the
@@ -20,14 +20,14 @@ pub struct CurvePoint {
     pub mu_lateral_star: f64,
     /// Number of blocks that slide, textured ones included.
     pub n_sliding: usize,
-    /// N*, the sliding blocks in % of all blocks that exist; of an upright sheet, those in contact in % of
-    /// the lowest row.
+    /// N*, the sliding blocks in % of all existing blocks; for an upright sheet, the sliding blocks in
+    /// contact in % of the lowest row.
     pub sliding_percent: f64,
 }
 
 impl CurvePoint {
-    /// Eq. 9 over mu_s at a time t* of the drive: the force of the [drive springs](pull_of_springs), with the
-    /// dead load,
+    /// Computes Eq. 9 over mu_s at a time t* of the drive: the force of the [drive springs](pull_of_springs),
+    /// with the dead load,
     ///
     /// ```text
     /// mu* = (1/N) sum_i (F_s,i + F_0,i) . d
@@ -49,13 +49,13 @@ impl CurvePoint {
 }
 
 /// Force of the drive springs along the sliding direction and to the left of it, over the load, from the mean
-/// displacement, with the relative stiffness w of the drive springs and N blocks that exist:
+/// displacement, with the relative stiffness w of the drive springs and N existing blocks:
 ///
 /// ```text
 /// (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
 /// ```
 ///
-/// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with
+/// If the drive springs differ, with relative stiffness `w_i`, and for a rotation, with
 /// `g_i = z x r_i/r_max`:
 ///
 /// ```text
@@ -65,7 +65,7 @@ impl CurvePoint {
 pub(crate) fn pull_of_springs(model: &Model, totals: &Totals, drive_time_star: f64) -> [f64; 2] {
     let (drive, divisor) = (&model.drive, model.mu_star_divisor());
     let mean = totals.displacement.map(|sum| sum / divisor);
-    // The sums of a rotation are along and across its direction at each block.
+    // For a rotation the sums are along and across its direction at each block.
     let (position, [dx, dy]) = match drive.rotation {
         None => (drive.position(drive_time_star), drive.direction),
         Some(_) => ([drive.path(drive_time_star), 0.0], [1.0, 0.0]),
@@ -75,10 +75,9 @@ pub(crate) fn pull_of_springs(model: &Model, totals: &Totals, drive_time_star: f
     [dot(pull, [dx, dy]), dot(pull, [-dy, dx])]
 }
 
-/// The largest mu* until the drive has gone a stated path.
+/// The largest mu* until the drive has moved by a given path.
 ///
-/// A ripple cannot be mistaken for it as it can for a first peak: a later, higher mu* counts until the end of
-/// the path.
+/// Unlike a first peak, it cannot be a mere ripple: a later, higher mu* counts until the end of the path.
 ///
 /// ```
 /// use slipfront::observe::Largest;
@@ -94,15 +93,15 @@ pub struct Largest {
     pub mu_star: f64,
     /// Friction across the drive at the time of the largest mu*.
     pub mu_lateral_star: f64,
-    /// Time of the drive at the largest mu*, the first of equal ones.
+    /// Time of the drive at the largest mu*, the first if it occurs several times.
     pub time_star: f64,
     until_path: f64,
     is_complete: bool,
 }
 
 impl Largest {
-    /// The state before the first step. Steps after the drive has first gone further than `until_path`, in
-    /// units of displacement, do not count; [`f64::INFINITY`] takes the whole run.
+    /// The state before the first step. Steps do not count after the drive has moved further than
+    /// `until_path`, in units of displacement; [`f64::INFINITY`] includes the whole run.
     pub fn until(until_path: f64) -> Self {
         Self {
             mu_star: f64::NEG_INFINITY,
@@ -113,7 +112,7 @@ impl Largest {
         }
     }
 
-    /// Takes the next step into account, at which the drive has gone `path` in the time `time_star`.
+    /// Includes the next step, at which the drive has moved by `path` in the time `time_star`.
     pub fn update(&mut self, path: f64, time_star: f64, mu_star: f64, mu_lateral_star: f64) {
         self.is_complete |= path > self.until_path;
         if !self.is_complete && mu_star > self.mu_star {
@@ -121,25 +120,25 @@ impl Largest {
         }
     }
 
-    /// Whether the drive has gone further than the stated path: the largest mu* is final.
+    /// Whether the drive has moved further than the given path: the largest mu* is final.
     pub fn is_complete(&self) -> bool {
         self.is_complete
     }
 }
 
-/// Least loss of friction in a transition, as a share of the largest loss S - L. Ripples of sliding just
-/// above L are smaller; a texture that lowers mu_s* nearly to L leaves more.
+/// Least fall of friction in a transition, as a share of the largest fall S - L. Ripples in sliding just
+/// above L are smaller; the fall is larger even for a texture that lowers mu_s* nearly to L.
 const LEAST_FALL: f64 = 0.05;
 
-/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L and of at
-/// least (S - L)/20, within the longest time that a transition takes; S is the share of the load that blocks
-/// in contact bear, 1 unless that of textured blocks is lost. The peak is found while the run goes on: until
-/// such a fall is seen it is the largest mu* so far, and it stays that if the first fall comes too late, of a
-/// slider that creeps.
+/// The first peak of mu* that is followed, within the longest time that a transition takes, by a fall of at
+/// least half-way to the steady level L and of at least (S - L)/20. S is the share of the load that blocks in
+/// contact bear: 1 unless the load of textured blocks is lost. The peak is found during the run: until such a
+/// fall occurs it is the largest mu* so far. It stays the largest mu* if the first fall comes too late, as in
+/// a slider that creeps.
 ///
-/// Under a held drive it is the largest mu* until the drive has moved in a stated number of steps, if such a
-/// fall follows it until then, on the time of the drive: a ripple just above L would pass for a first peak
-/// there.
+/// Under a held drive it is the largest mu* until the drive has moved in a given number of steps, if such a
+/// fall follows it by then, in the time of the drive: otherwise a ripple just above L would count as the
+/// first peak.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
@@ -152,26 +151,26 @@ pub struct Peak {
     pub time_star: f64,
     /// Time of the drive at the peak.
     pub drive_time_star: f64,
-    /// Whether the fall has been seen; under a held drive only once the largest mu* is known.
+    /// Whether the fall has occurred; under a held drive only once the largest mu* is known.
     pub ended: bool,
     /// Largest mu* of the whole run so far.
     pub largest: Largest,
     steady_level: f64,
     share_of_load: f64,
     longest_fall: f64,
-    /// Whether mu* fell by the least loss too late for a transition; under a held drive, whether it did not
+    /// Whether mu* fell by the least amount too late for a transition; under a held drive, whether it did not
     /// fall.
     crept: bool,
     /// Peak under a held drive.
     held: Option<HeldPeak>,
 }
 
-/// State by which the peak under a held drive is found.
+/// State of the search for the peak under a held drive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct HeldPeak {
-    /// Steps of the drive after which the peak is final.
+    /// Number of steps of the drive after which the peak is final.
     onset_steps: u64,
-    /// Whether the fall after the largest mu* so far has been seen.
+    /// Whether the fall after the largest mu* so far has occurred.
     has_fallen: bool,
 }
 
@@ -217,8 +216,8 @@ impl Peak {
         }
     }
 
-    /// Whether a run that stops after the onset ends now: the fall has been seen, or under a held drive there
-    /// was none.
+    /// Whether a run that stops after the onset ends now: the fall has occurred, or did not occur under a
+    /// held drive.
     pub(crate) fn is_final(&self) -> bool {
         self.ended || (self.held.is_some() && self.crept)
     }
@@ -233,16 +232,16 @@ impl Peak {
         self.mu_star > self.steady_level && mu_star <= half_way && self.is_above(mu_star)
     }
 
-    /// Whether the peak is above this mean of mu* in sliding by the least that friction loses in a
+    /// Whether the peak exceeds this mean of mu* in sliding by at least the least fall of friction in a
     /// transition, (S - L)/20.
     pub fn is_above(&self, sliding: f64) -> bool {
         self.mu_star - sliding >= LEAST_FALL * (self.share_of_load - self.steady_level).max(0.0)
     }
 
-    /// Takes the next step into account.
+    /// Includes the next step.
     pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint) {
         let (mu_star, time_star) = (point.mu_star, clock.time_star());
-        // The whole run counts, whatever the path: 0 is below infinity.
+        // The whole run counts, at any path: 0 is below infinity.
         self.largest
             .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
         if self.is_final() {
@@ -312,7 +311,7 @@ mod tests {
         );
     }
 
-    /// A ripple of less than 0.025 is no peak at L = 0.5, though it falls half-way to L; where L is above 1
+    /// A fall of less than 0.025 makes no peak at L = 0.5, even if it is half-way to L; if L exceeds 1,
     /// half-way is enough.
     #[test]
     fn a_ripple_just_above_the_level_of_sliding_is_no_peak() {
@@ -348,7 +347,7 @@ mod tests {
         assert!(!peak_within(2.5, 0.5, &curve).ended);
     }
 
-    /// A slider that creeps goes up and down for ever: in the end some fall would be fast enough.
+    /// mu* of a slider that creeps rises and falls forever: in the end some fall would be fast enough.
     #[test]
     fn what_has_crept_once_has_no_transition_any_more() {
         let peak = peak_within(2.5, 0.5, &[0.0, 1.0, 0.9, 0.8, 0.75, 1.1, 0.3]);

@@ -15,14 +15,14 @@ use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::{dot, length};
 
-/// Path of the drive to the onset of sliding where all blocks touch, in units of displacement: t_s* = 2.5/V*
-/// (Eq. 12).
+/// Path of the drive to the onset of sliding where all blocks are in contact, in units of displacement:
+/// t_s* = 2.5/V* (Eq. 12).
 pub const ONSET_PATH: f64 = 2.5;
 
 /// The slider with its surface and drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// Blocks and springs, all of them.
+    /// All blocks and springs of the lattice.
     pub lattice: Lattice,
     /// The rows of the lattice that this process holds: all, unless it is one rank of several.
     pub rows: Range<usize>,
@@ -36,7 +36,7 @@ pub struct Model {
     pub surface: Surface,
     /// The drive of the slider.
     pub drive: Drive,
-    /// Constant forces beside those of the drive springs; none in the paper.
+    /// Constant forces in addition to the drive springs; none in the paper.
     pub(crate) dead_load: DeadLoad,
     /// Damping `Omega` per unit of dimensionless time (see [`crate::scales::damping`]).
     pub damping: f64,
@@ -47,8 +47,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Puts the parts together, with all blocks alike; [`with_slider`](Self::with_slider) makes them differ.
-    /// The surface must be made for this lattice.
+    /// Creates a model with equal blocks; [`with_slider`](Self::with_slider) makes them differ. The surface
+    /// must be made for this lattice.
     pub fn new(
         lattice: Lattice,
         surface: Surface,
@@ -60,7 +60,7 @@ impl Model {
         Self::of_rows(lattice, 0..lattice.ny, surface, drive, damping, epsilon, friction)
     }
 
-    /// The model of a rank that holds these `rows` of the lattice, for which the surface must be made.
+    /// The model of a rank that holds these `rows` of the lattice. The surface must be made for these rows.
     pub fn of_rows(
         lattice: Lattice,
         rows: Range<usize>,
@@ -90,23 +90,23 @@ impl Model {
         }
     }
 
-    /// Returns the model with a heterogeneous slider, for which the surface must be made.
+    /// Returns the model with a heterogeneous slider; the surface must be made for it.
     ///
     /// # Panics
-    /// Unless every array of the slider has one value for each block that this process holds, and drive
-    /// springs are given with an outline, 0 where there is no block.
+    /// Unless every array of the slider has one value for each block that this process holds, and an outline
+    /// comes with drive springs, 0 where there is no block.
     pub fn with_slider(self, slider: Slider) -> Self {
         slider.assert_fits(self.surface.n_blocks());
         Self { slider, ..self }
     }
 
-    /// Returns the model with sheets above the lattice, from the lowest on, and with the springs that
-    /// neighbouring blocks of each of them and of the lattice itself have. The drive springs pull the blocks
-    /// of the highest one.
+    /// Returns the model with sheets above the lattice, from the lowest on, and with these springs between
+    /// neighbouring blocks of each sheet and of the lattice itself. The drive springs pull the blocks of the
+    /// highest sheet.
     ///
     /// # Panics
     /// If blocks differ, there are dampers between them, the drive rotates, or friction acts along x alone:
-    /// no sheet above has these.
+    /// stacks do not support these.
     pub fn with_sheets(self, sheets: Vec<Sheet>, springs: SpringStiffness) -> Self {
         let is_plain = self.slider == Slider::default()
             && self.drive.rotation.is_none()
@@ -122,11 +122,11 @@ impl Model {
         }
     }
 
-    /// Returns the model with constant forces on its blocks, which have their slider and sheets already.
+    /// Returns the model with constant forces on its blocks. Its slider and sheets must be set before.
     ///
     /// # Panics
-    /// If forces that differ are not one for each block that this process holds, or are on a stack of sheets;
-    /// or if the drive rotates, whose direction no constant force has.
+    /// If forces that differ do not have one value for each block that this process holds, or act on a stack
+    /// of sheets; or if the drive rotates, since no constant force has its direction.
     pub fn with_dead_load(self, dead_load: DeadLoad) -> Self {
         if let Some(field) = &dead_load.field {
             let (forces, blocks) = (field.relative.len(), self.surface.n_blocks());
@@ -155,7 +155,7 @@ impl Model {
         self
     }
 
-    /// The model of some rows of the lattice, of those that this process holds.
+    /// The model of some of the rows that this process holds.
     pub(crate) fn of_some_rows(&self, rows: Range<usize>) -> Self {
         let first = self.rows.start;
         let blocks = self.lattice.blocks_of(&(rows.start - first..rows.end - first));
@@ -179,13 +179,13 @@ impl Model {
         &self.slider
     }
 
-    /// Constant forces on the blocks beside those of the drive springs.
+    /// Constant forces on the blocks in addition to the drive springs.
     pub fn dead_load(&self) -> &DeadLoad {
         &self.dead_load
     }
 
     /// Mean over the [facing blocks](Surface::n_facing) of the constant forces along the drive and to its
-    /// left, over the load: their part of mu*.
+    /// left, over the load: their contribution to mu*.
     pub fn mean_dead_load(&self) -> [f64; 2] {
         let n_facing = self.surface.n_facing() as f64;
         let sum = self
@@ -213,19 +213,19 @@ impl Model {
         self.springs
     }
 
-    /// Stiffness of the spring through which the drive pulls a block where all blocks of a sheet move alike:
-    /// of the drive spring, and of the springs between sheets that follow it in series.
+    /// Stiffness of the spring through which the drive pulls a block if all blocks of a sheet move equally:
+    /// the drive spring and the springs between sheets, in series.
     pub fn mount_stiffness(&self) -> f64 {
         sheets::stiffness_in_series(&self.sheets, self.drive.k_drive)
     }
 
-    /// Number of blocks of the whole lattice that exist.
+    /// Number of existing blocks of the whole lattice.
     pub fn n_blocks(&self) -> usize {
         self.slider.n_blocks(&self.lattice)
     }
 
-    /// Fall of strength per slip of a block in contact, `W = (S - K)/D_c` with the mean strength of all of
-    /// them, in units of `E h`; none under laws whose strength does not fall with slip.
+    /// Fall of strength per slip of a block in contact, `W = (S - K)/D_c`, with the mean strength of all
+    /// blocks in contact, in units of `E h`; none if strength does not fall with slip.
     pub fn weakening(&self) -> Option<f64> {
         let law = self.friction.strength_over_slip()?;
         let share_in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
@@ -254,16 +254,16 @@ impl Model {
     }
 
     /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this
-    /// one does, in which waiting times are counted: V* times `sum k_s/(k_2 N)`, with the stiffness in series
-    /// of a stack of sheets, or of the rows of an upright sheet.
+    /// one. Waiting times are counted in it. The speed is V* times `sum k_s/(k_2 N)`, with the stiffness in
+    /// series of a stack of sheets, or of the rows of an upright sheet.
     pub fn loading_speed(&self) -> f64 {
         let per_contact = self.pull_through_rows();
         let stiffness = per_contact.unwrap_or_else(|| self.mount_stiffness() * self.driven_share());
         self.drive.v_star * (stiffness * self.share_along_friction() / K_DRIVE)
     }
 
-    /// Part of a pull along the drive that friction opposes: `|d_x|` of an upright sheet, along which it
-    /// acts, and else 1.
+    /// Share of a pull along the drive that friction opposes: `|d_x|` for an upright sheet, where friction
+    /// acts along x, and otherwise 1.
     pub(crate) fn share_along_friction(&self) -> f64 {
         match self.friction.interface() {
             Some(_) => self.drive.direction[0].abs(),
@@ -271,14 +271,14 @@ impl Model {
         }
     }
 
-    /// Speed at which the paper's drive loads equal blocks as fast as this one loads these, in the time in
+    /// Speed at which the paper's drive loads equal blocks as fast as this drive loads these, per time in
     /// which a slip front passes a block: the [loading speed](Self::loading_speed) times
-    /// [`Slider::mean_slowness`]. Equal blocks of any modulus and density have their own V*.
+    /// [`Slider::mean_slowness`]. For equal blocks of any modulus and density this is their own V*.
     pub fn speed_against_front(&self) -> f64 {
         self.loading_speed() * self.slider.mean_slowness
     }
 
-    /// Share of the load that the blocks in contact bear: less than 1 where that of textured blocks is not
+    /// Share of the load that the blocks in contact bear: less than 1 if the load of textured blocks is not
     /// redistributed.
     pub fn share_of_load(&self) -> f64 {
         let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
@@ -286,16 +286,16 @@ impl Model {
     }
 
     /// The longest time in which mu* falls from its peak half-way to the [level of
-    /// sliding](Self::steady_level) in a transition; a slower fall is creep. It is the longest of three
-    /// times: of loading, 2.5/V* (Eq. 12), after which kinetic friction is measured; of a slip front across
-    /// the slider, a block per t*; and of a swing of the slider on its drive springs.
+    /// sliding](Self::steady_level) in a transition; a slower fall is creep. The largest of three times: the
+    /// loading time, 2.5/V* (Eq. 12), after which kinetic friction is measured; the time of a slip front
+    /// across the slider, a block per t*; and the period of the slider on its drive springs.
     pub fn longest_fall(&self) -> f64 {
         let delay = self.friction.loading_delay(self.mount_stiffness());
         let loading = ONSET_PATH / self.loading_speed() * delay;
         loading.max(self.response_time())
     }
 
-    /// The longer of the times, in t*, of a slip front across the slider, a block per t*, and of a swing of
+    /// The longer of two times, in t*: of a slip front across the slider, a block per t*, and the period of
     /// the slider on its drive springs.
     fn response_time(&self) -> f64 {
         let front = self.lattice.nx.max(self.lattice.ny) as f64;
@@ -303,14 +303,14 @@ impl Model {
     }
 
     /// The longest time, in t*, for which a held drive stands still. Without damping, kinetic friction of R*
-    /// of the static one stops a swing on the drive springs after some (1 - R*)/(4 R*) periods, so that a
-    /// slider that slides for 1000 of them has an R* of less than 3e-4.
+    /// times static friction stops an oscillation on the drive springs after some (1 - R*)/(4 R*) periods, so
+    /// that a slider that slides for 1000 periods has an R* of less than 3e-4.
     pub(crate) fn longest_stop(&self) -> f64 {
         1000.0 * self.response_time()
     }
 
-    /// Drag of the damping in steady sliding at V*; 0 under a held drive. It is the part of
-    /// [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a lattice must call this
+    /// Drag of the damping in steady sliding at V*; 0 under a held drive. The part of
+    /// [`steady_level`](Self::steady_level) that is not friction. All `ranks` of a lattice must call this
     /// together.
     pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
         let drag = self.damping * self.drive.steady_speed();
@@ -337,8 +337,8 @@ impl Model {
     ///
     /// The factor in brackets is the mass of a stack of sheets of relative thickness h_k, and `N_facing` the
     /// number of [facing blocks](Surface::n_facing). V* counts as 0 under a held drive; a coefficient that
-    /// depends on the speed is taken at V*; for springs in contact that form again half the
-    /// mean threshold stands for kinetic friction. All `ranks` of a lattice must call this together.
+    /// depends on the speed is taken at V*. For contact springs that form again, half the mean threshold
+    /// replaces kinetic friction. All `ranks` of a lattice must call this together.
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self

@@ -1,4 +1,4 @@
-//! Young's moduli of the blocks that a rank holds and of the rows beside them, and the springs that follow
+//! Young's moduli of the blocks that a rank holds and of the neighbouring rows, and the springs that follow
 //! from them.
 
 use std::ops::Range;
@@ -18,8 +18,8 @@ pub(crate) struct Moduli<'a> {
 }
 
 impl<'a> Moduli<'a> {
-    /// Moduli of the rows that this rank holds. All `ranks` call this at once, and exchange the moduli at the
-    /// ends of their rows.
+    /// Moduli of the rows that this rank holds. All `ranks` must call this together, and exchange the moduli
+    /// at the ends of their rows.
     pub(crate) fn new(
         slider: &'a Slider,
         lattice: &Lattice,
@@ -50,7 +50,7 @@ impl<'a> Moduli<'a> {
         moduli
     }
 
-    /// Modulus of block (i, j) of the lattice, in or beside these rows.
+    /// Modulus of block (i, j) of the lattice, in these rows or next to them.
     pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         if self.slider.has_equal_springs() {
             return 1.0;

@@ -1,4 +1,4 @@
-//! Estimates of when the slider begins to slip.
+//! Estimates of the time at which the slider begins to slip.
 
 use crate::communicator::Communicator;
 use crate::lattice::{Edges, K_DIAGONAL, K_DRIVE, springs_on_a_lone_block};
@@ -6,21 +6,23 @@ use crate::model::{Model, ONSET_PATH};
 use crate::vector_field::length;
 
 impl Model {
-    /// Earliest and latest t* at which the onset is expected. The later of the two is Eq. 12 for blocks that
-    /// bear their load alone, which is larger by the [load factor](crate::Surface::load_factor) f where only
-    /// some touch; the earlier one is Eq. 12 for blocks that bear it together, a share c of all, or, if that
-    /// is later, for blocks that stand alone and are pushed by their free neighbours too:
+    /// Earliest and latest t* at which the onset is expected. The later one is Eq. 12 for blocks that each
+    /// bear their load alone: where only some blocks are in contact, it is later by the [load
+    /// factor](crate::Surface::load_factor) f. The earlier one is Eq. 12 for blocks that bear the load
+    /// together, with a share c of all in contact, or, if that is later, for single blocks that their free
+    /// neighbours push too:
     ///
     /// ```text
     /// max(2.5 c f, f/A k_2)/V* ... 2.5 f/V*
     /// ```
     ///
-    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*; c
-    /// f is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks passes to
-    /// those that touch is known only for a drive on every block: any other drive has no `load_factor`, and
-    /// pulls all blocks together. What a dead load bears, tau, the drive need not: it takes tau/k_2 off each
-    /// path; adhesion adds its part of the threshold over k_2. Springs in contact take longer to load, by
-    /// (k_s + k_t)/k_t. Under a program it is the time at which the drive has gone the path.
+    /// with A = [`springs_on_a_lone_block`] and the [loading speed](Self::loading_speed) in place of V*; c f
+    /// is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks transmits
+    /// to blocks in contact is known only for a drive on every block. Any other drive has no `load_factor`,
+    /// and pulls all blocks together. A dead load tau shortens each path by tau/k_2, and adhesion lengthens
+    /// it by its part of the threshold over k_2. Contact springs take longer to load, by the factor
+    /// (k_s + k_t)/k_t. Under a program the results are the times at which the drive has moved by these
+    /// paths.
     pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
         let together = ONSET_PATH * self.share_of_load();
@@ -46,21 +48,20 @@ impl Model {
         })
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact. For a drive at
+    /// Exact time of the first slip of a block in contact on a surface without texture. For a drive at
     /// constant speed along a direction
     ///
     /// ```text
     /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
     /// ```
     ///
-    /// In general it is the time t at which the path of the drive is as long as that of the constant speed at
-    /// this time, `path(t) = V* t*`. A dead load takes its part of each threshold. A stack of sheets takes
-    /// the stiffness in series, which holds for slow loading: the sheets above swing about it. All `ranks` of
-    /// a lattice must call this together.
+    /// In general, this is the time t at which the path of the drive reaches the path at constant speed at
+    /// this time, `path(t) = V* t*`. A dead load reduces each threshold by its part. For a stack of sheets
+    /// the stiffness in series is used, which holds for slow loading: the sheets above oscillate about it.
+    /// All `ranks` of a lattice must call this together.
     ///
-    /// It is not known where the slider is bent before any block slips: of springs in contact under drive
-    /// springs that differ, and of an upright sheet, unless its blocks are equal and its edges along x are
-    /// joined.
+    /// None if the slider bends before any block slips: for contact springs under drive springs that differ,
+    /// and for an upright sheet, unless its blocks are equal and it is periodic along x.
     pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> Option<f64> {
         let through_rows = self.pull_through_rows();
         let is_joined = self.lattice.edges[0] == Edges::Periodic;
@@ -73,7 +74,7 @@ impl Model {
         }
         let k_drive = through_rows.unwrap_or_else(|| self.mount_stiffness());
         let v_star = self.drive.v_star;
-        // All springs in contact stretch alike, whatever the radius.
+        // All contact springs have the same delay, at any radius.
         let delay = self.friction.loading_delay(k_drive);
         let pull =
             |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
@@ -115,8 +116,8 @@ impl Model {
         Some(self.drive.time_of_path(-negative[0] * delay))
     }
 
-    /// Pull along the drive at which block `b` slips beside its dead load, 0 if this alone is too much for
-    /// it:
+    /// Pull along the drive at which block `b` slips, in addition to its dead load; 0 if the dead load alone
+    /// makes it slip:
     ///
     /// ```text
     /// sqrt(T^2 - F_0,across^2) - F_0,along,   T = max(mu_s, mu_k) F_n
@@ -135,7 +136,7 @@ impl Model {
         (threshold * threshold - across * across).sqrt() - along
     }
 
-    /// The force that makes block `b` slip, the larger of its static threshold and its kinetic friction
+    /// The force that makes block `b` slip: the larger of its static threshold and its kinetic friction
     /// (D12).
     fn slip_threshold(&self, b: usize) -> f64 {
         self.surface.static_limit(b).max(self.surface.kinetic_force(b))
@@ -150,15 +151,15 @@ impl Model {
         load > self.slip_threshold(b)
     }
 
-    /// Stiffness with which the drive pulls a block of the lowest row of an upright sheet all of whose blocks
-    /// have equal drive springs, while that row does not move: its own spring, and all rows above in series,
-    /// each with the springs of its blocks, behind the shear stiffness of two diagonal springs.
+    /// Stiffness with which the drive pulls a block of the lowest row of an upright sheet while that row does
+    /// not move, if all blocks have equal drive springs: its own drive spring, and all rows above in series,
+    /// each with the drive springs of its blocks, behind the shear stiffness of two diagonal springs.
     ///
     /// ```text
     /// p_j = k_2 (k_s + p_j+1)/(k_2 + k_s + p_j+1),   p = 0 above the last row
     /// ```
     ///
-    /// None of another slider, if blocks differ, or if the drive pulls them off a foundation.
+    /// None for another slider, if blocks differ, or if the drive pulls them off a foundation.
     pub(crate) fn pull_through_rows(&self) -> Option<f64> {
         let slider = &self.slider;
         let is_uniform =

@@ -1,10 +1,10 @@
-//! Widths and pieces of sets of blocks. A set has a mark for every block, row-major, the smallest y first.
+//! Widths and pieces of sets of blocks. A set has one mark per block, row-major, the smallest y first.
 
 use crate::lattice::{Edges, Lattice};
 
 impl Lattice {
-    /// The opening of a set: all its squares of `side` x `side` blocks, each wholly in the set. Places beyond
-    /// free edges are in no set, so that a strip along an edge is as narrow as it looks.
+    /// The opening of a set: the union of all squares of `side` x `side` blocks that lie wholly in the set.
+    /// Places beyond free edges are in no set, so that a strip along an edge is as narrow as it looks.
     ///
     /// ```
     /// # use slipfront::Lattice;
@@ -25,13 +25,13 @@ impl Lattice {
         found
     }
 
-    /// The smallest width of a set: the largest side of a square by which it can be opened without losing a
-    /// block; none for an empty set.
+    /// The width of a set: the largest side of a square for which the opening loses no block; none for an
+    /// empty set.
     pub fn width(&self, set: &[bool]) -> Option<usize> {
         if !set.contains(&true) {
             return None;
         }
-        // A union of squares is one of smaller squares too.
+        // A union of squares is also a union of smaller squares.
         let (mut low, mut high) = (1, self.nx.min(self.ny));
         while low < high {
             let middle = (low + high).div_ceil(2);
@@ -44,7 +44,7 @@ impl Lattice {
         Some(low)
     }
 
-    /// Number of pieces of a set whose blocks touch at an edge.
+    /// Number of pieces of a set, joined where blocks share an edge.
     pub fn n_pieces(&self, set: &[bool]) -> usize {
         let mut left = set.to_vec();
         let mut pieces = 0;
@@ -70,7 +70,7 @@ impl Lattice {
         pieces
     }
 
-    /// Keeps the blocks from which on `side` blocks along an axis are in the set.
+    /// Keeps the blocks that begin a run of `side` blocks along an axis in the set.
     fn keep_starts(&self, set: &mut [bool], axis: usize, side: usize) {
         for step in doublings(side) {
             self.each_line(set, axis, step, |line, old, shift, wraps| {
@@ -85,7 +85,7 @@ impl Lattice {
         }
     }
 
-    /// Adds to each block of a set the `side - 1` that follow along an axis.
+    /// Adds to each block of a set the next `side - 1` blocks along an axis.
     fn extend(&self, set: &mut [bool], axis: usize, side: usize) {
         for step in doublings(side) {
             self.each_line(set, axis, step, |line, old, shift, wraps| {
@@ -100,9 +100,9 @@ impl Lattice {
         }
     }
 
-    /// Calls a function on what belongs together along an axis, one row along x and all rows along y, with a
-    /// copy of it, the length of `step` blocks along the axis in it, and whether its last block is the
-    /// neighbour of its first.
+    /// Calls a function on each line along an axis: on single rows along x, and on all rows at once along y.
+    /// Passes the line, a copy of it, the distance in it of `step` blocks along the axis, and whether its
+    /// last block is the neighbour of its first.
     fn each_line(
         &self,
         set: &mut [bool],
@@ -119,8 +119,8 @@ impl Lattice {
     }
 }
 
-/// Shifts after which a set and its shifted copies, joined one after the other, have joined `side` blocks: 1,
-/// 2, 4 and so on, and the rest.
+/// Shifts by which a set is joined with shifted copies of itself, one after the other, until `side` blocks
+/// are joined: 1, 2, 4 and so on, and the rest.
 fn doublings(side: usize) -> impl Iterator<Item = usize> {
     let mut joined = 1;
     std::iter::from_fn(move || {

@@ -1,10 +1,10 @@
-//! Bins of blocks by their place along the drive.
+//! Bins of blocks by their position along the drive.
 
 use crate::drive::Drive;
 use crate::lattice::Lattice;
 
-/// Bins of blocks by `r . d`, with the place r of a block and the direction d of the drive; in a rotation by
-/// their distance from the axis. A bin is one block wide, or several where that would take more than
+/// Bins of blocks by `r . d`, with the position r of a block and the direction d of the drive; for a rotation
+/// by their distance from the axis. A bin is one block wide, or several if there would be more than
 /// [`PositionBins::MAX`] bins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionBins {
@@ -12,7 +12,7 @@ pub struct PositionBins {
     pub count: usize,
     /// Width of each bin, in blocks.
     pub width: usize,
-    /// Place `r . d` where the first bin begins, in blocks.
+    /// Position `r . d` at which the first bin begins, in blocks.
     pub start: f64,
     measure: Coordinate,
 }
@@ -102,7 +102,7 @@ mod tests {
     use crate::communicator::Alone;
     use crate::slider::Slider;
 
-    /// Bins one block wide have no gap and miss no block, whatever the direction.
+    /// Bins one block wide have no gap and miss no block, for any direction.
     #[test]
     fn every_bin_has_blocks_whose_place_lies_within_it() {
         for degrees in [0.0, 30.0, 45.0, 90.0, 137.0, 180.0, 250.0, 359.0] {
@@ -122,7 +122,7 @@ mod tests {
                     );
                     found[bin] += 1;
                 }
-                // In a narrow slider driven askew, centres lie farther apart than a block is wide.
+                // In a narrow slider driven at an angle, centres are farther apart than one block width.
                 let is_dense = nx.min(ny) > 6 || degrees % 90.0 == 0.0;
                 assert!(!is_dense || found.iter().all(|n| *n > 0), "{degrees} {nx} {ny}");
             }

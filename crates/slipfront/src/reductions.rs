@@ -1,4 +1,4 @@
-//! Maxima over blocks, found by eight running values, whatever the width of the processor's registers.
+//! Maxima over blocks, computed with eight running values at any register width of the processor.
 
 const LANES: usize = 8;
 

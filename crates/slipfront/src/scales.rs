@@ -1,10 +1,10 @@
 //! Conversion between dimensional and dimensionless quantities (Eq. 11).
 //!
-//! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths count
+//! A block is `l` by `l` and as thick as the sheet, `h`; the paper's blocks are cubes, `h = l`. Lengths are
 //! in blocks, masses in block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`), displacements
-//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. An upright sheet touches the substrate with its edge, a
-//! block on `l h` in place of `l^2`, which takes its place in all units. The case parser builds a [`Scales`];
-//! writers of results ask it for units.
+//! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. An upright sheet touches the substrate with its edge: the
+//! contact area of a block is `l h`, which replaces `l^2` in all units. The case parser builds a [`Scales`];
+//! writers of results get their units from it.
 
 use crate::lattice::K_STRAIGHT;
 
@@ -86,7 +86,7 @@ impl Scales {
         per_area * self.contact_area() / self.stiffness()
     }
 
-    /// The load's strain, `eps = P mu_s l/(E h)`, which measures how nonlinear the springs are.
+    /// Strain of the load, `eps = P mu_s l/(E h)`, a measure of the nonlinearity of the springs.
     pub fn epsilon(&self) -> f64 {
         self.pressure * self.mu_static_mean / self.young_modulus * self.slenderness()
     }
@@ -101,8 +101,8 @@ impl Scales {
         self.contact_width / self.thickness
     }
 
-    /// A length in m, counted in blocks, to a billionth of a block: "2.5 um" over "1 um" is 2.5, not the
-    /// 2.4999999999999996 of the two roundings, which would move a groove by a block.
+    /// A length in m as a number of blocks, to a billionth of a block: "2.5 um" over "1 um" is 2.5, not the
+    /// 2.4999999999999996 that two roundings give, which would move a groove by a block.
     ///
     /// ```
     /// let scales = slipfront::Scales {

@@ -1,8 +1,9 @@
-//! A slider that is a stack of sheets: lattices above the one in friction, coupled to it block by block.
+//! A slider made of a stack of sheets: lattices above the sheet in friction, coupled to it block by block.
 //!
-//! A bulk body answers a traction of wave number q with a stiffness in proportion to q. One sheet on a mount
-//! does so at one q alone, two or three sheets over a wide range. With displacements `u_k` of sheet k,
-//! counted from the lowest, 0, which alone is in friction, and the drive springs on the highest:
+//! A bulk body responds to a traction of wave number q with a stiffness proportional to q. One sheet on a
+//! mount does so only at one q, two or three sheets over a wide range of q. Sheets are counted from the
+//! lowest, 0, which alone is in friction; the drive springs pull the highest. The displacements `u_k` of
+//! sheet k obey
 //!
 //! ```text
 //! h_k m u_k'' = h_k F_c(u_k) + g_k (u_k-1 - u_k) + g_k+1 (u_k+1 - u_k) - h_k m Omega u_k'
@@ -12,28 +13,28 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
     /// Thickness `h_k` over that of the lowest sheet: the stiffness of the springs between its blocks and the
-    /// mass of these, in units of those of the lowest sheet.
+    /// mass of its blocks, relative to the lowest sheet.
     pub thickness: f64,
-    /// Stiffness `g_k` of the spring between each of its blocks and the one below, in units of `E h` with the
-    /// thickness h of the lowest sheet.
+    /// Stiffness `g_k` of the spring between each of its blocks and the block below, in units of `E h` with
+    /// the thickness h of the lowest sheet.
     pub coupling: f64,
 }
 
-/// Mass of the blocks of all sheets at one place, in units of that of the lowest.
+/// Mass of the blocks of all sheets at one place, in units of that of the lowest sheet.
 pub(crate) fn mass(sheets: &[Sheet]) -> f64 {
     sheets.iter().fold(1.0, |mass, sheet| mass + sheet.thickness)
 }
 
-/// Stiffness with which a drive spring of stiffness `k_drive` on the highest sheet pulls the lowest one,
-/// where all blocks of a sheet move alike: `1/(1/k_s + sum 1/g_k)`.
+/// Stiffness with which a drive spring of stiffness `k_drive` on the highest sheet pulls the lowest one, if
+/// all blocks of a sheet move equally: `1/(1/k_s + sum 1/g_k)`.
 pub(crate) fn stiffness_in_series(sheets: &[Sheet], k_drive: f64) -> f64 {
     sheets
         .iter()
         .fold(k_drive, |k, sheet| k * sheet.coupling / (k + sheet.coupling))
 }
 
-/// Largest eigenvalue of the springs between the sheets, to the drive and of stiffness `contact` to the
-/// substrate, over the masses: the square of the highest frequency of blocks one above the other.
+/// Largest eigenvalue, over the masses, of the springs between the sheets, to the drive, and of stiffness
+/// `contact` to the substrate: the square of the highest frequency of a column of blocks.
 pub(crate) fn largest_eigenvalue(sheets: &[Sheet], k_drive: f64, contact: f64) -> f64 {
     let mut masses = vec![1.0];
     let mut diagonal = vec![contact];
@@ -45,7 +46,8 @@ pub(crate) fn largest_eigenvalue(sheets: &[Sheet], k_drive: f64, contact: f64) -
     diagonal[sheets.len()] += k_drive;
     let entries = |k: usize| diagonal[k] / masses[k];
     let beside = |k: usize| sheets[k - 1].coupling.powi(2) / (masses[k - 1] * masses[k]);
-    // Eigenvalues below x are as many as pivots of the matrix less x are negative (Sylvester).
+    // The number of eigenvalues below x equals the number of negative pivots of the matrix less x
+    // (Sylvester).
     let all_lie_below = |x: f64| {
         let mut pivot = entries(0) - x;
         (1..masses.len()).all(|k| {
@@ -54,9 +56,9 @@ pub(crate) fn largest_eigenvalue(sheets: &[Sheet], k_drive: f64, contact: f64) -
             is_negative
         }) && pivot < 0.0
     };
-    // The trace bounds it, since none is negative.
+    // The trace is an upper bound, since no eigenvalue is negative.
     let (mut low, mut high) = (0.0, (0..masses.len()).map(entries).sum::<f64>());
-    /// Halvings after which the ends are neighbouring numbers.
+    /// Number of bisections after which the ends are adjacent floating-point numbers.
     const HALVINGS: usize = 60;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

@@ -1,4 +1,4 @@
-//! The loop of a run: evaluate, observe, stop, step.
+//! The main loop of a run: evaluate, observe, stop, step.
 
 use std::sync::Arc;
 
@@ -19,13 +19,13 @@ use crate::state::State;
 use crate::stop::{Stop, StopReason};
 use crate::totals::Totals;
 
-/// Largest number of steps under a drive that is held, whose steps are not known in advance: the fused kernel
-/// keeps their numbers in 32 bits.
+/// Largest number of steps under a held drive, where the number is not known in advance: the fused kernel
+/// stores step numbers in 32 bits.
 const MAX_HELD_STEPS: u64 = u32::MAX as u64 - 1;
 
-/// Force over the mean static strength of the blocks below which they are at rest, where exact rest does not
-/// come: less than mu* rises by in a step of a held drive, 3.75e-4 at V* = 0.01 and dt* = 0.1, to which mu_s*
-/// is known.
+/// Ratio of force to mean static strength below which blocks count as at rest, if exact rest never comes. It
+/// is less than the rise of mu* in one step of a held drive, 3.75e-4 at V* = 0.01 and dt* = 0.1, which limits
+/// the accuracy of mu_s*.
 const FORCE_AT_REST: f64 = 1e-4;
 
 /// A run in progress.
@@ -43,9 +43,9 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A slider at t = 0 in a given state, or at rest, computed as `execution` says. `dt_star` must stay
-    /// below [`crate::lattice::dt_star_limit`]. Ranks that share a lattice call this and then the same
-    /// functions, each with a model of its own rows and the state of their blocks.
+    /// A slider at t = 0 in a given state, or at rest, computed with the options of `execution`. `dt_star`
+    /// must stay below [`crate::lattice::dt_star_limit`]. All ranks that share a lattice must call this and
+    /// then the same functions, each with a model of its own rows and the state of their blocks.
     ///
     /// # Panics
     /// If a displacement or velocity of the state is not finite.
@@ -65,20 +65,20 @@ impl Simulation {
         Self::begin(model, dt_star, engine, communicator)
     }
 
-    /// A slider at t = 0 whose steps a [`Device`](crate::device::Device) computes: at least the first one was
-    /// recorded of the `lattice`. Each further step must be recorded before it is made, see
-    /// [`device_lattice`](Self::device_lattice). Numbers of single blocks, but for times of first slips, and
-    /// checkpoints can be had where the device has stopped.
+    /// A slider at t = 0 with steps that a [`Device`](crate::device::Device) computes: at least the first
+    /// step of the `lattice` must have been recorded. Each further step must be recorded before it is made,
+    /// see [`device_lattice`](Self::device_lattice). Values of single blocks, except first-slip times, and
+    /// checkpoints are available only at the step at which the device has stopped.
     ///
     /// # Panics
-    /// If no step was recorded, or if its energies were not.
+    /// If no step was recorded, or its energies were not.
     pub fn replay(lattice: DeviceLattice) -> Self {
         let (model, dt_star) = (Arc::clone(&lattice.model), lattice.equations.dt_star);
         let engine = Box::new(Replay::new(lattice));
         Self::begin(model, dt_star, engine, Arc::new(Alone))
     }
 
-    /// The lattice that a device takes through further steps, of a run that [replays](Self::replay) them.
+    /// The lattice that a device advances by further steps, for a run that [replays](Self::replay) them.
     pub fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {
         self.engine.device_lattice()
     }
@@ -107,13 +107,13 @@ impl Simulation {
         simulation
     }
 
-    /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as
-    /// `execution` says. `read` is given the number of a column, a block and room for the values of the
-    /// blocks from there on. None if another kernel wrote the checkpoint. Ranks that share a lattice all call
-    /// this together, each for the blocks of its rows.
+    /// A run that continues from a checkpoint, with the same bits as an uninterrupted run, computed with the
+    /// options of `execution`. `read` receives the number of a column, the first block, and room for the
+    /// values from this block on. None if another kernel wrote the checkpoint. All ranks that share a lattice
+    /// must call this together, each for the blocks of its rows.
     ///
     /// # Errors
-    /// Whatever `read` fails with.
+    /// Any error of `read`.
     pub fn resume<E>(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
@@ -138,9 +138,9 @@ impl Simulation {
         }))
     }
 
-    /// The state that [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between
-    /// two calls of [`Simulation::advance`], it belongs together with the recordings of the observers by
-    /// then. All ranks must call this together.
+    /// The state that [`Simulation::resume`] needs in addition to the [columns](Self::write_columns). A
+    /// checkpoint taken between two calls of [`Simulation::advance`] matches the recordings of the observers
+    /// at that time. All ranks must call this together.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             step: self.clock.step,
@@ -155,9 +155,9 @@ impl Simulation {
         }
     }
 
-    /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the number
-    /// of the column, the first block, and the values. The columns are [`BlockColumn::ALL`], those of the law
-    /// of friction and those of the sheets above the lowest, together [`Model::n_columns`].
+    /// Writes the values of all blocks that [`Simulation::resume`] reads, part by part: `write` receives the
+    /// number of the column, the first block, and the values. The columns are [`BlockColumn::ALL`], those of
+    /// the law of friction and those of the sheets above the lowest, in total [`Model::n_columns`].
     ///
     /// # Errors
     /// Errors of `write`.
@@ -178,11 +178,11 @@ impl Simulation {
         })
     }
 
-    /// Steps until `stop`, and shows every instant, including the last, to the observers that are due. All
+    /// Steps until `stop`, and calls the observers that are due at every instant, including the last. All
     /// ranks must call this together, with observers that need energies at the same steps.
     ///
     /// # Errors
-    /// [`RunError::NotFinite`] when the run diverges, and whatever an observer fails with.
+    /// [`RunError::NotFinite`] when the run diverges, and any error of an observer.
     pub fn run(&mut self, stop: Stop, observers: &mut [Scheduled]) -> Result<StopReason, RunError> {
         loop {
             if let Some(reason) = self.advance(stop, u64::MAX, observers)? {
@@ -192,8 +192,7 @@ impl Simulation {
     }
 
     /// Makes at most `steps` steps towards `stop`; returns none if it was not reached. Observers see every
-    /// instant once, also where one call ends and the next begins. All ranks must call this together, as
-    /// [`Simulation::run`].
+    /// instant once, also between two calls. All ranks must call this together, as for [`Simulation::run`].
     ///
     /// # Errors
     /// As for [`Simulation::run`].
@@ -239,8 +238,8 @@ impl Simulation {
         self.measure();
     }
 
-    /// How a held drive finds rest from this step on: by force, once the drive has stood for so long that it
-    /// would stand for ever over blocks that hardly move, and in all steps after that.
+    /// Criterion of rest for a held drive from this step on: by force, once the drive has stood still for so
+    /// long that it would wait forever for blocks that hardly move, and in all later steps.
     fn rest(&self, speed_square_before: f64) -> Rest {
         if self.clock.rest == Rest::Exact && !self.stands_too_long() {
             return Rest::Exact;
@@ -254,16 +253,17 @@ impl Simulation {
     }
 
     /// The residual force that keeps the blocks moving, springs less friction, from the balance of power: the
-    /// force that changes their speed and makes up for the drag of damping and dampers, together with the
-    /// one that would stop them. For one block that creeps with strong damping it is `|F| - f`; for many it
-    /// is the root of the sum of their squares.
+    /// force that changes their speed and balances the drag of damping and dampers, plus the force that would
+    /// stop them. For one block that creeps with strong damping this is `|F| - f`; for many blocks it is the
+    /// root of the sum of squares.
     ///
     /// ```text
     /// |dv/dt| + Omega v + P_viscous/v + max(1, k_s^(1/2)) v,   v = (sum m v_i^2)^(1/2)
     /// ```
     ///
-    /// The last term is that of blocks which swing: it is the largest force of their springs, of stiffness 1
-    /// and k_s, where they pass the middle without another force.
+    /// The last term is for blocks that oscillate and pass the middle, where no net force acts: it is the
+    /// largest force of their springs, of stiffness 1 and k_s, in the oscillation with this speed at the
+    /// middle.
     fn force_of_motion(&self, speed_before: f64) -> f64 {
         let (model, speed) = (&self.model, self.totals.velocity_square.sqrt());
         if speed == 0.0 {
@@ -274,10 +274,10 @@ impl Simulation {
         change + rate * speed + self.engine.viscous_power() / speed
     }
 
-    /// Whether the drive has stood for longer than any slip takes to end.
+    /// Whether the drive has stood still for longer than any slip lasts.
     fn stands_too_long(&self) -> bool {
         let standing = self.clock.standing;
-        // Other drives never stand, and their steps need no limit.
+        // Other drives never stand still, and their steps need no limit.
         standing > 0 && standing as f64 * self.clock.dt_star > self.model.longest_stop()
     }
 
@@ -322,7 +322,7 @@ impl Simulation {
         self.engine.sheets()
     }
 
-    /// The first peak of mu* as far as it is known by now.
+    /// The first peak of mu* found so far.
     pub fn peak(&self) -> Peak {
         self.peak
     }
@@ -334,13 +334,13 @@ impl Simulation {
     }
 
     /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped.
-    /// The run ends, and its memory is reused for them.
+    /// Ends the run and reuses its memory for the times.
     pub fn into_first_slip_time_star(self) -> Vec<f64> {
         self.engine.into_first_slips()
     }
 
-    /// Checks that the run does not diverge. Sums of squares of speeds show it first, because they overflow
-    /// long before displacements do.
+    /// Checks that the run does not diverge. Sums of squares of speeds show divergence first, because they
+    /// overflow long before displacements do.
     fn check_finite(&self) -> Result<(), RunError> {
         let (point, totals) = (&self.point, &self.totals);
         let stored = totals.stored_energy.unwrap_or_default().total();
@@ -365,7 +365,7 @@ impl Simulation {
         })
     }
 
-    /// Checks that the slider comes to rest, since a held drive would stand for ever over one that does not.
+    /// Checks that the slider comes to rest, since otherwise a held drive would stand still forever.
     fn check_standing(&self) -> Result<(), RunError> {
         let Clock { step, standing, .. } = self.clock;
         if self.stands_too_long() && !self.snapshot().next_clock().drive_moved() {
@@ -385,8 +385,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its
-    /// displacement along this axis. A displacement that is no number counts as infinite.
+    /// The block of all ranks with the largest displacement along an axis, the first such block, and this
+    /// displacement. A NaN displacement counts as infinite.
     fn largest_displacement(&self) -> (usize, f64) {
         let size = |u: f64| if u.is_nan() { f64::INFINITY } else { u.abs() };
         let first = self.model.lattice.blocks_of(&self.model.rows).start;
@@ -398,7 +398,7 @@ impl Simulation {
                 }
             }
         }
-        // The lowest of the ranks that have it has the first block, and tells the others.
+        // The lowest rank with this value has the first such block, and sends it to the others.
         let mut largest = [size(value)];
         self.communicator.largest(&mut largest);
         let lowest = lowest_rank(&*self.communicator, size(value) == largest[0]);

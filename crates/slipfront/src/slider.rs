@@ -7,29 +7,29 @@ use crate::fixed_point::sum_over;
 use crate::lattice::{Edge, Lattice, harmonic_mean};
 
 /// Heterogeneous properties of the slider; arrays have one value per block. Without any of them, as in the
-/// paper, all blocks are alike.
+/// paper, all blocks are equal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slider {
-    /// Young's modulus `E_i/E`. A spring between blocks takes the harmonic mean of its ends.
+    /// Young's modulus `E_i/E`. A spring between two blocks has the harmonic mean of their moduli.
     pub stiffness: Option<Vec<f64>>,
-    /// Density, and so mass, `rho_i/rho`.
+    /// Density, and thus mass, `rho_i/rho`.
     pub density: Option<Vec<f64>>,
-    /// Mean of the masses of all blocks of the whole lattice that exist, in units of `rho l^3`.
+    /// Mean mass of all existing blocks of the whole lattice, in units of `rho l^3`.
     pub mean_mass: f64,
-    /// Mean over all blocks of the whole lattice that exist of the time in which a wave passes one,
-    /// `sqrt(rho_i E/(rho E_i))`, over the time for a block of `E` and `rho`.
+    /// Mean time in which a wave passes a block, over all existing blocks of the whole lattice,
+    /// `sqrt(rho_i E/(rho E_i))`, relative to a block of `E` and `rho`.
     pub mean_slowness: f64,
     /// Drive springs of different stiffness.
     pub drive_springs: Option<DriveSprings>,
-    /// Whether some blocks of the whole lattice that exist have no drive spring.
+    /// Whether some existing blocks of the whole lattice have no drive spring.
     pub drives_some: bool,
     /// Outline of the slider, if some blocks do not exist.
     pub outline: Option<Outline>,
-    /// Time of the dampers beside all springs between blocks, `tau_v = eta_ij/k_ij` (Kelvin-Voigt); 0 for
-    /// none.
+    /// Time `tau_v = eta_ij/k_ij` of the dampers in parallel with all springs between blocks (Kelvin-Voigt);
+    /// 0 for none.
     pub viscosity_time: f64,
     /// Whether the springs along a free edge of the lattice are half as stiff as those inside, as in a
-    /// continuum of which every square between four blocks is a piece. In the paper they are not.
+    /// continuum divided into squares between four blocks. They are not in the paper.
     pub halves_edge_springs: bool,
 }
 
@@ -48,7 +48,7 @@ pub struct DriveSprings {
 pub struct Outline {
     /// Whether each block exists.
     pub exists: Vec<bool>,
-    /// Number of blocks that exist in the whole lattice.
+    /// Number of existing blocks in the whole lattice.
     pub n_blocks: usize,
 }
 
@@ -69,8 +69,8 @@ impl Default for Slider {
 }
 
 impl DriveSprings {
-    /// Drive springs of the blocks that this rank holds. All `ranks` call this at once: the sum has the same
-    /// bits for any number of ranks.
+    /// Drive springs of the blocks that this rank holds. All `ranks` must call this together: the sum has the
+    /// same bits for any number of ranks.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         Self {
             sum: sum_over(ranks, relative.len(), |b| relative[b]),
@@ -80,7 +80,7 @@ impl DriveSprings {
 }
 
 impl Outline {
-    /// The outline of the blocks that this rank holds. All `ranks` call this at once.
+    /// The outline of the blocks that this rank holds. All `ranks` must call this together.
     pub fn new(exists: Vec<bool>, ranks: &dyn Communicator) -> Self {
         let mut count = [exists.iter().filter(|&&exists| exists).count() as i64];
         ranks.sum(&mut count);
@@ -90,8 +90,8 @@ impl Outline {
         }
     }
 
-    /// Marks the blocks of some rows that belong to the disc that fills the lattice: those whose centres lie
-    /// within half its shorter side of its middle.
+    /// Marks the blocks of some rows that belong to the largest disc in the lattice: those with centres
+    /// within half the shorter side from the middle.
     ///
     /// ```
     /// use slipfront::{Lattice, Outline};
@@ -114,7 +114,8 @@ impl Outline {
 
 impl Slider {
     /// A slider with the given moduli, densities and outline of the blocks that this rank holds. All `ranks`
-    /// call this at once. Each drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
+    /// must call this together. The drive spring of each block is proportional to its modulus:
+    /// `k_s,i = k_s E_i/E`.
     pub fn new(
         stiffness: Option<Vec<f64>>,
         mut density: Option<Vec<f64>>,
@@ -122,7 +123,7 @@ impl Slider {
         ranks: &dyn Communicator,
     ) -> Self {
         if let (Some(density), Some(outline)) = (&mut density, &outline) {
-            // Nothing acts on what does not exist, but no force over no mass would be no number.
+            // No force acts on missing blocks, but 0/0 with a mass of 0 would be NaN.
             let outside = density.iter_mut().zip(&outline.exists);
             outside
                 .filter(|(_, exists)| !**exists)
@@ -151,8 +152,8 @@ impl Slider {
         slider
     }
 
-    /// A property that changes linearly along an axis, at the middle of every block of some rows: `from` at
-    /// the edge where the axis begins, `to` at the other.
+    /// A property that changes linearly along an axis, at the centre of every block of some rows: `from` at
+    /// the edge where the axis begins, `to` at the other edge.
     ///
     /// ```
     /// use slipfront::{Lattice, Slider};
@@ -161,7 +162,7 @@ impl Slider {
     /// ```
     pub fn grade(lattice: &Lattice, rows: Range<usize>, axis: usize, [from, to]: [f64; 2]) -> Vec<f64> {
         let count = [lattice.nx, lattice.ny][axis];
-        // Of whole numbers, so that the opposite grade is the mirror image to the last bit.
+        // Computed from integers, so that the opposite grade is the mirror image to the last bit.
         let at = |place: usize| {
             let (before, behind) = (2 * place + 1, 2 * (count - place) - 1);
             (from * behind as f64 + to * before as f64) / (2 * count) as f64
@@ -170,7 +171,7 @@ impl Slider {
         rows.flat_map(columns).collect()
     }
 
-    /// Panics unless these are the properties of `n` blocks, with drive springs on those alone that exist.
+    /// Panics unless these are the properties of `n` blocks, with drive springs only on existing blocks.
     pub(crate) fn assert_fits(&self, n: usize) {
         let (springs, outline) = (self.drive_springs.as_ref(), self.outline.as_ref());
         for (what, length) in [
@@ -220,7 +221,7 @@ impl Slider {
         }
     }
 
-    /// Number of blocks of the whole lattice that exist.
+    /// Number of existing blocks of the whole lattice.
     pub fn n_blocks(&self, lattice: &Lattice) -> usize {
         self.outline
             .as_ref()
@@ -232,8 +233,8 @@ impl Slider {
         self.density.as_ref().map_or(1.0, |density| density[b])
     }
 
-    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive); 0 for a block that
-    /// does not exist.
+    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive); 0 for a missing
+    /// block.
     pub fn drive_spring(&self, b: usize) -> f64 {
         match &self.drive_springs {
             _ if !self.exists(b) => 0.0,
@@ -251,8 +252,8 @@ impl Slider {
         }
     }
 
-    /// Takes the drive springs away from all blocks but those for which `is_attached` is true, among the
-    /// blocks that this rank holds. All `ranks` call this at once.
+    /// Removes the drive springs from all blocks that this rank holds except those for which `is_attached` is
+    /// true. All `ranks` must call this together.
     pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
         let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
         let mut without = [(0..n_blocks)
@@ -263,7 +264,7 @@ impl Slider {
         (self.drive_springs, self.drives_some) = (Some(springs), without[0] > 0);
     }
 
-    /// Attaches drive springs to the blocks of one edge of the lattice alone, on the rank that holds these
+    /// Attaches drive springs only to the blocks of one edge of the lattice, on the rank that holds these
     /// `rows`: see [`attach`](Self::attach).
     pub fn attach_edge(
         &mut self,
@@ -289,7 +290,7 @@ impl Slider {
         self.outline.as_ref().is_none_or(|outline| outline.exists[b])
     }
 
-    /// Whether there are dampers beside the springs between blocks.
+    /// Whether there are dampers in parallel with the springs between blocks.
     pub fn is_viscous(&self) -> bool {
         self.viscosity_time > 0.0
     }
@@ -299,9 +300,9 @@ impl Slider {
         self.stiffness.is_none() && self.outline.is_none() && !self.halves_edge_springs
     }
 
-    /// Stiffness of the spring from block (i, j) of the lattice to the block `offset` away, of these moduli,
-    /// over the stiffness of its bond: the harmonic mean of the moduli, and half of it along a free edge
-    /// where [`halves_edge_springs`](Self::halves_edge_springs) says so.
+    /// Stiffness of the spring from block (i, j) of the lattice to the block `offset` away, from these
+    /// moduli, over the stiffness of its bond: the harmonic mean of the moduli, and half of it along a free
+    /// edge if [`halves_edge_springs`](Self::halves_edge_springs) is set.
     pub(crate) fn spring(
         &self,
         lattice: &Lattice,

@@ -1,4 +1,4 @@
-//! The view of a run that observers get.
+//! The view of a run that observers receive.
 
 use crate::checkpoint::BlockColumn;
 use crate::clock::{Clock, Rest};
@@ -32,7 +32,7 @@ pub struct Snapshot<'a> {
     pub contact: ContactTotals,
     /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
-    /// The first peak of mu* as far as it is known at t_n.
+    /// The first peak of mu* found up to t_n.
     pub peak: Peak,
     /// Whether the run ends here.
     pub last: bool,
@@ -41,11 +41,11 @@ pub struct Snapshot<'a> {
     pub(crate) communicator: &'a dyn Communicator,
 }
 
-/// Blocks at once in sums over columns: few enough for the stack, since memory for all of them would be asked
-/// for at every row of a series.
+/// Number of blocks at once in sums over columns: few enough for the stack, to avoid allocating memory for
+/// all blocks at every row of a series.
 const CHUNK: usize = 1024;
 
-/// Changes of mu* below this are taken for rounding errors.
+/// Changes of mu* below this count as rounding errors.
 pub(crate) const MU_STAR_ROUNDING: f64 = 1e-9;
 
 impl Snapshot<'_> {
@@ -63,7 +63,7 @@ impl Snapshot<'_> {
         self.engine.block(self.model, &self.clock, b)
     }
 
-    /// Writes `field` of every block, row by row from y = 0, into `values`: the same numbers as
+    /// Writes `field` of every block, row by row from y = 0, into `values`: the same values as
     /// [`Field::value`] of every [`block`](Self::block), rounded to `f32`; NaN where no block exists.
     ///
     /// # Panics
@@ -77,15 +77,15 @@ impl Snapshot<'_> {
         });
     }
 
-    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the
-    /// row, the column of the first value, and the values.
+    /// Reads `field` in every `stride`-th row, several blocks of a row at a time: `write` receives the row,
+    /// the column of the first value, and the values.
     pub(crate) fn read_rows(&self, field: Field, stride: usize, mut write: impl FnMut(usize, usize, &[f32])) {
         let Some(outline) = &self.model.slider.outline else {
             return self
                 .engine
                 .read_rows(self.model, &self.clock, field, stride, &mut write);
         };
-        // Where there is no block there is no value.
+        // NaN where there is no block.
         const WIDTH: usize = 128;
         let mut leave_out = |j: usize, i: usize, part: &[f32]| {
             for (first, part) in (i..).step_by(WIDTH).zip(part.chunks(WIDTH)) {
@@ -124,7 +124,7 @@ impl Snapshot<'_> {
         if !load.acts() {
             return 0.0;
         }
-        // Of blocks that are alike the sum is known, also of those of the highest sheet.
+        // The sum over equal blocks is known already, also over those of the highest sheet.
         if load.field.is_none() && slider.drive_springs.is_none() {
             return dot(load.force, self.totals.displacement);
         }
@@ -151,7 +151,7 @@ impl Snapshot<'_> {
         }
     }
 
-    /// Energy of the foundation under an interface and of the load on it, over that at rest; 0 without an
+    /// Energy of the foundation under an interface and of the load on it, relative to rest; 0 without an
     /// interface. All ranks must call this together.
     pub fn foundation_energy(&self) -> f64 {
         let Some(interface) = self.model.friction.interface() else {
@@ -178,8 +178,9 @@ impl Snapshot<'_> {
         }
     }
 
-    /// Energy that falling strength takes since the start, a part of the loss to friction: for each block the
-    /// integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this together.
+    /// Energy dissipated by the fall of strength since the start, a part of the friction loss: for each block
+    /// the integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this
+    /// together.
     pub fn weakening_energy(&self) -> f64 {
         let Some(law) = self.model.friction.strength_over_slip() else {
             return 0.0;
@@ -195,7 +196,7 @@ impl Snapshot<'_> {
                     let lost_before = &mut lost_before[..energies.len()];
                     self.engine.read_memory(self.time_star, 2, first, lost_before);
                 }
-                // Slips become energies.
+                // Replaces slips by energies.
                 for (k, energy) in energies.iter_mut().enumerate() {
                     let block = first + k;
                     let drop = (surface.static_limit(block) - surface.kinetic_force(block)).max(0.0);
@@ -234,7 +235,7 @@ impl Snapshot<'_> {
         for first in (0..n).step_by(PART) {
             let times = &mut times[..PART.min(n - first)];
             self.engine.read_column(BlockColumn::FirstSlip, first, times);
-            // The lesser of a number and NaN is the number.
+            // The minimum of a number and NaN is the number.
             earliest = times.iter().copied().fold(earliest, f64::min);
         }
         let mut latest_negative = [-earliest];
@@ -253,12 +254,13 @@ impl Snapshot<'_> {
         self.next_clock().drive_time_star()
     }
 
-    /// Path of the drive at the next step, along the direction; for a rotation at its largest radius.
+    /// Path of the drive at the next step, along the direction; for a rotation the path at the largest
+    /// radius.
     pub fn next_path(&self) -> f64 {
         self.model.drive.path(self.next_drive_time_star())
     }
 
-    /// mu* at the next step, which the velocities of the blocks already determine up to rounding.
+    /// mu* at the next step; the velocities of the blocks already determine it, up to rounding.
     pub(crate) fn mu_star_next(&self) -> f64 {
         let mut totals = self.totals;
         for axis in 0..2 {

@@ -1,4 +1,4 @@
-//! The largest time step with which a slider is stable.
+//! The largest time step for which a slider is stable.
 
 use crate::communicator::Communicator;
 use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
@@ -7,16 +7,16 @@ use crate::moduli::Moduli;
 use crate::sheets::largest_eigenvalue;
 use crate::slider::Slider;
 
-/// Largest stable time step of a block, from the largest eigenvalue `springs` of
-/// `2 sum_j k_ij e_ij e_ij^T/m_i` over the springs to its neighbours, `held`, the stiffness of the springs
-/// that hold it to the drive and to the substrate over its mass, and the time `tau_v` of the dampers beside
-/// the former, which lag by half a step:
+/// Largest stable time step of a block. `springs` is the largest eigenvalue of `2 sum_j k_ij e_ij e_ij^T/m_i`
+/// over the springs to its neighbours; `held` the stiffness of the springs to the drive and to the substrate,
+/// over the mass of the block; `viscosity_time` the time `tau_v` of the dampers in parallel with the springs
+/// to the neighbours, which lag by half a step:
 ///
 /// ```text
 /// (dt^2 + 2 tau_v dt) springs + dt^2 held = 4
 /// ```
 ///
-/// The first term bounds what the neighbours contribute whatever their motion, since
+/// The first term bounds the contribution of the neighbours for any motion, since
 /// `(x - y)^2 <= 2 x^2 + 2 y^2`.
 ///
 /// ```
@@ -33,15 +33,15 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
 
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
-    /// [`dt_star_limit`], the bound of the paper's slider; of a stack of sheets that of equal blocks held by
-    /// the springs between the sheets. Friction and damping do not lower it. All `ranks` of a lattice must
-    /// call this together.
+    /// [`dt_star_limit`], the bound of the paper's slider. For a stack of sheets it is that of equal blocks
+    /// held by the springs between the sheets. Friction and damping do not lower it. All `ranks` of a lattice
+    /// must call this together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = self.friction.contact_stiffness();
         if !self.sheets.is_empty() {
             let held = largest_eigenvalue(&self.sheets, self.drive.k_drive, contact);
-            // In the middle of equal blocks, 2 sum_j k_ij e_ij e_ij^T/m is this times the identity.
+            // Inside a region of equal blocks, 2 sum_j k_ij e_ij e_ij^T/m is this times the identity.
             let springs = 4.0 * self.springs.along();
             return stable_step(springs, held, 0.0).min(dt_star_limit());
         }

@@ -9,8 +9,8 @@ use crate::vector_field::VectorField;
 pub struct State {
     /// Displacement **u** from the rest site, in units of `P mu_s l^2/(E h)`.
     pub displacement: VectorField,
-    /// Velocity in units of `P mu_s/sqrt(E rho)`: at `t - dt/2` where a simulation begins, at `t + dt/2`
-    /// where it stands.
+    /// Velocity in units of `P mu_s/sqrt(E rho)`: at `t - dt/2` at the start of a simulation, at `t + dt/2`
+    /// after that.
     pub velocity: VectorField,
 }
 

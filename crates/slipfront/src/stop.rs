@@ -11,13 +11,13 @@ pub struct Stop {
     after_onset: bool,
 }
 
-/// Reason for which a run ended.
+/// Reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
     /// The last step is done.
     End,
-    /// The fall that ends the first peak of mu* was seen, or the drive that is held has gone the path up to
+    /// The fall that ends the first peak of mu* has occurred, or a held drive has moved by the path up to
     /// which the largest mu* counts.
     #[serde(rename = "after_onset")]
     Onset,
@@ -32,8 +32,8 @@ impl Stop {
         }
     }
 
-    /// Stops as soon as the fall that ends the first peak is seen, under a held drive as soon as the largest
-    /// mu* is known, and after `last_step` steps at the latest.
+    /// Stops as soon as the fall that ends the first peak has occurred, under a held drive as soon as the
+    /// largest mu* is known, and after `last_step` steps at the latest.
     pub fn after_onset(last_step: u64) -> Self {
         Self {
             last_step,
@@ -41,7 +41,7 @@ impl Stop {
         }
     }
 
-    /// Never stops: the run goes on for as long as it is advanced.
+    /// Never stops: the run continues for as long as it is advanced.
     pub fn never() -> Self {
         Self::at_step(u64::MAX)
     }
@@ -58,7 +58,7 @@ impl Stop {
         next.drive_steps >= self.last_step || (self.after_onset && onset_ends())
     }
 
-    /// Reason for which the run ends now, if it does.
+    /// Reason why the run ends now, if it does.
     pub(crate) fn reached(&self, now: &Snapshot) -> Option<StopReason> {
         if self.after_onset && now.peak.is_final() {
             Some(StopReason::Onset)

@@ -1,5 +1,5 @@
-//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, parts that are private
-//! to the fused kernel, and tests that have a process of their own.
+//! Helpers for tests of slipfront and of crates that use it: ranks that are threads, private parts of the
+//! fused kernel, and tests that run in their own process.
 
 use std::process::Command;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,8 +9,8 @@ use std::thread;
 use crate::communicator::Communicator;
 pub use crate::kernel::fused::for_tests::{FusedDevice, FusedKernel};
 
-/// Does some work in a process of its own, for what is measured of a whole process: the test program is begun
-/// once more for the test `name` alone, which calls this.
+/// Does some work in its own process, to measure properties of a whole process: starts the test program again
+/// for the test `name` alone, which calls this.
 ///
 /// # Panics
 /// If the test fails there, or no test has this name.
@@ -29,7 +29,8 @@ pub fn alone(name: &str, work: impl FnOnce()) {
     assert!(done.status.success() && printed.contains("1 passed"), "{printed}");
 }
 
-/// One of several ranks that are threads of this process: a lattice of many machines can be tried on one.
+/// One of several ranks that are threads of this process, to test on one machine a lattice that many machines
+/// share.
 #[derive(Clone, Debug)]
 pub struct Threads {
     rank: usize,
@@ -40,7 +41,7 @@ pub struct Threads {
     seat: Arc<Seat>,
 }
 
-/// Meeting point at which all ranks exchange words: each is woken once, and not once by every other.
+/// Meeting point at which all ranks exchange words: each rank is woken once, not once by every other rank.
 #[derive(Debug)]
 struct Meeting {
     table: Mutex<Table>,
@@ -49,17 +50,17 @@ struct Meeting {
 
 #[derive(Debug)]
 struct Table {
-    /// Words of each rank that has come.
+    /// Words of each rank that has arrived.
     words: Vec<Option<Vec<u64>>>,
     n_here: usize,
-    /// Meetings that are over.
+    /// Number of meetings that have ended.
     n_over: u64,
-    /// Words of each rank at the last meeting. The next meeting is not over before all have read them.
+    /// Words of each rank at the last meeting. The next meeting does not end before all have read them.
     latest: Arc<Vec<Vec<u64>>>,
     ended: Option<usize>,
 }
 
-/// The place of a rank at the meetings; it is gone when the rank has ended.
+/// The place of a rank at the meetings; it is removed when the rank has ended.
 #[derive(Debug)]
 struct Seat {
     rank: usize,
@@ -82,9 +83,9 @@ impl Meeting {
     }
 }
 
-/// Number of times that a rank lets others go first before it sleeps until it is woken, which costs far more.
-/// There are more ranks than cores, and the words that a rank waits for are mostly there when its turn comes
-/// again.
+/// Number of times that a rank yields to others before it sleeps until it is woken, which costs far more.
+/// There are more ranks than cores, and the words that a rank waits for have mostly arrived when its turn
+/// comes again.
 const TURNS: usize = 16;
 
 impl Seat {
@@ -134,7 +135,7 @@ impl Threads {
     /// Does some work on `size` ranks at once, and returns the result of each, rank 0 first.
     ///
     /// # Panics
-    /// If the work of a rank does: the others, which wait for it in vain, end as well.
+    /// If the work of a rank panics: the other ranks, which would wait for it forever, end as well.
     pub fn run<T: Send>(size: usize, work: impl Fn(&Threads) -> T + Sync) -> Vec<T> {
         let meeting = Arc::new(Meeting::new(size));
         let mut ranks: Vec<Threads> = (0..size)
@@ -169,7 +170,7 @@ impl Threads {
     }
 
     fn send(&self, rank: usize, words: Vec<u64>) {
-        // A rank that has gone needs nothing; who waits for it notices.
+        // A rank that has ended needs nothing; a rank that waits for it notices.
         let _ = self.to[rank].send(words);
     }
 
@@ -200,7 +201,8 @@ impl Communicator for Threads {
     fn exchange(&self, to: [&[f64]; 2], from: [&mut [f64]; 2], meanwhile: &mut dyn FnMut()) {
         let size = self.size();
         let (below, above) = ((self.rank + size - 1) % size, (self.rank + 1) % size);
-        // Both may be one rank: what goes down is sent first, and what comes from above received first.
+        // Both may be the same rank: words to the rank below are sent first, and words from the rank above
+        // received first.
         for (rank, values) in [below, above].into_iter().zip(to) {
             if !values.is_empty() {
                 self.send(rank, values.iter().map(|value| value.to_bits()).collect());
@@ -248,7 +250,7 @@ mod tests {
     use super::*;
     use crate::communicator::{Alone, lowest_rank};
 
-    /// Threads talk as ranks do, also in the ring of one and of two ranks, where above and below are the
+    /// Threads communicate as ranks do, also in a ring of one or two ranks, where above and below are the
     /// same.
     #[test]
     fn threads_talk_as_ranks_do() {
@@ -286,7 +288,7 @@ mod tests {
         assert_eq!((below, above), ([2.0, 3.0], [1.0]));
     }
 
-    /// The lowest rank is known to all, for every set of ranks.
+    /// All ranks know the lowest rank, for every set of ranks.
     #[test]
     fn all_ranks_know_the_lowest() {
         for size in 1..5 {

@@ -1,12 +1,12 @@
-//! Sums over all blocks, which every kernel finds at every step.
+//! Sums over all blocks, which every kernel computes at every step.
 
 use serde::{Deserialize, Serialize};
 
 /// Sums over all blocks at t_n, in units of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
-    /// `sum w u` over the blocks that the drive springs pull, those of the highest sheet, with the relative
-    /// stiffness `w` of these springs. For a drive that rotates the two components are not x and y, but along
+    /// Sum `sum w u` over the blocks that the drive springs pull, those of the highest sheet, with the
+    /// relative stiffness `w` of these springs. For a rotation the two components are not x and y, but along
     /// the [direction](crate::Drive::direction_at) `g` of each block and across it, to its left.
     pub displacement: [f64; 2],
     /// Sum `sum w v` at t_n, the mean of the half steps around it, in the components of `displacement`.

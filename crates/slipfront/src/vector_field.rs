@@ -38,7 +38,7 @@ pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Length of a plane vector. Not `hypot`: the square of a scaled force never over- or underflows, and the
-/// plain form is exactly rounded and symmetric in x and y on every machine.
+/// plain formula has the same rounding on every machine and is symmetric in x and y.
 #[inline(always)]
 pub(crate) fn length(a: [f64; 2]) -> f64 {
     dot(a, a).sqrt()
@@ -50,8 +50,8 @@ pub(crate) fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// (cos, sin) of an angle in degrees; exact in the axes and symmetric about them, so that a drive along y is
-/// the mirror image of a drive along x to the last bit.
+/// Cosine and sine of an angle in degrees; exact along the axes and symmetric about them, so that a drive
+/// along y is the mirror image of a drive along x to the last bit.
 pub(crate) fn unit_vector(degrees: f64) -> [f64; 2] {
     let turned = degrees.rem_euclid(360.0);
     let (quarter, rest) = ((turned / 90.0).floor(), turned.rem_euclid(90.0));

@@ -11,7 +11,7 @@ use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, S
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Sheet, Simulation, Stop, Surface};
 
-/// The system's allocator, counting calls per thread.
+/// The system's allocator, with a count of calls per thread.
 struct Counting;
 
 thread_local! {
@@ -90,7 +90,7 @@ fn a_step_allocates_nothing() {
         FrictionLaw::Reversal,
         FrictionLaw::Literal,
     ] {
-        // Stiff springs between sheets, so that a stack slips hardly later than a sheet.
+        // Stiff springs between sheets, so that a stack slips hardly later than a single sheet.
         let above = Sheet {
             thickness: 1.0,
             coupling: 10.0,
@@ -105,15 +105,15 @@ fn a_step_allocates_nothing() {
                 let mut simulation = Simulation::new(model.clone(), 0.1, None, execution);
                 let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
                 assert_eq!(calls, 0, "{law:?} {kernel:?}");
-                // 1000 steps go through onset, which comes at t* = 82 here.
+                // 1000 steps pass the onset, which comes at t* = 82 here.
                 assert!(law == FrictionLaw::Literal || simulation.peak().ended);
             }
         }
     }
 }
 
-/// Sliding counts, sums, means and maxima keep what they have; the curve grows by doubling (16
-/// times for 2670 rows and more); A-F allocate once per field when first kept.
+/// Sliding counts, sums, means and maxima do not grow; the curve grows by doubling (16 times for 2670 rows
+/// and more); A-F allocate once per field when first kept.
 #[test]
 fn watching_allocates_only_what_is_kept() {
     let model = model(FrictionLaw::Projection);

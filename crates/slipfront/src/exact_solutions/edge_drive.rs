@@ -7,9 +7,9 @@
 /// F_T(lambda)/F_N = mu_k [(1 - theta) lambda + theta lambda^2]
 /// ```
 ///
-/// The part that has slipped bears kinetic friction, and the drive balances it: the integral of `mu_k p(x)`
-/// over the part, with the pressure `p(x) = P (1 + theta (2 x/L - 1))` at the distance x from the driven end.
-/// In units of `mu_s`, with `r_star` in place of `mu_k`, it is mu*.
+/// The part that has slipped bears kinetic friction, which the drive balances: the integral of `mu_k p(x)`
+/// over this part, with the pressure `p(x) = P (1 + theta (2 x/L - 1))` at the distance x from the driven
+/// end. In units of `mu_s`, with `r_star` in place of `mu_k`, the load is mu*.
 ///
 /// ```
 /// use slipfront::exact_solutions::precursor_load;

@@ -1,8 +1,8 @@
-//! Sliders under laws of friction whose thresholds are not constant.
+//! Sliders under laws of friction with thresholds that change.
 
 use crate::friction::{Ageing, RateAndState, Weakening};
 
-/// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 on a spring of
+/// Growth rate of a small disturbance of steady sliding at `v`, for a block of mass 1 on a spring of
 /// stiffness `k`, with friction `mu_k F_n` = `kinetic` at rest and damping `Omega`: the larger real part of
 ///
 /// ```text
@@ -24,8 +24,8 @@ pub fn weakening_growth(law: &Weakening, kinetic: f64, v: f64, k: f64, damping: 
     -0.5 * resistance + discriminant.sqrt()
 }
 
-/// Time at which a block slips that has been stuck since t = 0 and is pulled by a spring of stiffness `k`
-/// whose end rests until `hold` and then moves at `v`; its static friction of age 0 is 1, so that
+/// Time at which a block slips if it has been stuck since t = 0 and is pulled by a spring of stiffness `k`.
+/// The end of the spring rests until `hold` and then moves at `v`. The static friction at age 0 is 1, so that
 ///
 /// ```text
 /// k v (t - hold) = 1 + beta ln(1 + t/tau)
@@ -48,8 +48,8 @@ pub fn ageing_slip_time(law: &Ageing, pull: f64, hold: f64, k: f64, v: f64) -> f
 fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64) -> f64 {
     let aged = |t: f64| 1.0 + law.beta * libm::log1p((t - stopped_at) / law.time);
     let excess = |t: f64| pull + k * v * (t - hold) - aged(t);
-    // The pull rises linearly, what it must reach more slowly from some time on: a bracket, then bisection to
-    // the last bit.
+    // The pull rises linearly, and from some time on faster than the threshold: find a bracket, then bisect
+    // to the last bit.
     let (mut low, mut high) = (hold, hold + 1.0);
     while excess(high) < 0.0 {
         (low, high) = (high, hold + 2.0 * (high - hold));
@@ -67,14 +67,14 @@ fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64
     }
 }
 
-/// A block that slides steadily at `v` while its drive stops: with `w^2 = k - Omega^2/4` it comes to rest
-/// after
+/// Stop of a block that slides steadily at `v` when its drive stops. With `w^2 = k - Omega^2/4` the block
+/// comes to rest after
 ///
 /// ```text
 /// t_stop = (pi - atan(2 w/Omega))/w,   where its spring pulls with   F_stop = mu_k F_n - sqrt(k) v exp(-Omega t_stop/2)
 /// ```
 ///
-/// as the solution of `v'' + Omega v' + k v = 0`, `v(0) = v`, `v'(0) = 0`. It holds for `Omega^2 < 4 k`; a
+/// The motion solves `v'' + Omega v' + k v = 0`, `v(0) = v`, `v'(0) = 0`. This holds for `Omega^2 < 4 k`; a
 /// block with more damping creeps and never stops.
 ///
 /// ```
@@ -103,15 +103,15 @@ impl StopOfSteadySliding {
         }
     }
 
-    /// Time of the next slip if the drive, stopped at `stopped`, moves on at `v` from `restarted` on: the age
-    /// of the contact counts from the stop of the block.
+    /// Time of the next slip if the drive stops at `stopped` and moves again at `v` from `restarted` on. The
+    /// age of the contact counts from the stop of the block.
     pub fn next_slip_time(&self, law: &Ageing, stopped: f64, restarted: f64, k: f64, v: f64) -> f64 {
         slip_time(law, stopped + self.time, self.pull, restarted, k, v)
     }
 }
 
-/// Friction above that of steady sliding at `v_2`, over `mu_s`, of a contact that slid steadily at `v_1` and
-/// is made to slide at `v_2`, after a slip of `x`:
+/// Friction in excess of steady sliding at `v_2`, over `mu_s`, for a contact that slid steadily at `v_1` and
+/// then slides at `v_2`, after a slip of `x`:
 ///
 /// ```text
 /// mu - mu_ss = b ln[1 + (v_2/v_1 - 1) exp(-x/D_c)]
@@ -127,14 +127,14 @@ pub fn friction_after_speed_step(law: &RateAndState, v_1: f64, v_2: f64, x: f64)
     law.b * libm::log1p((v_2 / v_1 - 1.0) * libm::exp(-x / law.d_c))
 }
 
-/// Rate at which a small disturbance of steady sliding at `v` grows, of a block of mass 1 under the normal
-/// force `sigma` on a spring of stiffness `k`: the largest real part of the roots of
+/// Growth rate of a small disturbance of steady sliding at `v`, for a block of mass 1 under the normal force
+/// `sigma` on a spring of stiffness `k`: the largest real part of the roots of
 ///
 /// ```text
 /// (s^2 + A s + k)(s + q) = sigma b s/D_c,   A = sigma a/v + Omega,   q = v/D_c
 /// ```
 ///
-/// It is positive below [`RateAndState::critical_stiffness`] and negative above.
+/// The rate is positive below [`RateAndState::critical_stiffness`] and negative above.
 ///
 /// ```
 /// # use slipfront::{RateAndState, exact_solutions::rate_and_state_growth};
@@ -152,8 +152,8 @@ pub fn rate_and_state_growth(law: &RateAndState, sigma: f64, v: f64, k: f64, dam
         k * q,
     );
     let cubic = |s: f64| ((s + c2) * s + c1) * s + c0;
-    // It is positive at 0 and negative far to the left: the root between them by bisection, the others of
-    // what remains.
+    // The polynomial is positive at 0 and negative far to the left. Bisection finds the root between; the
+    // other two are roots of the quadratic quotient.
     let (mut low, mut high) = (-1.0 - c2.abs().max(c1.abs()).max(c0), 0.0);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -169,9 +169,9 @@ pub fn rate_and_state_growth(law: &RateAndState, sigma: f64, v: f64, k: f64, dam
     root.max(half + discriminant.sqrt())
 }
 
-/// Slip of a block without damping that weakens faster than its drive spring unloads, and jumps while the
-/// drive stands at its threshold. It comes to rest beyond the length `D_c = D/W` of weakening, where the
-/// spring has done as much work as friction:
+/// Slip of a block without damping in a jump: its strength falls faster than its drive spring unloads, while
+/// the drive stands still at the threshold. The block comes to rest beyond the weakening length `D_c = D/W`,
+/// where the spring has done as much work as friction:
 ///
 /// ```text
 /// s = [D + sqrt(D^2 - k_s D D_c)]/k_s
@@ -190,10 +190,11 @@ pub fn slip_of_jump(drop: f64, weakening: f64, k: f64) -> f64 {
     (drop + (drop * drop - k * drop * (drop / weakening)).sqrt()) / k
 }
 
-/// First peak of friction over its mean in sliding of a rigid slider that is moved slowly, on springs whose
-/// thresholds are spread evenly over 1 - w to 1 + w, w <= 1/3. All springs are stretched alike until the
-/// weakest breaks, at 1 - w; later each is at all extensions alike, and bears half its threshold on average.
-/// A spring that keeps its threshold x breaks as often as 1/x:
+/// Ratio of the first peak of friction to its mean in sliding, for a rigid slider that is moved slowly on
+/// springs with thresholds distributed uniformly from 1 - w to 1 + w, w <= 1/3. All springs have the same
+/// extension until the weakest breaks, at 1 - w. Later the extension of each spring is distributed uniformly
+/// up to its threshold, so that it bears half its threshold on average. A spring that keeps its threshold x
+/// breaks at a rate proportional to 1/x:
 ///
 /// ```text
 /// kept:   2 (1 - w)          drawn anew:   2 (1 - w)/(1 + w^2/3),   since the mean is <x^2>/(2 <x>)
@@ -212,8 +213,7 @@ pub fn static_over_kinetic_of_springs(w: f64, redrawn: bool) -> f64 {
 }
 
 /// Force on the first block of a chain of `n` at which its spring to the substrate breaks, over the threshold
-/// of that spring, in equilibrium: springs of stiffness `k` between the blocks, of stiffness `k_t` to the
-/// substrate.
+/// of this spring, in equilibrium. Springs have stiffness `k` between the blocks and `k_t` to the substrate.
 ///
 /// ```text
 /// F/(mu_s F_n) = sinh(q n)/(2 sinh(q/2) cosh(q (n - 1/2))),   cosh q = 1 + k_t/(2 k)

@@ -1,8 +1,8 @@
 //! Problems with exact solutions, shared by tests and benches.
 //!
-//! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
-//! `P mu_s l^2`). The chapters of slipfront-family and the tests under
-//! `tests/physics` hold the kernels against them.
+//! Quantities are in the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
+//! `P mu_s l^2`). The chapters of slipfront-family and the tests in `tests/physics` compare the kernels with
+//! these solutions.
 
 mod edge_drive;
 mod friction;
@@ -19,10 +19,9 @@ pub use torsion::{torsion_first_slip, torsion_of_decoupled_blocks, torsion_of_de
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
 
-/// Time of the first slip on a surface without texture, whatever the direction of the drive (Eqs. 1, 2, 4,
-/// D12).
+/// Time of the first slip on a surface without texture, for any direction of the drive (Eqs. 1, 2, 4, D12).
 ///
-/// Until then no block has moved, so that no lattice spring pulls:
+/// Until then no block has moved, so that no lattice spring exerts a force:
 ///
 /// ```text
 /// k_s V* t* = min_i max(mu_si, mu_ki)/mu_s,   k_s = 3/8
@@ -59,7 +58,7 @@ pub fn steady_level(mean_kinetic_star: f64, omega_star: f64, v_star: f64) -> f64
 }
 
 /// Stick and slip of one block on its drive spring, and of a uniform lattice without texture, which moves as
-/// one.
+/// a rigid body.
 ///
 /// The extension `e = V t - u` obeys, from the moment of slip on,
 ///
@@ -119,7 +118,8 @@ impl SlipCycle {
     /// The cycle at `omega_star` (underdamped: below `2 sqrt(k_s/k_1) = 1.41`), `r_star` < 1 and `v_star`.
     ///
     /// # Panics
-    /// If the block never sticks again, because it is overdamped or never becomes as fast as the drive again.
+    /// If the block never sticks again, because it is overdamped or never reaches the speed of the drive
+    /// again.
     pub fn new(omega_star: f64, r_star: f64, v_star: f64) -> Self {
         let mut cycle = Self {
             damping: damping(omega_star),
@@ -132,7 +132,8 @@ impl SlipCycle {
             "overdamped: the block never sticks again"
         );
         let rate = cycle.oscillation().derivative();
-        // e' falls from V, has its minimum and then its maximum where e'' vanishes; it passes V in between.
+        // e' falls from V to its minimum and rises to its maximum, both where e'' vanishes; it passes V in
+        // between.
         let minimum = rate.derivative().first_zero();
         let maximum = minimum + std::f64::consts::PI / rate.frequency;
         assert!(
@@ -199,13 +200,13 @@ impl SlipCycle {
         self.force(self.peak_delay())
     }
 
-    /// Time from one slip to the next: slip, and the stick in which the force climbs back to 1.
+    /// Time from one slip to the next: the slip, and the stick in which the force climbs back to 1.
     pub fn period(&self) -> f64 {
         self.slip_duration + (1.0 - self.force_at_stop()) / (K_DRIVE * self.v_star)
     }
 
-    /// Mean force over a period. The momentum of a slip that begins and ends at rest gives, over the period
-    /// T,
+    /// Mean force over a period. A slip begins and ends at rest, so that momentum balance over the period T
+    /// gives
     ///
     /// ```text
     /// integral over slip = R t_slip + Omega V T,   integral over stick = (1 - F_stop^2)/(2 k_s V)
@@ -259,7 +260,7 @@ pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
     let d12 = 2.0 * K_DIAGONAL * sin_a * sin_b;
     let (middle, half) = (0.5 * (d11 + d22), 0.5 * (d11 - d22));
     let radius = libm::hypot(half, d12);
-    // Half the angle of (half, d12) is the direction of the faster wave.
+    // The direction of the faster wave has half the angle of (half, d12).
     let (s, c) = libm::sincos(0.5 * libm::atan2(d12, half));
     [
         LatticeWave {
@@ -273,7 +274,7 @@ pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
     ]
 }
 
-/// Frequency at which leapfrog lets an undamped wave of frequency `omega` oscillate:
+/// Frequency of an undamped wave of frequency `omega` in leapfrog integration:
 ///
 /// ```text
 /// sin(omega_num dt/2) = omega dt/2
@@ -288,8 +289,8 @@ pub fn leapfrog_frequency(omega: f64, dt: f64) -> f64 {
     2.0 / dt * libm::asin(0.5 * omega * dt)
 }
 
-/// Growth rate `s` of an oscillation `x = A exp(s t) cos(w t + p)` from four of its values, each a time
-/// `apart` after the one before, about a quarter of a period; NaN of values that are no oscillation.
+/// Growth rate `s` of an oscillation `x = A exp(s t) cos(w t + p)` from four of its values at intervals of
+/// `apart`, about a quarter of a period; NaN if the values belong to no oscillation.
 ///
 /// ```text
 /// q = (x_2^2 - x_1 x_3)/(x_1^2 - x_0 x_2) = exp(2 s apart),   since x_2 = p x_1 - q x_0
@@ -305,7 +306,7 @@ pub fn oscillation_growth([x0, x1, x2, x3]: [f64; 4], apart: f64) -> f64 {
     libm::log(q) / (2.0 * apart)
 }
 
-/// Which way a groove or a front faces the sliding direction.
+/// Direction of a groove or a front relative to the sliding direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
     /// The groove runs across the sliding direction: its edges are pulled and pushed.
@@ -315,7 +316,7 @@ pub enum Facing {
 }
 
 impl Facing {
-    /// Stiffness between neighbouring rows that move as wholes: `k_1 + k_2` in tension, `k_2` in shear.
+    /// Stiffness between neighbouring rows that move as rigid bodies: `k_1 + k_2` in tension, `k_2` in shear.
     pub fn row_stiffness(self) -> f64 {
         match self {
             Facing::Across => K_STRAIGHT + K_DIAGONAL,
@@ -324,8 +325,9 @@ impl Facing {
     }
 }
 
-/// Force on a row at the edge of a straight groove over that of its own drive springs, before anything slips,
-/// on periodic edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the next,
+/// Force on a row at the edge of a straight groove over the force of its own drive springs, before anything
+/// slips, with periodic edges. The groove has `n` rows, each held by its drive springs and by stiffness K to
+/// the next row:
 ///
 /// ```text
 /// F_edge = k_s V t [1 + (K/k_s)(1 - r)],   cosh q = 1 + k_s/(2 K),   r = cosh(q (n-1)/2)/cosh(q (n+1)/2)
@@ -344,14 +346,15 @@ pub fn groove_edge_factor(facing: Facing, n: usize) -> f64 {
     1.0 + k / K_DRIVE * (1.0 - r)
 }
 
-/// Speed of a slip front into blocks under a uniform prestress `tau = (F - F_k)/(F_s - F_k)`, without drive
-/// springs and damping:
+/// Speed of a slip front that enters blocks under a uniform prestress `tau = (F - F_k)/(F_s - F_k)`, without
+/// drive springs and damping:
 ///
 /// ```text
 /// v = c/sqrt(1 - tau^2),   tau >= 1/2
 /// ```
 ///
-/// `c`: speed of long waves in blocks per unit of time, the root of the stiffness between neighbouring rows.
+/// `c`: speed of long waves in blocks per unit of time, the square root of the stiffness between neighbouring
+/// rows.
 ///
 /// ```
 /// assert_eq!(slipfront::exact_solutions::front_speed(1.0, 0.6), 1.25);

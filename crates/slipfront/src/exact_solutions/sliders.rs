@@ -2,14 +2,14 @@
 
 use crate::lattice::{K_DRIVE, K_STRAIGHT};
 
-/// Time of the first slip of a slider whose blocks differ in stiffness, without texture. Until then nothing
-/// has moved, so that
+/// Time of the first slip of a slider without texture that has blocks of different stiffness. Until then
+/// nothing has moved, so that
 ///
 /// ```text
 /// k_s,i V* t* = max(mu_si, mu_ki) F_n,i,   k_s,i = k_s E_i/E
 /// ```
 ///
-/// of the block that slips first. `limits`: the right-hand sides; `stiffness`: `E_i/E`.
+/// for the block that slips first. `limits`: the right-hand sides; `stiffness`: `E_i/E`.
 ///
 /// ```
 /// use slipfront::exact_solutions::graded_first_slip_time_star;
@@ -34,8 +34,9 @@ pub struct PairMode {
     pub ratio: f64,
 }
 
-/// The modes of two blocks in a row, of moduli `E_1`, `E_2` and masses `m_1`, `m_2`, without friction. They
-/// are joined by a spring of the harmonic mean of both, and each has a drive spring as stiff as itself:
+/// The modes of two blocks in a row, with moduli `E_1`, `E_2` and masses `m_1`, `m_2`, without friction. The
+/// spring between the blocks has the harmonic mean of their moduli, and the drive spring of each block has
+/// the modulus of the block:
 ///
 /// ```text
 /// m_i u_i'' = -k_s E_i u_i + k (u_j - u_i),   k = k_1 2 E_1 E_2/(E_1 + E_2)
@@ -60,8 +61,8 @@ pub fn pair_modes(stiffness: [f64; 2], masses: [f64; 2]) -> [PairMode; 2] {
     })
 }
 
-/// Rate at which the amplitude of a mode decays where a damper stands beside every spring between blocks
-/// (Kelvin-Voigt), of `eta = tau_v k`, while equal blocks swing a little and do not touch:
+/// Decay rate of the amplitude of a mode of equal blocks, with a damper in parallel with every spring between
+/// blocks (Kelvin-Voigt), `eta = tau_v k`, for small oscillations without contact:
 ///
 /// ```text
 /// (1/2) [Omega + tau_v (omega^2 - k_s)]
@@ -79,8 +80,8 @@ pub fn viscous_decay_rate(omega_squared: f64, damping: f64, viscosity_time: f64)
     0.5 * (damping + viscosity_time * (omega_squared - K_DRIVE))
 }
 
-/// Rate at which the amplitude of a mode with dampers decays in steps of `dt` at `Omega` = 0. A damper acts
-/// by the velocity half a step before, so that the rate differs from [`viscous_decay_rate`]:
+/// Decay rate of the amplitude of a mode with dampers in steps of `dt` at `Omega` = 0. A damper acts with the
+/// velocity half a step before, so that the rate differs from [`viscous_decay_rate`]:
 ///
 /// ```text
 /// -ln(1 - gamma dt)/(2 dt),   gamma = tau_v (omega^2 - k_s)
@@ -98,16 +99,16 @@ pub fn lagged_decay_rate(omega_squared: f64, viscosity_time: f64, dt: f64) -> f6
     -libm::log1p(-gamma * dt) / (2.0 * dt)
 }
 
-/// Largest mu* of a surface of two zones whose blocks do not pull at each other: a fraction `f` of the blocks
-/// has the static coefficient `mu_1`, the rest `mu_2 > mu_1`, both over `mu_s`, and kinetic friction is R*
-/// times as large. For `Omega* > sqrt(2)` a block that has slipped does not swing, and in the limit of a slow
-/// drive
+/// Largest mu* of a surface of two zones with blocks that do not pull on each other: a fraction `f` of the
+/// blocks has the static coefficient `mu_1`, the rest `mu_2 > mu_1`, both over `mu_s`, and kinetic friction
+/// is R* times as large. For `Omega* > sqrt(2)` a block that has slipped does not oscillate. In the limit of
+/// a slow drive
 ///
 /// ```text
 /// mu* = max(mu_1, f R* mu_1 + (1 - f) mu_2)
 /// ```
 ///
-/// at the slip of the first or of the second zone. The faster drive adds the drag of the first zone, at most
+/// at the slip of the first or of the second zone. A faster drive adds the drag of the first zone, at most
 /// `f Omega V*`.
 ///
 /// ```

@@ -20,27 +20,27 @@ use crate::vector_field::{VectorField, dot};
 pub struct ContactSprings {
     /// Stiffness `k_t` per block, in units of `E h`.
     pub stiffness: f64,
-    /// Friction of a block whose spring has broken.
+    /// Friction of a block after its spring has broken.
     pub after_break: AfterBreak,
 }
 
-/// Friction of a block whose spring to the substrate has broken.
+/// Friction of a block after its spring to the substrate has broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterBreak {
     /// The spring forms again at once, without stress: the anchor becomes `u`.
     FormsAgain {
-        /// Seed by which it takes another coefficient; none if every spring keeps its own.
+        /// Seed from which it draws another coefficient; none if every spring keeps its own.
         redraw: Option<u64>,
     },
     /// The block slides at its kinetic friction: the anchor follows it, so that `k_t |u - a| = mu_k F_n`,
-    /// until the spring relaxes. Then it holds the block again, up to the static threshold (elastic and
-    /// perfectly plastic, with a static peak).
+    /// until the spring relaxes. Then the spring holds the block again, up to the static threshold (elastic
+    /// and perfectly plastic, with a static peak).
     Slides,
 }
 
 impl ContactSprings {
-    /// Needs of springs in contact: the anchor of the spring of a block, and how often it has broken, or
-    /// whether its block slides.
+    /// Needs of contact springs: the anchor of the spring of each block, and how often it has broken, or
+    /// whether the block slides.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         columns: 3,
@@ -48,8 +48,8 @@ impl ContactSprings {
         ..Needs::NONE
     };
 
-    /// Pull of a drive through springs of stiffness `k` that loads springs in contact as far as rigid
-    /// contacts are loaded by a pull of 1.
+    /// Ratio of the pulls, through drive springs of stiffness `k`, that load contact springs and rigid
+    /// contacts equally.
     pub(super) fn pull_over_rigid(&self, k: f64) -> f64 {
         (k + self.stiffness) / self.stiffness
     }
@@ -59,8 +59,8 @@ impl ContactSprings {
         self.after_break == AfterBreak::Slides
     }
 
-    /// Mean of some static and kinetic friction over steady sliding. Springs that form again are torn off at
-    /// all extensions alike, so that it is half of the static one.
+    /// Mean friction in steady sliding, from static and kinetic friction. Springs that form again are
+    /// distributed uniformly over all extensions, so that the mean is half of static friction.
     pub(super) fn steady_force(&self, of_static: f64, of_kinetic: f64) -> f64 {
         match self.after_break {
             AfterBreak::FormsAgain { .. } => 0.5 * of_static,
@@ -69,9 +69,9 @@ impl ContactSprings {
     }
 
     /// Force at which the spring of a block yields after `breaks`; `number` is the number of the block in the
-    /// whole lattice. A spring that is drawn anew has the coefficient of a block in contact that seed, block
-    /// and number of breaks choose at random, so that thresholds keep their distribution, drawn or given. A
-    /// block that slides has its kinetic friction.
+    /// whole lattice. A spring that is drawn anew takes the coefficient of a random block in contact, chosen
+    /// by the seed, the block and the number of breaks, so that the distribution of thresholds stays the
+    /// same, whether drawn or given. A block that slides has its kinetic friction.
     fn threshold(&self, surface: &Surface, block: usize, number: usize, breaks: u64) -> f64 {
         match self.after_break {
             AfterBreak::Slides if breaks > 0 => surface.kinetic_force(block),
@@ -82,7 +82,7 @@ impl ContactSprings {
                 }
                 let mut random = ChaCha8Rng::from_seed(key);
                 let n = surface.n_blocks() as u128;
-                // A block in contact there is at least: this one.
+                // The loop ends: at least this block is in contact.
                 let mut choose = || ((u128::from(random.next_u64()) * n) >> 64) as usize;
                 let mut other = choose();
                 while surface.textured[other] {
@@ -95,7 +95,7 @@ impl ContactSprings {
     }
 }
 
-/// The springs of all blocks. Anchors and numbers of breaks are the memory of the law.
+/// Contact springs of all blocks. Anchors and numbers of breaks are the memory of the law.
 #[derive(Debug)]
 pub(crate) struct SpringContact {
     law: ContactSprings,
@@ -104,15 +104,15 @@ pub(crate) struct SpringContact {
     /// Number of times that the spring of each block has broken, if it forms again; otherwise 1 while the
     /// block slides, and 0 while its spring holds it.
     pub(super) breaks: Vec<f64>,
-    /// Force to which a spring that breaks falls: the kinetic friction of a block that slides, or 0.
+    /// Force to which a breaking spring falls: the kinetic friction of a block that slides, or 0.
     after_break: Vec<f64>,
     /// Number of the first block of the band in the whole lattice.
     first_block: usize,
 }
 
 impl SpringContact {
-    /// Springs that hold the dead load of blocks at their rest sites, `k_t a = -F_0`. `first_block`: number
-    /// of the first block in the whole lattice.
+    /// Springs that hold the dead load with the blocks at their rest sites, `k_t a = -F_0`. `first_block`:
+    /// number of the first block in the whole lattice.
     pub(super) fn new(
         law: ContactSprings,
         surface: &Surface,
@@ -128,7 +128,7 @@ impl SpringContact {
             }
         };
         let mut anchor = VectorField::zeros(n_blocks);
-        // Without a load a component is 0, and not -0.
+        // Without a load the component is 0, not -0.
         if dead_load.acts() {
             for b in 0..n_blocks {
                 let per_force = -dead_load.relative(b) / law.stiffness;
@@ -144,7 +144,7 @@ impl SpringContact {
         }
     }
 
-    /// Stiffness of the spring of a block: none over a texture.
+    /// Stiffness of the spring of a block: 0 over a texture.
     #[inline(always)]
     fn stiffness(&self, textured: bool) -> f64 {
         if textured { 0.0 } else { self.law.stiffness }
@@ -156,9 +156,9 @@ impl SpringContact {
         self.law.slides() && self.breaks[b] != 0.0
     }
 
-    /// Moves the anchors of those blocks among some whose springs break, or which slide, at the present
-    /// instant, so that a force of [`after_break`](Self::after_break) is left, and finds the thresholds of
-    /// the next step.
+    /// Moves the anchors of springs that break, or of blocks that slide, at the present instant, so that a
+    /// force of [`after_break`](Self::after_break) is left, and finds the thresholds of the next step. Treats
+    /// some of the blocks.
     #[inline(always)]
     pub(super) fn move_anchors(
         &mut self,
@@ -175,7 +175,7 @@ impl SpringContact {
             && self.breaks[blocks.clone()]
                 .iter()
                 .fold(false, |any, breaks| any | (*breaks != 0.0));
-        // Most parts have none.
+        // Usually no spring breaks and no block slides.
         if !(any_slides || any_slid) {
             return;
         }
@@ -205,16 +205,16 @@ impl SpringContact {
         self.law.threshold(surface, b, self.first_block + b, breaks)
     }
 
-    /// Finds the thresholds that belong to the numbers of breaks.
+    /// Finds the thresholds after the present numbers of breaks.
     pub(super) fn find_thresholds(&self, surface: &Surface, threshold: &mut [f64]) {
         for (b, threshold) in threshold.iter_mut().enumerate() {
             *threshold = self.threshold(surface, b);
         }
     }
 
-    /// Forces of the springs of some blocks and velocities half a step later; a block counts as sliding in
-    /// the step in which its spring breaks, and while it slides. A spring that breaks pulls with the mean of
-    /// its forces before and after, which keeps the balance of energy to second order.
+    /// Forces of the springs of some blocks, and velocities half a step later. A block counts as sliding in
+    /// the step in which its spring breaks, and while it slides. A breaking spring pulls with the mean of its
+    /// forces before and after, which conserves energy to second order.
     #[inline(always)]
     pub(super) fn apply(
         &self,
@@ -247,7 +247,7 @@ impl SpringContact {
             let stiffness = self.stiffness(textured[k]);
             let pull = [stiffness * (ux[k] - ax[k]), stiffness * (uy[k] - ay[k])];
             let square = dot(pull, pull);
-            // A kinetic friction above the static threshold holds, too.
+            // Kinetic friction above the static threshold also holds the block.
             let limit = threshold[k].max(after_break[k]);
             let yields = square > limit * limit;
             let after = after_break[k] / square.sqrt();
@@ -264,9 +264,9 @@ impl SpringContact {
         }
     }
 
-    /// Adds energies of the springs of some blocks: of the springs that hold or slide, of those that break at
-    /// the present instant, and the work against friction of the blocks that slide, since the instant before.
-    /// The sums have room for two numbers of each block.
+    /// Adds energies of some blocks: of the springs that hold or slide, of the springs that break at the
+    /// present instant, and the work against friction of sliding blocks since the instant before. The sums
+    /// have room for two numbers of each block.
     #[inline(always)]
     pub(super) fn add_energies(
         &self,

@@ -3,13 +3,13 @@
 /// Least component of a velocity, 2^-480 of its unit. Smaller ones become zero with their sign, so that
 /// mirrored problems keep mirrored bits.
 ///
-/// A wave that runs into a large cavity has ahead of it, after n steps, velocities of some `(dt^2/n^2)^n` at
-/// n blocks: from a hundred blocks on they and their squares are subnormal numbers, with which processors
-/// compute slowly. Squares of what is left, and their products with small strains, are normal numbers, and
-/// sums over blocks do not notice what is not.
+/// Ahead of a wave that runs into a large cavity, velocities after n steps are about `(dt^2/n^2)^n` at n
+/// blocks. From a hundred blocks on, these and their squares would be subnormal numbers, which processors
+/// compute slowly. Squares of the remaining velocities, and their products with small strains, are normal
+/// numbers, and the zeroed velocities are too small to change sums over blocks.
 pub(crate) const SMALLEST_VELOCITY: f64 = f64::from_bits((1023 - 480) << 52);
 
-/// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
+/// Time step and damping (Eq. 5). Damping is centred in time, so that stability does not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Integrator {
     /// Factor by which damping reduces the velocity in a step, `c-/c+`, with `c-+ = 1 -+ Omega dt/2`.
@@ -30,7 +30,7 @@ impl Integrator {
         }
     }
 
-    /// Integrator of a block of another mass: damping goes with the mass.
+    /// Integrator of a block with another mass: damping is proportional to the mass.
     #[inline(always)]
     pub(crate) fn of_mass(self, mass: f64) -> Self {
         Self {

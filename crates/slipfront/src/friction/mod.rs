@@ -1,8 +1,8 @@
-//! The laws of friction, which act on a block where it touches the substrate.
+//! The laws of friction, which act on blocks in contact with the substrate.
 //!
-//! Each law is a file, which holds its parameters, says what it [`Needs`], and computes it in the general
-//! kernel, with the numbers that it remembers of every block. [`Friction`] and [`BandContact`] here have a
-//! row for each.
+//! Each law has its file, which holds its parameters, declares its [`Needs`], and computes it in the general
+//! kernel, with the memory of the law for every block. [`Friction`] and [`BandContact`] here have a row for
+//! each law.
 
 mod contact_springs;
 mod coulomb;
@@ -33,7 +33,7 @@ use crate::surface::Surface;
 pub enum Friction {
     /// Static and kinetic coefficients (Eq. 4).
     Coulomb(Coulomb),
-    /// Coefficients that follow speed and state, without a stuck state.
+    /// Coefficients that depend on speed and state, without a stuck state.
     RateAndState(RateAndState),
     /// Springs to the substrate that break.
     ContactSprings(ContactSprings),
@@ -52,7 +52,7 @@ impl From<ContactSprings> for Friction {
 }
 
 impl Friction {
-    /// Needs of the law beside the thresholds of the blocks.
+    /// Needs of the law in addition to the thresholds of the blocks.
     pub fn needs(&self) -> Needs {
         match self {
             Self::Coulomb(law) => law.needs(),
@@ -61,13 +61,13 @@ impl Friction {
         }
     }
 
-    /// Number of columns of a checkpoint that the law adds: numbers of a block that it remembers beside its
-    /// velocity.
+    /// Number of columns that the law adds to a checkpoint: numbers per block that it remembers in addition
+    /// to the velocity.
     pub fn n_columns(&self) -> usize {
         self.needs().columns
     }
 
-    /// Whether blocks are held up to a threshold, so that friction loses something when they slip.
+    /// Whether blocks are held up to a threshold, so that friction falls when they slip.
     pub fn has_thresholds(&self) -> bool {
         !matches!(self, Self::RateAndState(_))
     }
@@ -85,7 +85,7 @@ impl Friction {
     }
 
     /// Stiffness of the contact that holds a block to the substrate until it slips, in units of `E h`; 0 for
-    /// contacts that do not yield.
+    /// rigid contacts.
     pub(crate) fn contact_stiffness(&self) -> f64 {
         match self {
             Self::Coulomb(_) | Self::RateAndState(_) => 0.0,
@@ -93,7 +93,7 @@ impl Friction {
         }
     }
 
-    /// Eq. 4 with its options, if Coulomb's is the law.
+    /// Eq. 4 with its options, if the law is Coulomb's.
     pub(crate) fn coulomb(&self) -> Option<&Coulomb> {
         match self {
             Self::Coulomb(law) => Some(law),
@@ -106,7 +106,7 @@ impl Friction {
         self.coulomb()?.interface
     }
 
-    /// Law by which strength falls with slip, if there is one.
+    /// Law by which strength falls with slip, if the law of friction has one.
     pub(crate) fn strength_over_slip(&self) -> Option<SlipWeakening> {
         self.coulomb()?.slip_weakening
     }
@@ -125,7 +125,7 @@ impl Friction {
         }
     }
 
-    /// Friction of block `b` in steady sliding at a speed, in units of `P mu_s l^2`.
+    /// Friction of block `b` in steady sliding at `speed`, in units of `P mu_s l^2`.
     pub(crate) fn steady_force_of(&self, surface: &Surface, b: usize, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => {
@@ -141,10 +141,9 @@ impl Friction {
         }
     }
 
-    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this
-    /// threshold slips on a surface without texture; springs in contact are loaded
-    /// [later](Self::loading_delay). Under rate and state no block slips at a moment; the pull is that of
-    /// steady sliding.
+    /// Pull `F` of the drive springs of stiffness `k` at which a block with this threshold slips on a surface
+    /// without texture; the pull rises as `k V t`. Contact springs are loaded [later](Self::loading_delay).
+    /// Under rate and state slip has no definite start, and the pull is that of steady sliding.
     pub(crate) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         match self {
             Self::Coulomb(law) => law.first_slip_pull(surface, threshold, k, speed),
@@ -170,14 +169,14 @@ pub struct ContactTotals {
     pub spring_energy: f64,
     /// Energy lost with the springs that break at t_n.
     pub broken_energy: f64,
-    /// Work of the blocks that slide on springs against friction, in the step that ends at t_n.
+    /// Work against friction of the blocks that slide on springs, in the step that ends at t_n.
     pub slip_work: f64,
     /// Mean state variable of the blocks in contact, t*.
     pub mean_state: f64,
 }
 
 impl ContactTotals {
-    /// Totals from the sums that [`BandContact::add_up`] makes.
+    /// Totals from the sums of [`BandContact::add_up`].
     pub(crate) fn of(
         [spring_energy, broken_energy, third]: [f64; 3],
         friction: &Friction,
@@ -196,7 +195,7 @@ impl ContactTotals {
     }
 }
 
-/// A law of friction with its memory of the blocks of a band of the general kernel.
+/// A law of friction with its memory for the blocks of a band of the general kernel.
 #[derive(Debug)]
 pub(crate) enum BandContact {
     Coulomb(CoulombContact),
@@ -223,8 +222,8 @@ impl BandContact {
         }
     }
 
-    /// The [`Friction::n_columns`] columns that a checkpoint keeps. Before and after the present instant is
-    /// evaluated they are equal.
+    /// The [`Friction::n_columns`] columns that a checkpoint keeps. They are the same before and after the
+    /// present instant is evaluated.
     pub(crate) fn columns(&self) -> Vec<&[f64]> {
         match self {
             Self::Coulomb(thresholds) => thresholds.columns(),
@@ -252,8 +251,8 @@ impl BandContact {
         }
     }
 
-    /// Lets the law remember the motion of some blocks in the step before, which `forces` holds, before they
-    /// move over a step.
+    /// Updates the memory of the law with the motion of some blocks in the step before, which `forces` holds,
+    /// before these blocks move over a step.
     #[inline(always)]
     pub(crate) fn remember(
         &mut self,
@@ -295,8 +294,8 @@ impl BandContact {
         }
     }
 
-    /// Adds the terms of [`ContactTotals`] of some blocks whose next velocities are known. The sums have room
-    /// for two numbers of each block.
+    /// Adds the terms of [`ContactTotals`] for some blocks, after their next velocities have been computed.
+    /// The sums have room for two numbers of each block.
     #[inline(always)]
     pub(crate) fn add_up(
         &self,

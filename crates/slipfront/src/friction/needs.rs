@@ -1,21 +1,21 @@
 //! Needs of a law of friction, which kernels, checkpoints and series provide.
 
-/// Needs of a law of friction, or of an option of one, beside the thresholds of the blocks.
+/// Needs of a law of friction, or of an option of a law, in addition to the thresholds of the blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
     /// Whether the fused kernel computes the law; the general kernel computes every law.
     pub is_fused: bool,
-    /// Whether the law changes thresholds in the fused kernel, which then sweeps the blocks as heterogeneous
-    /// ones.
+    /// Whether the law changes thresholds in the fused kernel, which then sweeps the blocks as for a
+    /// heterogeneous slider.
     pub varies: bool,
-    /// Number of columns of a checkpoint that the law adds: numbers per block that it remembers beside the
-    /// velocity.
+    /// Number of columns that the law adds to a checkpoint: numbers per block that it remembers in addition
+    /// to the velocity.
     pub columns: usize,
     /// Whether contacts store energy, which is lost when they break.
     pub stores_energy: bool,
-    /// Whether contacts have a state, whose mean is a result.
+    /// Whether contacts have a state; its mean is a result.
     pub has_state: bool,
-    /// Whether strength falls with slip, so that a part of the loss to friction is the energy of weakening.
+    /// Whether strength falls with slip, so that a part of the friction loss is weakening energy.
     pub weakens_with_slip: bool,
 }
 
@@ -30,7 +30,7 @@ impl Needs {
         weakens_with_slip: false,
     };
 
-    /// Needs of a law and an option of it together.
+    /// Combined needs of a law and an option of it.
     pub(super) fn and(self, option: Option<Self>) -> Self {
         option.map_or(self, |more| Self {
             is_fused: self.is_fused && more.is_fused,

@@ -4,15 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::vector_field::{add, length};
 
-/// One block at t_n. Friction and contact are those of the update that starts there.
+/// One block at t_n, with friction and contact from the update that starts there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block {
     /// Displacement **u**, in units of `P mu_s l^2/(E h)`.
     pub displacement: [f64; 2],
     /// Velocity at `t_n + dt/2`.
     pub velocity: [f64; 2],
-    /// Force `F_s` of the drive spring (Eq. 2), with any constant force and the change of the normal force of
-    /// an [`Interface`](crate::Interface).
+    /// Force `F_s` of the drive spring (Eq. 2), including any constant force and the change of the normal
+    /// force at an [`Interface`](crate::Interface).
     pub force_drive: [f64; 2],
     /// Force `F_c` of the lattice springs (Eq. 3).
     pub force_lattice: [f64; 2],
@@ -34,8 +34,7 @@ impl Block {
         length(add(self.force_friction, self.force_lattice))
     }
 
-    /// Traction, `|F_f|/l^2`, in units of `P mu_s`; without meaning over a texture, where nothing is in
-    /// contact.
+    /// Traction, `|F_f|/l^2`, in units of `P mu_s`; meaningless over a texture, where there is no contact.
     #[inline]
     pub fn traction(&self) -> f64 {
         length(self.force_friction)

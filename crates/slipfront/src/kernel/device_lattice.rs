@@ -1,4 +1,4 @@
-//! The numbers of a plain model that a device needs.
+//! The values of a plain model that a device needs.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::state::State;
 
 impl DeviceLattice {
-    /// Checks that a model has nothing that the equations of a device lack.
+    /// Checks that the equations of a device cover a model.
     ///
     /// # Errors
     /// [`CpuOnly`] for a model that is not plain.
@@ -46,7 +46,7 @@ impl DeviceLattice {
     /// [`CpuOnly`] for a model that is not plain.
     ///
     /// # Panics
-    /// If this process holds a part of the lattice alone.
+    /// If this process holds only a part of the lattice.
     pub fn new(
         model: impl Into<Arc<Model>>,
         dt_star: f64,

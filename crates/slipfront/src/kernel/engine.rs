@@ -10,11 +10,11 @@ use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::Totals;
 
-/// Takes blocks that follow one another: the first, whether each slides, and their velocities half a step
-/// later.
+/// Receives consecutive blocks: the first, whether each slides, and their velocities half a step later.
 pub(crate) type TakeSliding<'a> = &'a mut dyn FnMut(usize, &[bool], [&[f64]; 2]);
 
-/// A kernel with the state of all blocks. `clock` is at the present step, unless a function advances to it.
+/// A kernel with the state of all blocks. `clock` is at the present step, except in functions that advance to
+/// it.
 pub(crate) trait Engine: Send + Sync {
     /// Advances to the step of `clock`: the next step, or the first one.
     fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals;
@@ -22,8 +22,8 @@ pub(crate) trait Engine: Send + Sync {
     /// Block `b` with the forces on it.
     fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block;
 
-    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the
-    /// row, the column of the first value, and the values.
+    /// Reads `field` in every `stride`-th row, several blocks of a row at a time. `write` receives the row,
+    /// the column of the first value, and the values.
     fn read_rows(
         &self,
         model: &Model,
@@ -33,12 +33,12 @@ pub(crate) trait Engine: Send + Sync {
         write: &mut dyn FnMut(usize, usize, &[f32]),
     );
 
-    /// Adds the blocks in contact of these rows to `counts`, each in its bin: those that slide if `sliding`
+    /// Adds the blocks in contact in these rows to `counts`, each in its bin: those that slide if `sliding`
     /// is true, else those that do not.
     fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]);
 
-    /// Hands over the blocks of these rows, at least those that move, several that follow one another at a
-    /// time: the first, whether each slides, and their velocities half a step later.
+    /// Passes at least the moving blocks of these rows to `take`, several consecutive blocks at a time: the
+    /// first, whether each slides, and their velocities half a step later.
     fn read_sliding(&self, model: &Model, take: TakeSliding);
 
     /// Displacement now and velocity half a step later of block `b`.
@@ -50,7 +50,7 @@ pub(crate) trait Engine: Send + Sync {
     /// Displacements now and velocities half a step later of all blocks of the sheets above the lowest.
     fn sheets(&self) -> Vec<State>;
 
-    /// A column of a checkpoint: its values of the blocks from `first` on.
+    /// Reads a column of a checkpoint for the blocks from `first` on.
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);
 
     /// First-slip times of all blocks. Consumes the kernel, and frees its state before the times are
@@ -60,26 +60,26 @@ pub(crate) trait Engine: Send + Sync {
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64;
 
-    /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; 0 for a kernel without
-    /// dampers.
+    /// Power dissipated by the dampers between blocks at the present step, `-sum F_v . v`; 0 for a kernel
+    /// without dampers.
     fn viscous_power(&self) -> f64 {
         0.0
     }
 
-    /// Bounds that a checkpoint keeps, for a kernel that has any.
+    /// Bounds that a checkpoint keeps, if the kernel has any.
     fn motion_bounds(&self) -> Option<MotionBounds>;
 
-    /// Sums that belong to a law of friction, for a kernel that computes such laws.
+    /// Sums that belong to a law of friction, if the kernel computes such laws.
     fn contact_totals(&self, _model: &Model) -> ContactTotals {
         ContactTotals::default()
     }
 
-    /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*;
-    /// `column` counts from 0, and first the law's own
+    /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*.
+    /// `column` counts from 0, first the columns of the law,
     /// [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
 
-    /// The lattice that a device computes, for the kernel that replays its steps.
+    /// The lattice that a device computes, if the kernel replays its steps.
     fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {
         None
     }

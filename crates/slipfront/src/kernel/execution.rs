@@ -1,4 +1,4 @@
-//! The choice of kernel, number of threads and ranks for a run.
+//! Choice of kernel, threads and ranks for a run.
 
 use std::sync::Arc;
 
@@ -11,20 +11,21 @@ use crate::friction::Friction;
 use crate::model::Model;
 use crate::state::State;
 
-/// Which kernel computes the steps.
+/// Kernel that computes the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
     /// The general kernel: one pass over the blocks per equation, for every model.
     General,
-    /// The fused kernel: one sweep for all equations. The general kernel computes the models that this one
-    /// does not: [some laws of friction](crate::Needs::is_fused), internal viscosity, and drives that rotate.
+    /// The fused kernel: one sweep for all equations. The general kernel replaces it for models that it does
+    /// not support: [some laws of friction](crate::Needs::is_fused), internal viscosity, and drives that
+    /// rotate.
     #[default]
     Fused,
 }
 
-/// How a run is computed. Results have the same bits for any `threads`, `skips` and number of ranks. The two
-/// kernels agree to rounding up to the first slip; afterwards a difference in rounding can change which block
-/// slips first.
+/// Options of computing a run. Results have the same bits for any `threads`, `skips` and number of ranks. The
+/// two kernels agree to rounding up to the first slip; afterwards a difference in rounding can change which
+/// block slips first.
 ///
 /// ```
 /// use slipfront::{Execution, Kernel};
@@ -39,26 +40,27 @@ pub enum Kernel {
 pub struct Execution {
     /// Kernel that computes the steps.
     pub kernel: Kernel,
-    /// Threads of the pool that share the blocks; useful from some ten thousand blocks on for the fused
-    /// kernel, some thousand for the general kernel. A thread that steps a simulation should belong to the
-    /// pool (see `rayon::scope`): any other thread waits at every step until it is woken.
+    /// Number of threads of the pool that share the blocks; several are useful from some ten thousand blocks
+    /// on for the fused kernel, and from some thousand for the general kernel. A thread that steps a
+    /// simulation should belong to the pool (see `rayon::scope`): any other thread waits at every step until
+    /// it is woken.
     pub threads: usize,
     /// Whether blocks at rest are skipped until they can slip.
     pub skips: bool,
-    /// The connection with the ranks that share the lattice; [`Alone`] unless given. Each rank has a model of
+    /// Connection to the other ranks that share the lattice; [`Alone`] by default. Each rank has a model of
     /// its own rows.
     pub communicator: Arc<dyn Communicator>,
 }
 
 impl Kernel {
-    /// The kernel that computes a model when this one is asked for.
+    /// The kernel that computes a model if this one is requested.
     pub fn for_model(self, model: &Model) -> Self {
         let (is_viscous, rotates) = (model.slider.is_viscous(), model.drive.rotation.is_some());
         self.for_law(&model.friction, is_viscous, rotates)
     }
 
-    /// The kernel that computes models with this law of friction, with or without dampers and a rotation,
-    /// when this one is asked for.
+    /// The kernel that computes models with this law of friction, with or without dampers and a rotation, if
+    /// this one is requested.
     pub fn for_law(self, friction: &Friction, has_dampers: bool, rotates: bool) -> Self {
         let is_fused = friction.needs().is_fused && !has_dampers && !rotates;
         if is_fused { self } else { Self::General }
@@ -96,7 +98,7 @@ impl Execution {
         }
     }
 
-    /// A kernel that continues from a checkpoint and its columns; none if the checkpoint is of another
+    /// A kernel that continues from a checkpoint and its columns; none if the checkpoint belongs to another
     /// kernel.
     pub(crate) fn resume<E>(
         self,

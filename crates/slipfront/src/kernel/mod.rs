@@ -1,7 +1,7 @@
 //! Kernels, which advance the state of all blocks by one step.
 //!
-//! `general/` computes every option, one pass over the blocks per equation; `fused/` computes the common ones
-//! in one fast sweep. The [`Simulation`](crate::Simulation) steps the one that its [`Execution`] names,
+//! `general/` computes every option, one pass over the blocks per equation; `fused/` computes the common
+//! options in one fast sweep. The [`Simulation`](crate::Simulation) uses the kernel of its [`Execution`]
 //! through the functions of `engine.rs`, or `replay.rs` for steps that a [`Device`](crate::device::Device)
 //! has computed.
 

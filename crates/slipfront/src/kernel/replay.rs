@@ -1,7 +1,7 @@
-//! The engine of runs whose steps a device has computed: it hands over what was recorded of each step.
+//! The engine of runs with steps that a device has computed: it returns the records of each step.
 //!
-//! Numbers of single blocks are known where the device has stopped. There the fused kernel, which has the
-//! same bits, takes over the state and reads them.
+//! Values of single blocks are known only at the step at which the device has stopped. There the fused
+//! kernel, which gives the same bits, takes the state and reads them.
 
 use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
@@ -26,12 +26,12 @@ pub(crate) struct Replay {
     clock: Clock,
     present: StepRecord,
     totals: Totals,
-    /// The fused kernel at the present step, once a number of single blocks was read there.
+    /// The fused kernel at the present step, if a value of single blocks has been read there.
     blocks: OnceLock<Box<Fused>>,
 }
 
 impl Replay {
-    /// The steps from t = 0 on of a lattice that a device has taken through some of them.
+    /// Replays the recorded steps of a lattice from t = 0 on.
     pub(crate) fn new(lattice: DeviceLattice) -> Self {
         Self {
             clock: Clock::start(lattice.equations.dt_star),

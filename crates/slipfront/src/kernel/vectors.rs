@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::Level;
 
-/// Names of vector instructions, narrow ones first: those that every processor has, and two that some
-/// processors for x86-64 have.
+/// Names of vector instruction sets, narrow ones first: the one that every processor has, and two that some
+/// x86-64 processors have.
 const NAMES: [&str; 3] = ["baseline", "AVX2", "AVX-512"];
 
-/// Place in [`NAMES`] of the widest instructions that kernels of this process may use.
+/// Index in [`NAMES`] of the widest instructions that kernels of this process may use.
 static WIDEST: AtomicUsize = AtomicUsize::new(NAMES.len() - 1);
 
-/// Why kernels cannot be limited to certain vector instructions.
+/// Reason why kernels cannot be limited to certain vector instructions.
 #[derive(Debug, thiserror::Error)]
 pub enum SimdWidthError {
     /// No vector instructions have this name.
@@ -23,7 +23,7 @@ pub enum SimdWidthError {
     Missing(&'static str, &'static str),
 }
 
-/// The vector instructions that a kernel is to use.
+/// The vector instructions that a kernel should use.
 pub(crate) fn level() -> Level {
     let own = Level::new();
     #[cfg(target_arch = "x86_64")]
@@ -54,11 +54,11 @@ pub fn simd_width() -> &'static str {
     }
 }
 
-/// Limits the kernels of this process that begin from now on to vector instructions of this name: `baseline`
-/// (SSE2 on x86-64), `AVX2` or `AVX-512`.
+/// Limits kernels that this process creates from now on to these vector instructions: `baseline` (SSE2 on
+/// x86-64), `AVX2` or `AVX-512`.
 ///
 /// # Errors
-/// If nothing has this name, or the processor lacks the instructions.
+/// If the name is unknown, or the processor lacks the instructions.
 ///
 /// ```
 /// slipfront::limit_simd_width("baseline").unwrap();

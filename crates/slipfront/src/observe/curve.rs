@@ -15,7 +15,7 @@ pub struct CurveRow {
     pub step: u64,
     /// Time t*.
     pub time_star: f64,
-    /// Steps in which the drive has moved by then: all, unless it is held.
+    /// Number of steps in which the drive has moved by then: all, unless it is held.
     pub drive_steps: u64,
     /// t* of the drive, on which its path depends.
     pub drive_time_star: f64,
@@ -23,7 +23,7 @@ pub struct CurveRow {
     pub point: CurvePoint,
     /// Energies stored at this instant, and supplied and lost up to it.
     pub energies: Energies,
-    /// Mean state variable of the blocks in contact, t*; 0 under laws that have none.
+    /// Mean state variable of the blocks in contact, t*; 0 under laws without a state.
     pub mean_state: f64,
 }
 
@@ -46,8 +46,8 @@ impl Curve {
         }
     }
 
-    /// The row of the instant that was seen last, whether or not it is one of the rows. The energies that
-    /// blocks and springs store are left out, since they may not be known there.
+    /// The row of the latest instant, whether or not it is recorded. The energies stored in blocks and
+    /// springs are left out, since they may not be known there.
     pub fn counts(&self, now: &Snapshot) -> CurveRow {
         CurveRow {
             step: now.step,
@@ -60,12 +60,12 @@ impl Curve {
         }
     }
 
-    /// Whether the recording can be the one that began as `new` and was called at every step until the drive
-    /// had moved in `drive_steps`.
+    /// Whether the recording can have begun as `new` and been called at every step until the drive had moved
+    /// in `drive_steps`.
     pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let stride = new.stride.max(1);
         let of_stride = || (0..=drive_steps).step_by(stride as usize);
-        // A run that has ended has a row of its last step, whatever the stride.
+        // A run that has ended has a row for its last step, at any stride.
         let with_last = of_stride().chain((!drive_steps.is_multiple_of(stride)).then_some(drive_steps));
         let rows = || self.rows.iter().map(|row| row.drive_steps);
         self.stride == new.stride && (rows().eq(of_stride()) || rows().eq(with_last))

@@ -1,4 +1,4 @@
-//! The peaks of mu* in a program of speeds, one for each part in which the drive moves forwards.
+//! The peaks of mu* in a program of speeds, one for each segment in which the drive moves forwards.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,16 +6,16 @@ use super::observer::Observer;
 use crate::error::RunError;
 use crate::snapshot::Snapshot;
 
-/// A segment of a program with a speed above zero, as far as the run went.
+/// A segment of a program with a speed above zero, up to the end of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// t* of the drive at which the segment begins.
     pub from_star: f64,
     /// Speed of the drive in the segment.
     pub v_star: f64,
-    /// Largest mu* in the segment, over the instants after its beginning, up to and with its end.
+    /// Largest mu* in the segment, over the instants after its beginning up to and including its end.
     pub mu_star: f64,
-    /// t* of the drive at the largest mu*, the first of equal ones.
+    /// t* of the drive at the largest mu*, the first if it occurs several times.
     pub time_star: f64,
 }
 
@@ -26,12 +26,12 @@ pub struct Cycles {
 }
 
 impl Cycles {
-    /// The peaks in the order of time.
+    /// The peaks in order of time.
     pub fn cycles(&self) -> &[Cycle] {
         &self.cycles
     }
 
-    /// Whether the recording can be of a run up to this time of the drive.
+    /// Whether the recording can belong to a run up to this time of the drive.
     pub fn is_consistent_with(&self, drive_time_star: f64) -> bool {
         let times = self
             .cycles
@@ -46,7 +46,7 @@ impl Observer for Cycles {
         let Some(program) = &now.model.drive.program else {
             return Ok(());
         };
-        // What an instant shows is due to the step that ends there.
+        // The values at an instant result from the step that ends there.
         let segment = program.segment_at(now.clock.drive_time_before());
         if segment.v_star <= 0.0 {
             return Ok(());

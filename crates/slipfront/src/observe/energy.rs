@@ -23,11 +23,11 @@ pub struct Energies {
     pub viscous_loss: f64,
     /// Energy stored in springs between blocks and substrate at this instant.
     pub contact_springs: f64,
-    /// Energy stored in the foundation under an interface at this instant, with that of the load on it.
+    /// Energy stored in the foundation under an interface at this instant, including that of the load on it.
     pub foundation: f64,
     /// Energy lost with springs between blocks and substrate that broke since the start.
     pub broken_springs_loss: f64,
-    /// Part of the loss to friction since the start that is the energy that falling strength takes, see
+    /// Part of the friction loss since the start that is weakening energy, see
     /// [`Snapshot::weakening_energy`](crate::Snapshot::weakening_energy).
     pub weakening_loss: f64,
     /// Energy stored at the start.
@@ -41,17 +41,17 @@ impl Energies {
     /// error = (work - (stored - stored at start) - losses)/(|work| + stored at start)
     /// ```
     ///
-    /// It falls with the square of the time step: the balance misses the kinetic energy that a block loses in
-    /// the last step of a slip, at most `(mu_k F_n dt)^2/2`. As long as no block stops, linear springs let
-    /// the errors of the steps cancel but for the first and the present one: with the force **F** of the
-    /// springs between blocks and to the drive, and the change of velocity from half a step before to half a
-    /// step after,
+    /// The error is proportional to the square of the time step: the balance misses the kinetic energy that a
+    /// block loses in the last step of a slip, at most `(mu_k F_n dt)^2/2`. As long as no block stops and
+    /// springs are linear, the errors of the steps cancel, except for the first and the present step. With
+    /// the force **F** of the springs between blocks and to the drive, and the change of velocity from half a
+    /// step before to half a step after,
     ///
     /// ```text
     /// missing = (dt/4) [(sum F . (v_after - v_before)) at the start - the same now]
     /// ```
     ///
-    /// so that in steady sliding the error is that of rounding.
+    /// so that in steady sliding only rounding errors remain.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
         let stored = self.stored.total() + self.contact_springs + self.foundation;
@@ -84,9 +84,9 @@ impl Powers {
     }
 }
 
-/// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, whose speed is
-/// constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle; that of the dead load
-/// follows from the displacements.
+/// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, at a speed that
+/// is constant within it, is `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle; the work of the dead
+/// load follows from the displacements.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,
@@ -96,7 +96,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Adds the step that ends now. The function must be called at every step.
+    /// Adds the step that ends now. Must be called at every step.
     pub(crate) fn add(&mut self, now: &Snapshot) {
         let powers = Powers::at(now);
         self.totals.contact_springs = now.contact.spring_energy;
@@ -123,7 +123,7 @@ impl Ledger {
         self.before = Some(powers);
     }
 
-    /// The balance at this instant, without what blocks and springs store.
+    /// The balance at this instant, without the energy stored in blocks and springs.
     pub(crate) fn counts(&self, now: &Snapshot) -> Energies {
         Energies {
             work: self.totals.work + (now.dead_load_work() - self.dead_load_at_start),

@@ -17,7 +17,8 @@ pub struct Event {
     pub from_star: f64,
     /// t* of the drive at which the event begins.
     pub drive_from_star: f64,
-    /// Column and row of the block in contact that slides first; of several, the one with the least index.
+    /// Column and row of the block in contact that slides first; if there are several, the one with the least
+    /// index.
     pub nucleation: [u32; 2],
     /// Number of blocks in contact that slide in the event.
     pub blocks: usize,
@@ -28,12 +29,12 @@ pub struct Event {
     pub speed_max: f64,
     /// mu* at the beginning of the event.
     pub mu_star_before: f64,
-    /// t* at which no block in contact slides any more, and mu* then; none for an event that goes on.
+    /// t* at which no block in contact slides any more, and mu* then; none for an event that has not ended.
     pub after: Option<(f64, f64)>,
 }
 
-/// The events of a run, the first [`Events::MAX`] of them one by one. The observer must be called at every
-/// step. It looks at blocks only while one slides.
+/// The events of a run, listing the first [`Events::MAX`] of them. The observer must be called at every step.
+/// It reads blocks only while one slides.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Events {
     /// Number of blocks in contact, of all ranks.
@@ -42,11 +43,11 @@ pub struct Events {
     unlisted: u64,
     /// Whether a block in contact slides from the latest instant on.
     slides: bool,
-    /// Displacement along the drive of every block of this rank when it first slid in the event that goes on;
-    /// NaN for other blocks. Empty before the first event.
+    /// Displacement along the drive of every block of this rank when it first slid in the present event; NaN
+    /// for other blocks. Empty before the first event.
     #[serde(skip)]
     paths_before: Vec<f64>,
-    /// Number of blocks in contact of this rank that have not slid in the event that goes on.
+    /// Number of blocks in contact of this rank that have not slid in the present event.
     #[serde(skip)]
     n_stuck: usize,
 }
@@ -67,34 +68,34 @@ impl Events {
         }
     }
 
-    /// The events in the order of time; the last may go on.
+    /// The events in order of time; the last may not have ended.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// Number of events that are listed in which all blocks in contact slide.
+    /// Number of listed events in which all blocks in contact slide.
     pub fn n_whole(&self) -> usize {
         let is_whole = |event: &&Event| event.blocks == self.n_contact;
         self.events.iter().filter(is_whole).count()
     }
 
-    /// Number of events after the last one that is listed.
+    /// Number of events after the last listed one.
     pub fn unlisted(&self) -> u64 {
         self.unlisted
     }
 
-    /// Displacement along the drive of every block of this rank when it first slid in the event that goes on,
-    /// NaN for other blocks; none between events. A checkpoint keeps them beside what is serialised.
+    /// Displacement along the drive of every block of this rank when it first slid in the present event, NaN
+    /// for other blocks; none between events. A checkpoint keeps them in addition to the serialised fields.
     pub fn paths_before(&self) -> Option<&[f64]> {
         self.goes_on().then_some(&self.paths_before)
     }
 
-    /// Whether an event that is listed goes on.
+    /// Whether a listed event has not ended.
     pub fn goes_on(&self) -> bool {
         self.slides && self.unlisted == 0
     }
 
-    /// Goes on within an event with the [paths](Self::paths_before) of a checkpoint.
+    /// Continues within an event, with the [paths](Self::paths_before) of a checkpoint.
     pub fn resume(&mut self, model: &Model, paths_before: Vec<f64>) {
         let blocks = paths_before.iter().zip(&model.surface.textured);
         self.n_stuck = blocks
@@ -103,7 +104,7 @@ impl Events {
         self.paths_before = paths_before;
     }
 
-    /// Whether the recording can be the one that began as `new` and was called up to `time_star`.
+    /// Whether the recording can have begun as `new` and been called up to `time_star`.
     pub fn is_consistent_with(&self, new: &Self, time_star: f64) -> bool {
         let times = self
             .events
@@ -122,7 +123,7 @@ impl Events {
             && has_lengths
     }
 
-    /// Begins an event that is listed.
+    /// Begins a listed event.
     fn begin(&mut self, now: &Snapshot) {
         let mut paths = std::mem::take(&mut self.paths_before);
         paths.clear();
@@ -139,7 +140,7 @@ impl Events {
             after: None,
         });
         let first = self.follow(now);
-        // Of all ranks; the least index is the largest negative one.
+        // The least index over all ranks is minus the largest negative index.
         let mut least = [first.map_or(f64::NEG_INFINITY, |b| -((first_block(now) + b) as f64))];
         now.communicator.largest(&mut least);
         let (i, j) = now.model.lattice.column_row(-least[0] as usize);
@@ -148,11 +149,11 @@ impl Events {
         }
     }
 
-    /// Looks at the blocks that slide in an event. Returns the first of those of this rank that have not slid
-    /// in it before.
+    /// Reads the blocks that slide in an event. Returns the first block of this rank that slides in it for
+    /// the first time.
     fn follow(&mut self, now: &Snapshot) -> Option<usize> {
         let event = self.events.last_mut()?;
-        // Blocks are not looked at if none is faster than one was before, and all have slid.
+        // Blocks are not read if all have slid and none can exceed the largest speed so far.
         let bound = now
             .engine
             .motion_bounds()
@@ -160,7 +161,7 @@ impl Events {
         let may_be_faster = bound > event.speed_max;
         let (paths, n_stuck) = (&mut self.paths_before, &mut self.n_stuck);
         let (mut square, mut first) = (0.0, None);
-        // The motion of an upright sheet along y is no slip.
+        // The motion of an upright sheet along y is not slip.
         let across = f64::from(u8::from(now.model.friction.interface().is_none()));
         if may_be_faster || *n_stuck > 0 {
             now.engine.read_sliding(now.model, &mut |start, slides, [x, y]| {
@@ -196,7 +197,8 @@ impl Events {
         first
     }
 
-    /// Adds up what the blocks have slid in an event that ends here, or goes on when the run ends.
+    /// Adds up the slip of the blocks in an event that ends here, or that has not ended at the end of the
+    /// run.
     fn end(&mut self, now: &Snapshot) {
         let paths = &self.paths_before;
         let slip = |b: usize| {

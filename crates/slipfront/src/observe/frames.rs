@@ -23,7 +23,7 @@ pub struct Frame {
     /// Friction coefficient mu* and percentage N*.
     pub point: CurvePoint,
     /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on.
-    /// The arrays are as large as the lattice: code that serializes a frame writes them beside it.
+    /// The arrays are as large as the lattice: code that serializes a frame writes them separately.
     #[serde(skip)]
     pub values: Vec<Vec<f32>>,
 }
@@ -33,11 +33,11 @@ pub struct Frame {
 pub struct Selection {
     /// The fields, in the order in which they are recorded.
     pub fields: Vec<Field>,
-    /// Every n-th block along each axis.
+    /// Every n-th block along each axis is recorded.
     pub stride: usize,
 }
 
-/// Indices kept among `indices` where every `stride`-th from 0 is kept, counted among all that are kept.
+/// Positions of the members of `indices` among all kept indices, if every `stride`-th index from 0 is kept.
 ///
 /// ```
 /// # use slipfront::observe::frames::kept;
@@ -93,7 +93,7 @@ impl Selection {
 pub struct Frames {
     /// Fields and blocks that are recorded.
     pub selection: Selection,
-    /// Frames in the order of time.
+    /// Frames in order of time.
     pub frames: Vec<Frame>,
 }
 
@@ -106,7 +106,7 @@ impl Frames {
         }
     }
 
-    /// Whether the recording can be the one that began as `new` and was called up to `step`.
+    /// Whether the recording can have begun as `new` and been called up to `step`.
     pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let steps = self.frames.iter().map(|frame| frame.step);
         self.selection == new.selection && steps.chain([step + 1]).is_sorted_by(|one, next| one < next)

@@ -1,4 +1,4 @@
-//! The instants A-F of Fig. 4, found while the run goes on.
+//! The instants A-F of Fig. 4, found during the run.
 //!
 //! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in
 //! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of
@@ -30,10 +30,10 @@ pub struct Instants {
     kinetic: KineticStart,
     end_time_star: f64,
     frames: [Option<Frame>; 6],
-    /// Valid frames of `frames`; the memory of the others is used again.
+    /// Valid frames of `frames`; the memory of the others is reused.
     valid: [bool; 6],
     ended: bool,
-    /// Whether the run has gone on long enough to know D, and E.
+    /// Whether the run has gone on long enough for D, and for E, to be known.
     known: [bool; 2],
 }
 
@@ -51,7 +51,7 @@ impl Instants {
         }
     }
 
-    /// Whether the recording can be the one that began as `new` and was called up to `step`.
+    /// Whether the recording can have begun as `new` and been called up to `step`.
     pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let same_settings = self.selection == new.selection
             && self.kinetic == new.kinetic
@@ -69,12 +69,12 @@ impl Instants {
         self.frames.iter_mut().flatten()
     }
 
-    /// The instants that the run had, in the order of their letters. Without a transition there is no D and
-    /// E, nor when the run ends before the times among which they are chosen.
+    /// The instants of the run, in the order of their letters. D and E are missing without a transition, or
+    /// if the run ends before the times among which they are chosen.
     pub fn found(mut self) -> Vec<(char, Frame)> {
         let shown = self.shown();
-        // From the last on: a frame is taken by the first of those that it shows, after the others have
-        // copied it.
+        // In reverse order: a frame is moved to the first instant that it shows, after the others have copied
+        // it.
         let mut found: Vec<(char, Frame)> = (A..=F)
             .rev()
             .filter_map(|instant| {
@@ -91,14 +91,14 @@ impl Instants {
         found
     }
 
-    /// The instants that the run would have had if it ended now, and t* of the drive at each. C is a
-    /// candidate until mu* has fallen far enough, and so is F until then.
+    /// The instants that the run would have if it ended now, and t* of the drive at each. C and F are
+    /// candidates until mu* has fallen far enough.
     pub fn by_now(&self) -> impl Iterator<Item = (char, f64)> {
         let shown = LETTERS.into_iter().zip(self.shown());
         shown.filter_map(|(letter, frame)| Some((letter, self.frames[frame?].as_ref()?.drive_time_star)))
     }
 
-    /// The frame that shows each instant that the run has had.
+    /// The frame of each instant that the run has had.
     fn shown(&self) -> [Option<usize>; 6] {
         let mut shown = std::array::from_fn(|instant| self.valid[instant].then_some(instant));
         for (instant, known) in [(D, self.known[0]), (E, self.known[1])] {
@@ -120,7 +120,7 @@ impl Instants {
         }
     }
 
-    /// The frame of the first of these instants that has a valid one.
+    /// The first valid frame of these instants.
     fn first_valid(&self, instants: &[usize]) -> Option<&Frame> {
         instants
             .iter()
@@ -132,7 +132,8 @@ impl Instants {
 impl Observer for Instants {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         let v_star = now.model.loading_speed();
-        // The step of the drive before, as its own product: n dt - dt need not be (n - 1) dt to the last bit.
+        // Time of the drive one step before, as a product of its own: n dt - dt may differ from (n - 1) dt in
+        // the last bit.
         let before = (now.drive_steps as f64 - 1.0) * now.dt_star;
         let passes = |time: f64| now.clock.drive_moved() && now.drive_time_star >= time && before < time;
         if passes(0.5 / v_star) {
@@ -144,8 +145,8 @@ impl Observer for Instants {
         let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
         let middle = 0.5 * (kinetic_from + self.end_time_star);
         if now.peak.ended && !self.ended && middle > now.drive_time_star {
-            // The end of the peak moves the kinetic window: F was the middle of the window of a run without a
-            // transition.
+            // The end of the peak moves the kinetic window: until then F was the middle of the window of a
+            // run without a transition.
             self.valid[F] = false;
         }
         self.ended = now.peak.ended;
@@ -156,7 +157,7 @@ impl Observer for Instants {
         let most_until = now.peak.drive_time_star + ONSET_PATH / v_star;
         self.known = [most_until, fall_until].map(|until| now.drive_time_star >= until);
         if now.peak.step == now.step {
-            // While mu* still rises the peak lies ahead, as it does at every step before the first slip.
+            // While mu* still rises the peak lies ahead, as at every step before the first slip.
             if (self.valid[B] && !now.mu_star_rises()) || now.last {
                 self.keep(C, now);
             }

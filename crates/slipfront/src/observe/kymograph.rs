@@ -1,4 +1,4 @@
-//! Share of the blocks that slide, against place along the drive and time.
+//! Share of sliding blocks against position along the drive and time.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,17 +9,17 @@ use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::snapshot::Snapshot;
 
-/// Counts the blocks in contact that slide, in [bins of their place](PositionBins), at every
+/// Counts the sliding blocks in contact, in [bins of their position](PositionBins), at every
 /// [`Kymograph::INTERVAL`]-th step. There are at most [`Kymograph::MAX_ROWS`] rows of time: when they are
-/// full, they are added up in pairs, so that memory does not grow with the run. All numbers are whole and
+/// full, they are added up in pairs, so that memory does not grow with the run. All values are integers,
 /// counted over all ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kymograph {
-    /// Blocks in contact of every bin.
+    /// Number of blocks in contact in every bin.
     in_contact: Vec<i64>,
-    /// Instants at which blocks were counted.
+    /// Number of instants at which blocks were counted.
     samples: u64,
-    /// Instants in each row; the last row may have fewer.
+    /// Number of instants in each row; the last row may have fewer.
     samples_per_row: u64,
     /// Sliding blocks, summed over the instants of each row: row after row, bin after bin.
     sliding: Vec<i64>,
@@ -39,11 +39,11 @@ impl Default for Kymograph {
 impl Kymograph {
     /// Largest number of rows.
     pub const MAX_ROWS: usize = 1024;
-    /// Steps from one count to the next: few enough that a front which takes some t* is resolved, and many
-    /// enough that a run takes no longer.
+    /// Number of steps from one count to the next: few enough to resolve a front that takes some t*, and so
+    /// many that counting does not slow down a run.
     pub const INTERVAL: u64 = 8;
 
-    /// Largest number of counts of a run of `last_step` steps: rows of time times bins of place, whatever the
+    /// Largest number of counts of a run of `last_step` steps: rows of time times bins of position, for any
     /// direction of the drive.
     pub fn max_counts(lattice: &Lattice, last_step: u64) -> usize {
         let samples = last_step / Self::INTERVAL + 1;
@@ -56,13 +56,13 @@ impl Kymograph {
         Scheduled::new(Schedule::EveryStep(Self::INTERVAL), self)
     }
 
-    /// Blocks in contact of every bin.
+    /// Number of blocks in contact in every bin.
     pub fn in_contact(&self) -> &[i64] {
         &self.in_contact
     }
 
     /// The rows, each with the middle of its instants, as a number of steps, and the share of the blocks in
-    /// contact of every bin that slide, NaN for a bin without contact.
+    /// contact that slide, for every bin; NaN for a bin without contact.
     pub fn rows(&self) -> impl Iterator<Item = (f64, Vec<f32>)> {
         let rows = self.sliding.chunks(self.in_contact.len().max(1));
         rows.zip(0..).map(|(sliding, row)| {
@@ -80,7 +80,7 @@ impl Kymograph {
         (first, self.samples_per_row.min(self.samples - first))
     }
 
-    /// Whether the recording can be of a run of this model up to `step`.
+    /// Whether the recording can belong to a run of this model up to `step`.
     pub fn is_consistent_with(&self, model: &Model, step: u64) -> bool {
         let samples = step / Self::INTERVAL + 1;
         let mut samples_per_row = 1;
@@ -102,7 +102,7 @@ impl Kymograph {
             })
     }
 
-    /// Adds the rows up in pairs.
+    /// Adds up the rows in pairs.
     fn merge_rows(&mut self) {
         let bins = self.in_contact.len();
         for row in 0..Self::MAX_ROWS / 2 {
@@ -132,7 +132,7 @@ impl Observer for Kymograph {
         let row = self.sliding.len() - bins.count;
         let sliding = now.totals.n_slipping as i64;
         let stuck = self.in_contact.iter().sum::<i64>() - sliding;
-        // Those that are fewer are counted.
+        // Counts sliding or stuck blocks, whichever are fewer.
         let mut counts = vec![0; bins.count];
         if sliding.min(stuck) > 0 {
             now.engine

@@ -1,4 +1,4 @@
-//! The largest mu* until the drive has gone a stated path, measured while a run goes on.
+//! The largest mu* until the drive has moved by a given path, measured during a run.
 
 use super::observer::Observer;
 use crate::error::RunError;

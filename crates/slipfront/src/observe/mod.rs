@@ -2,10 +2,10 @@
 //!
 //! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]:
 //! fields at chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance;
-//! [`events`]: events of slip, each with its place and size; [`precursors`]: how far those of a slider driven
-//! at an edge reach; [`Largest`]: the largest mu* until the drive has gone a stated path; [`cycles`]: peaks
-//! under a program of speeds; [`kymograph`]: sliding against place and time. [`front`] is found after a run
-//! from its first slips: where slip has begun, and how fast it has spread.
+//! [`events`]: slip events, each with its position and size; [`precursors`]: how far the slip events of a
+//! slider driven at an edge reach; [`Largest`]: the largest mu* until the drive has moved by a given path;
+//! [`cycles`]: peaks under a program of speeds; [`kymograph`]: sliding against position and time. [`front`]
+//! is computed after a run from its first slips: where slip began, and how fast it spread.
 
 pub mod curve;
 pub mod cycles;

@@ -23,11 +23,11 @@ pub trait Observer {
 /// Steps at which an observer is called.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// At every n-th step from 0, including those in which a held drive stands.
+    /// At every n-th step from 0, including steps in which a held drive stands still.
     EveryStep(u64),
     /// At every n-th step of the drive from 0.
     Every(u64),
-    /// At these steps of the drive, in rising order.
+    /// At these steps of the drive, in ascending order.
     At(Vec<u64>),
 }
 
@@ -38,7 +38,7 @@ pub struct Scheduled<'a> {
 }
 
 impl<'a> Scheduled<'a> {
-    /// An observer that is called by `schedule`.
+    /// An observer that is called according to `schedule`.
     pub fn new(schedule: Schedule, observer: &'a mut dyn Observer) -> Self {
         Self { schedule, observer }
     }

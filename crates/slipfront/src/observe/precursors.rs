@@ -1,5 +1,5 @@
-//! Events of slip of a slider that is driven at an edge: precursors, which stop within it, and those that
-//! cross it.
+//! Slip events of a slider that is driven at an edge: precursors, which stop within the slider, and events
+//! that cross it.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub struct SlipEvent {
     pub length: f64,
     /// mu* at the beginning of the event.
     pub mu_star_before: f64,
-    /// t* at which all blocks in contact are stuck again, and mu* then; none for an event that goes on.
+    /// t* at which all blocks in contact are stuck again, and mu* then; none for an event that has not ended.
     pub after: Option<(f64, f64)>,
 }
 
@@ -39,7 +39,7 @@ impl Precursors {
         }
     }
 
-    /// The events in the order of time; the last may go on.
+    /// The events in order of time; the last may not have ended.
     pub fn events(&self) -> &[SlipEvent] {
         &self.events
     }
@@ -49,7 +49,7 @@ impl Precursors {
         self.events.iter().find(|event| event.length >= 1.0)
     }
 
-    /// Whether the recording can be the one that began as `new` and was called up to `time_star`.
+    /// Whether the recording can have begun as `new` and been called up to `time_star`.
     pub fn is_consistent_with(&self, new: &Self, time_star: f64) -> bool {
         let ended = self
             .events
@@ -96,7 +96,7 @@ impl Observer for Precursors {
                 after: None,
             });
         }
-        // Blocks are not looked at once all of the slider has been reached.
+        // Blocks are not read once slip has reached the whole slider.
         let length = match self.events.last() {
             Some(event) if slides && event.length < 1.0 => self.length(now),
             _ => 0.0,

@@ -18,7 +18,7 @@ pub enum KineticStart {
 }
 
 impl KineticStart {
-    /// Beginning of the window, t* of the drive, with the peak of mu* as far as it is known, at a [loading
+    /// Beginning of the window, t* of the drive, from the peak of mu* found so far, at a [loading
     /// speed](crate::Model::loading_speed) of `v_star`.
     pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
         match *self {
@@ -32,12 +32,12 @@ impl KineticStart {
 /// Friction in the kinetic window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kinetic {
-    /// First and last t* of the mean.
+    /// First and last t* over which the mean is taken.
     pub window_star: [f64; 2],
     /// mu_k*, the mean of mu*.
     pub mu_star: f64,
-    /// Standard error of mu_k* as an estimate of the mean over an infinite run, or why it cannot be
-    /// estimated.
+    /// Standard error of mu_k* as an estimate of the mean over an infinite run, or the reason why it cannot
+    /// be estimated.
     pub uncertainty: Result<f64, NoUncertainty>,
     /// Mean of mu_lateral_star.
     pub mu_lateral_star: f64,
@@ -45,15 +45,15 @@ pub struct Kinetic {
     pub sliding_percent: f64,
 }
 
-/// Why the uncertainty of a mean cannot be estimated from the scatter inside its window.
+/// Reason why the uncertainty of a mean cannot be estimated from the scatter inside its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoUncertainty {
-    /// The window is shorter than 40/V*, or holds fewer than 40 steps.
+    /// The window is shorter than 40/V*, or has fewer than 40 steps.
     TooShort {
         /// t* up to which the run should go.
         needed_time_star: f64,
     },
-    /// A program changes the speed of the drive: the run is no part of an infinite one.
+    /// A program changes the speed of the drive: the run is not part of an infinite one.
     SpeedChanges,
     /// The mean of the first half or of the first quarter differs by more than two standard errors from the
     /// mean of the rest: mu* still drifts.
@@ -65,7 +65,7 @@ pub enum NoUncertainty {
 
 /// Keeps mu*, the friction across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means
 /// over equal numbers of steps in which the drive moves, so that memory does not grow with the run. Its times
-/// are those of the drive. The observer must be called at every step.
+/// are times of the drive. The observer must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
     steps_per_bin: u64,
@@ -85,8 +85,8 @@ impl KineticHistory {
     /// Largest number of means. A shorter run keeps every step.
     pub const BINS: u64 = 16_384;
 
-    /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. A
-    /// run that goes on for longer averages twice as many steps into each mean as often as it must.
+    /// An empty history of a run of `last_step` steps of the drive; [`u64::MAX`] for a run without an end. In
+    /// a longer run each mean takes twice as many steps, as often as necessary.
     pub fn new(last_step: u64) -> Self {
         let steps_per_bin = if last_step == u64::MAX {
             1
@@ -101,8 +101,8 @@ impl KineticHistory {
         }
     }
 
-    /// Whether the history can be the one that began as `new` and was called at every step until the drive
-    /// had moved in `drive_steps`.
+    /// Whether the history can have begun as `new` and been called at every step until the drive had moved in
+    /// `drive_steps`.
     pub fn is_consistent_with(&self, new: &Self, drive_steps: u64) -> bool {
         let observed = drive_steps.saturating_add(1);
         let mut steps_per_bin = new.steps_per_bin;
@@ -179,7 +179,7 @@ impl KineticHistory {
 impl Observer for KineticHistory {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         self.sliding_percent_max = self.sliding_percent_max.max(now.point.sliding_percent);
-        // A mean over the path of the drive, which is one over time where it always moves.
+        // A mean over the path of the drive, which is the mean over time if the drive always moves.
         if now.clock.drive_moved() {
             self.add(&now.point);
         }
@@ -191,17 +191,19 @@ fn mean(x: &[f64]) -> f64 {
     x.iter().sum::<f64>() / x.len() as f64
 }
 
-/// A difference between parts of a window below this is no drift: it is less than the error of any time step.
+/// A difference between parts of a window below this is no drift: it is smaller than the error of any time
+/// step.
 const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 
 /// V* times the shortest window that gives a standard error. Shorter windows hide slow changes: across a
-/// groove friction still rises by 0.3 % after the transition, which does not show over 20/V*.
+/// groove, friction still rises by 0.3 % after the transition, which is not visible over 20/V*.
 const LEAST_PATH: f64 = 40.0;
 
-/// Largest difference between parts of a window that is no drift, in standard errors.
+/// Largest difference between parts of a window that does not count as drift, in standard errors.
 const MOST_DRIFT: f64 = 2.0;
 
-/// Fewest steps, or means over steps, from the first to the last of a window that gives a standard error.
+/// Least number of steps, or means over steps, from the first to the last of a window that gives a standard
+/// error.
 const MIN_STEPS: usize = 40;
 
 /// Standard error of the mean of a correlated series, if its window supports one.
@@ -211,14 +213,14 @@ fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoU
     let least = (LEAST_PATH / v_star).max(MIN_STEPS as f64 * bin_time);
     if until - from < least {
         return Err(NoUncertainty::TooShort {
-            // Bins that the ends of the window cut through do not count.
+            // Bins cut by the ends of the window do not count.
             needed_time_star: from + 1.01 * least,
         });
     }
-    // The scatter of the parts is that about the line of the whole: what drifts would itself pass for
+    // The scatter of the parts is measured about the trend line of the whole, so that drift does not count as
     // scatter.
     let level = without_line(x);
-    // What settles slowly shows itself in the first half, what has not settled when the window begins in the
+    // Slow settling shows in the first half, and settling that has not ended when the window begins in the
     // first quarter.
     for first in [x.len() / 2, x.len() / 4] {
         let difference = (mean(&x[..first]) - mean(&x[first..])).abs();
@@ -232,7 +234,7 @@ fn uncertainty(x: &[f64], window_star: [f64; 2], v_star: f64) -> Result<f64, NoU
     Ok(standard_error(x))
 }
 
-/// A series minus its line of least squares.
+/// A series minus its least-squares line.
 fn without_line(x: &[f64]) -> Vec<f64> {
     let (center, middle) = (mean(x), 0.5 * (x.len() as f64 - 1.0));
     let places = || (0..x.len()).map(|k| k as f64 - middle);
@@ -242,29 +244,28 @@ fn without_line(x: &[f64]) -> Vec<f64> {
     places().zip(x).map(residual).collect()
 }
 
-/// Largest number of values from which an autoregressive model is made: longer series are averaged over
-/// neighbours first.
+/// Largest number of values for an autoregressive model: longer series are first averaged over neighbours.
 const MAX_VALUES: usize = 512;
 
-/// Terms of the autoregressive model over the root of the number of values.
+/// Number of terms of the autoregressive model over the square root of the number of values.
 const TERMS: f64 = 1.5;
 
-/// Standard error of the mean of a correlated series of n values, from an autoregressive model of it,
+/// Standard error of the mean of a correlated series of n values, from an autoregressive model of the series:
 ///
 /// ```text
 /// x_t = sum_i a_i x_t-i + noise,    i = 1 .. (3/2) sqrt(n)
 /// ```
 ///
-/// whose terms are found by Burg's recursion (Burg 1975), and whose autocovariances gamma(k) give the
-/// variance of the mean over just this window:
+/// Burg's recursion (Burg 1975) finds its terms, and its autocovariances gamma(k) give the variance of the
+/// mean over exactly this window:
 ///
 /// ```text
 /// se^2 = (1/n^2) sum_{|k| < n} (n - |k|) gamma(k)
 /// ```
 ///
 /// A slider that sticks and slips is anticorrelated: a rise in one cycle is a fall in the next, and the error
-/// falls as 1/n and not as 1/sqrt(n). Estimates from independent blocks do not see that, and criteria that
-/// spare terms of the model (of Akaike, of Schwarz) see less of it.
+/// falls as 1/n, not as 1/sqrt(n). Estimates from independent blocks miss this, and criteria that reduce the
+/// number of terms of the model (Akaike, Schwarz) underestimate it.
 fn standard_error(x: &[f64]) -> f64 {
     let values: Vec<f64> = x.chunks_exact(x.len().div_ceil(MAX_VALUES)).map(mean).collect();
     let n = values.len() as f64;
@@ -273,7 +274,7 @@ fn standard_error(x: &[f64]) -> f64 {
         .iter()
         .zip(0..)
         .map(|(gamma, k)| (n - f64::from(k)) * gamma);
-    // Every k but 0 stands for two. Rounding can leave a little less than nothing of a series that repeats.
+    // Every k but 0 counts twice. Rounding can make the sum of a periodic series slightly negative.
     let sum = 2.0 * weighted.sum::<f64>() - n * covariances[0];
     sum.max(0.0).sqrt() / n
 }
@@ -281,7 +282,8 @@ fn standard_error(x: &[f64]) -> f64 {
 /// Autocovariances gamma(0) to gamma(n - 1) of the autoregressive model of a series of n values.
 fn autocovariances(x: &[f64]) -> Vec<f64> {
     let (n, center) = (x.len() as f64, mean(x));
-    // Errors of predicting each value from those before it, and of the one before these from them.
+    // Errors of predicting each value from those before it, and of predicting the value before these from
+    // them.
     let mut forward: Vec<f64> = x.iter().map(|value| value - center).collect();
     let mut backward = forward.clone();
     let mut error = forward.iter().map(|value| value * value).sum::<f64>() / n;
@@ -339,7 +341,7 @@ mod tests {
         let expected = (1.0 / 12.0 / 4096.0_f64).sqrt();
         let found = uncertainty(&x, [0.0, 1.0], 40.0).unwrap();
         // The spectrum at frequency 0 of 48 terms over n/8 = 512 values has a relative error of sqrt(4
-        // 48/512), the root half of it.
+        // 48/512), and its square root half of that.
         assert!((found / expected - 1.0).abs() < 2.0 * 0.31, "{found} {expected}");
     }
 
@@ -356,7 +358,7 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
     }
 
-    /// The history of a run in which mu* is this noise.
+    /// The history of a run with this noise as mu*.
     fn history_of(mut history: KineticHistory, noise: &[f64]) -> KineticHistory {
         for &mu_star in noise {
             history.add(&CurvePoint {
@@ -408,8 +410,8 @@ mod tests {
         assert_eq!(KineticHistory::new(u64::MAX - 1).steps_per_bin, 1 << 50);
     }
 
-    /// x_k = noise_k - noise_k-1: the sum is the difference of two numbers, whose variance is 1/6, however
-    /// long the series.
+    /// x_k = noise_k - noise_k-1: the sum is the difference of two numbers, with variance 1/6 for any length
+    /// of the series.
     #[test]
     fn what_rises_and_falls_back_has_an_error_that_falls_with_the_length() {
         let noise = noise(513);

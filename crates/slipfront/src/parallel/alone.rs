@@ -1,11 +1,10 @@
-//! Loops on the one thread that there is.
+//! Loops on the only thread.
 
 use std::slice::{ChunksMut, Iter, IterMut};
 
-// The names of rayon that this project uses, and no others: what is missing here does not compile for
-// WebAssembly.
+// Only the names of rayon that this project uses: code that uses others does not compile for WebAssembly.
 
-/// Number of threads that share out a loop.
+/// Number of threads that share a loop.
 pub fn current_num_threads() -> usize {
     1
 }
@@ -15,7 +14,7 @@ pub fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) 
     (one(), other())
 }
 
-/// Combines all elements, from the first on; `identity` gives the element that changes no other.
+/// Combines all elements, from the first on; `identity` returns the neutral element.
 pub fn reduce<I: Iterator>(
     elements: I,
     identity: impl Fn() -> I::Item,
@@ -24,7 +23,7 @@ pub fn reduce<I: Iterator>(
     elements.fold(identity(), combine)
 }
 
-/// Elements one after the other, which threads would share out.
+/// Elements in sequence, in place of a parallel iterator.
 pub trait IntoParallelIterator: IntoIterator + Sized {
     /// Iterates over the elements.
     fn into_par_iter(self) -> Self::IntoIter {
@@ -34,7 +33,7 @@ pub trait IntoParallelIterator: IntoIterator + Sized {
 
 impl<I: IntoIterator> IntoParallelIterator for I {}
 
-/// Elements of a slice one after the other.
+/// Elements of a slice in sequence.
 pub trait ParallelSlice<T> {
     /// Iterates over the elements.
     fn par_iter(&self) -> Iter<'_, T>;
@@ -58,14 +57,14 @@ impl<T> ParallelSlice<T> for [T] {
     }
 }
 
-/// How many elements a thread takes at once, which does not matter for one thread.
+/// Number of elements that a thread takes at once; it has no effect on a single thread.
 pub trait IndexedParallelIterator: Iterator + Sized {
-    /// Lets a thread take at least so many elements.
+    /// Sets the least number of elements that a thread takes.
     fn with_min_len(self, _least: usize) -> Self {
         self
     }
 
-    /// Lets a thread take at most so many elements.
+    /// Sets the largest number of elements that a thread takes.
     fn with_max_len(self, _most: usize) -> Self {
         self
     }

@@ -1,5 +1,5 @@
-//! Loops that threads share out, with the names of rayon. Where a target has no threads, as WebAssembly in a
-//! Worker of a page, the same loops go from the first element to the last; results never depend on that.
+//! Parallel loops, with the names of rayon. On a target without threads, such as WebAssembly in a Worker of a
+//! page, the same loops run in sequence; results never depend on this.
 
 #[cfg(target_family = "wasm")]
 mod alone;

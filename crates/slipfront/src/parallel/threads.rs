@@ -3,7 +3,7 @@
 pub use rayon::prelude::*;
 pub use rayon::{current_num_threads, join};
 
-/// Combines all elements, in any order; `identity` gives the element that changes no other.
+/// Combines all elements, in any order; `identity` returns the neutral element.
 pub fn reduce<I: ParallelIterator>(
     elements: I,
     identity: impl Fn() -> I::Item + Sync + Send,

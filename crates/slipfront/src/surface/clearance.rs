@@ -1,5 +1,5 @@
-//! The smallest textured feature and the smallest gap between two: lengths that a tool must make, and blocks
-//! must resolve.
+//! The smallest textured feature and the smallest gap between two features: lengths that a tool must make,
+//! and that blocks must resolve.
 
 use std::collections::HashMap;
 
@@ -19,19 +19,20 @@ pub struct Clearance {
     pub gap: Option<f64>,
 }
 
-/// Corners by which cavities other than ellipses are measured: the radius is met within five millionths.
+/// Number of corners of polygons for cavities other than ellipses: the error of the radius is at most five
+/// millionths.
 const CORNERS: usize = 1024;
-/// Largest number of copies that are all compared with each other; of more, those next to each other in every
-/// pattern, and at its ends, are compared.
+/// Largest number of copies that are all compared with each other. If there are more, only neighbours in
+/// every pattern, and copies at its ends, are compared.
 const MANY: usize = 4096;
 /// Largest number of points, edges and boxes that are examined, which takes some tenths of a second; textures
 /// that need more have no result.
 const EFFORT: usize = 50_000_000;
 
-/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that
-/// overlap are one, and those that lie off the slider do not count. The width of a cavity is that of the
-/// largest circle in it, and of a mask these are its shortest runs of blocks along x and y. There is no
-/// result for more shapes than can be examined in some tenths of a second.
+/// The smallest width of any shape and the smallest distance between two copies, before edges cut them.
+/// Shapes that overlap count as one, and those that lie off the slider do not count. The width of a cavity is
+/// that of the largest circle in it; for a mask, widths and distances are its shortest runs of blocks along x
+/// and y. There is no result if examining all shapes would take more than some tenths of a second.
 ///
 /// ```
 /// # use slipfront::Lattice;
@@ -73,7 +74,7 @@ fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Resu
     let dimples = Copies::of(lattice, &dimples, effort)?;
     let groups = pillars.chunks(1).map(|one| Copies::of(lattice, one, effort));
     let pillars = groups.collect::<Result<Vec<_>, _>>()?;
-    // Pillars are apart by what is textured between them.
+    // The textured area between pillars separates them.
     for pillars in &pillars {
         let is_textured = |at, effort: &mut Effort| Ok(!pillars.cover(at, effort)?);
         least(&mut found.feature, pillars.least_distance(effort, is_textured)?);
@@ -96,8 +97,8 @@ fn least(found: &mut Option<f64>, value: Option<f64>) {
     }
 }
 
-/// The shortest runs of blocks along x and y that are inside a mask, and the shortest runs outside between
-/// two of these.
+/// The shortest runs of blocks along x and y that are inside a mask, and the shortest runs outside that lie
+/// between two of these.
 fn runs(tile: &Tile) -> [Option<f64>; 2] {
     let [nx, ny] = tile.size;
     let mut found = [None, None];
@@ -117,7 +118,7 @@ fn runs(tile: &Tile) -> [Option<f64>; 2] {
 /// The widths of a shape inside and outside, and the shape.
 type Measured = ([Option<f64>; 2], PlacedShape);
 
-/// A shape of a texture, and the places at which it stands on the slider.
+/// A shape of a texture, and its positions on the slider.
 struct PlacedShape {
     form: Form,
     places: Vec<[f64; 2]>,
@@ -133,7 +134,7 @@ impl PlacedShape {
         effort: &mut Effort,
     ) -> Result<Option<Measured>, TooMuch> {
         if let Shape::Cavity(Cavity { s: 2.., .. }) = texture.shape {
-            // What its corners take, of time and of memory.
+            // The cost of its corners, in time and memory.
             effort.take(16 * CORNERS)?;
         }
         let Some((form, mut places)) = form(lattice, texture, all) else {
@@ -159,7 +160,7 @@ impl PlacedShape {
             return Ok(None);
         }
         let widths = match (&texture.shape, &form) {
-            // A rectangle that ends where the slider does, whose length is none of its widths.
+            // A rectangle that ends where the slider does, so that its length is not a width.
             (Shape::Groove(groove), _) => [Some(groove.width), None],
             (Shape::Cavity(Cavity { lambda, w, .. }), _) => [Some(2.0 * lambda * (1.0 - w.abs())), None],
             (_, Form::Polygon(corners)) => widths(corners, effort)?,
@@ -209,8 +210,8 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
     Some((form, places(&texture.arrays, all)))
 }
 
-/// The places of arrays of arrays: all, or for each array the first three and the last line along both axes,
-/// with all distances between neighbours.
+/// The positions of arrays of arrays: all, or for each array the first three and the last line along both
+/// axes, which include all distances between neighbours.
 fn places(arrays: &[Array], all: bool) -> Vec<[f64; 2]> {
     let lines = |count: usize| (0..count).filter(move |&line| all || line < 3 || line + 1 == count);
     arrays.iter().fold(vec![[0.0; 2]], |outer, array| {
@@ -238,7 +239,7 @@ struct PlacedCopy {
     at: [f64; 2],
     /// The smallest and the largest coordinate along each axis.
     bounds: [[f64; 2]; 2],
-    /// Whether the copy goes on from beyond a periodic edge.
+    /// Whether the copy is an image of a copy beyond a periodic edge.
     is_image: bool,
 }
 
@@ -291,15 +292,15 @@ impl<'a> Copies<'a> {
         Ok(false)
     }
 
-    /// The smallest distance between two copies between which all blocks are in contact; none for copies that
-    /// touch.
+    /// The smallest distance between two copies with all blocks between them in contact; copies that touch do
+    /// not count.
     fn least_distance(
         &self,
         effort: &mut Effort,
         counts: impl Fn([f64; 2], &mut Effort) -> Result<bool, TooMuch>,
     ) -> Result<Option<f64>, TooMuch> {
         let mut found = f64::INFINITY;
-        // Patterns have few distances, which differ by rounding from place to place.
+        // Patterns have few different distances, which differ only by rounding from place to place.
         let mut known: HashMap<(usize, usize, [i64; 2]), Option<Closest>> = HashMap::new();
         for (k, from) in self.copies.iter().enumerate() {
             for to in &self.copies[k + 1..] {
@@ -340,7 +341,7 @@ impl<'a> Copies<'a> {
     }
 }
 
-/// Shifts to the neighbouring images beyond periodic edges, and none.
+/// Shifts to the neighbouring images beyond periodic edges, including no shift.
 fn turns(lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
     let along = |axis: usize| {
         let size = [lattice.nx, lattice.ny][axis] as f64;
@@ -370,7 +371,7 @@ mod tests {
     }
 
     fn is_near(found: [f64; 2], expected: [f64; 2]) -> bool {
-        // Rounding of coordinates up to 60, a hundred times over.
+        // Rounding of coordinates up to 60, times a hundred.
         let near = |found: f64, expected: f64| {
             (found - expected).abs() < 1e-12 || found.is_nan() && expected.is_nan()
         };
@@ -399,7 +400,7 @@ mod tests {
         let nan = f64::NAN;
         let close = array([3, 1], [12.0, 12.0], false);
         assert!(is_near(of(&free, ellipse(0.2), vec![], false), [8.0, nan]));
-        // Semi-axes of 6 and 4: neighbours along x touch, those along y are 4 apart.
+        // Semi-axes of 6 and 4: neighbours along x touch, and neighbours along y are 4 apart.
         assert!(is_near(
             of(
                 &free,
@@ -425,7 +426,7 @@ mod tests {
             of(&free, ellipse(0.0), vec![diagonal], false),
             [10.0, 200.0_f64.sqrt() - 10.0]
         ));
-        // Clusters of four, which are nearer to each other than within.
+        // Clusters of four, which are nearer to each other than their members are.
         let clusters = vec![
             array([2, 1], [21.0, 1.0], false),
             array([2, 2], [11.0, 11.0], false),
@@ -443,8 +444,8 @@ mod tests {
         ));
         let square = Shape::Polygon(vec![[10.0, 10.0], [20.0, 10.0], [20.0, 13.0], [10.0, 13.0]]);
         assert!(is_near(of(&free, square, vec![], false), [3.0, nan]));
-        // Arms of 12 upright, at a slope of 2 to 3; between them the notch of a chevron is a corner, and no
-        // gap.
+        // Arms have a width of 12 when vertical, at a slope of 2 to 3; the notch of a chevron between them is
+        // a corner, not a gap.
         let chevron = [
             [10.0, 12.0],
             [25.0, 22.0],
@@ -481,8 +482,8 @@ mod tests {
         Shape::Groove(groove).into()
     }
 
-    /// A part that a third shape covers is no gap between two others, nor is there one between grooves that
-    /// cross or dimples that merge.
+    /// A part that a third shape covers is not a gap between two others, nor is there a gap between grooves
+    /// that cross or dimples that merge.
     #[test]
     fn gaps_are_not_looked_for_below_other_shapes() {
         let free = Lattice::free(60, 60);
@@ -498,8 +499,8 @@ mod tests {
         assert_eq!(gap(&[dimples.to_vec(), vec![across.clone()]].concat()), Some(1.0));
         let wide = groove(Orientation::Across, 8.0, 1.0);
         assert_eq!(gap(&[dimples.to_vec(), vec![wide]].concat()), None);
-        // Dimples in a row that overlap are one groove: those that are next but one do not have the middle
-        // one between them.
+        // Overlapping dimples in a row form one groove: the dimple in the middle is not a gap between its two
+        // neighbours.
         let row = |pitch: f64| Texture {
             arrays: vec![Array {
                 count: [6, 1],
@@ -534,17 +535,17 @@ mod tests {
             ],
         );
         assert_eq!((found.feature, found.gap), (Some(10.0), None));
-        // A dimple that an edge cuts counts as it is drawn.
+        // A dimple that an edge cuts counts with its full size.
         let found = clearance(&free, &[circle([30.0, 20.0], 5.0), circle([30.0, 40.5], 2.0)]);
         assert_eq!((found.feature, found.gap), (Some(4.0), Some(13.5)));
-        // Beyond a periodic edge it goes on at the opposite one.
+        // Beyond a periodic edge it continues at the opposite edge.
         let periodic = Lattice::with_edges(60, 40, [Edges::Periodic; 2]);
         let found = clearance(
             &periodic,
             &[circle([30.0, 20.0], 5.0), circle([30.0, -153.0], 2.0)],
         );
         assert_eq!((found.feature, found.gap), (Some(4.0), Some(6.0)));
-        // Of places far apart all but one lie beside the slider.
+        // Of positions far apart, all but one lie off the slider.
         let wide = Array {
             count: [3, 3],
             spacing: [70.0, 50.0],
@@ -560,7 +561,8 @@ mod tests {
         assert_eq!((found.feature, found.gap), (Some(10.0), None));
     }
 
-    /// The vertices of a sharp cavity are no narrow feature: they narrow to nothing in blocks of any size.
+    /// The vertices of a sharp cavity are not narrow features: they taper to zero width in blocks of any
+    /// size.
     #[test]
     fn a_cavity_is_as_wide_as_the_circle_in_it() {
         for (s, w) in [(2, 0.5), (3, -1.0 / 3.0), (4, 0.05), (64, 1.0 / 64.0)] {
@@ -581,8 +583,8 @@ mod tests {
         }
     }
 
-    /// As many copies as are all held against each other, more of them, and as many textures of their own,
-    /// with a groove that reaches over all of them: none takes too long.
+    /// As many copies as are all compared with each other, more copies, and as many separate textures, with a
+    /// groove across all of them: none takes too long.
     #[test]
     fn many_shapes_are_measured_in_little_time() {
         let measured = |lattice: &Lattice, textures: &[Texture]| {

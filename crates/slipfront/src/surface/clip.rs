@@ -6,18 +6,18 @@ use std::f64::consts::{PI, TAU};
 use super::contour::{Contour, Ellipse, Piece};
 use super::texture::OUTLINE_VERTICES;
 
-/// Lengths that are rounding: coordinates of up to 10^7 blocks are rounded by 10^-9.
+/// Lengths below this are rounding errors: coordinates of up to 10^7 blocks have rounding errors of 10^-9.
 const NEAR: f64 = 1e-8;
-/// Distance of the points that tell the sides of a line apart, well beyond [`NEAR`].
+/// Distance of points on either side of a line that show which side is inside, well beyond [`NEAR`].
 const BESIDE: f64 = 1e-6;
 
 type Point = [f64; 2];
 
-/// The parts of a closed curve within a region, whose edge is closed curves too; the inside of both follows
-/// from the even-odd rule. A curve that is not cut stays as it is. Ellipses that are no circles are cut as
-/// polygons of 4096 corners, whose edges differ from them by less than `a (2 pi/4096)^2/8` at a longer
-/// semi-axis `a`. The parts of a curve that crosses itself, or that surrounds a hole of the region, belong
-/// together: their inside follows from the even-odd rule, too.
+/// The parts of a closed curve within a region with an edge of closed curves; the even-odd rule defines the
+/// inside of both. A curve that is not cut is returned unchanged. Ellipses other than circles are cut as
+/// polygons of 4096 corners, with edges that differ from the ellipse by less than `a (2 pi/4096)^2/8` for a
+/// longer semi-axis `a`. The parts of a curve that crosses itself, or that surrounds a hole of the region,
+/// belong together: the even-odd rule defines their inside, too.
 ///
 /// ```
 /// # use slipfront::surface::{Contour, clip};
@@ -36,7 +36,7 @@ pub fn clip(contour: &Contour, region: &[Contour]) -> Vec<Contour> {
         if !is_on(&edge, middle.at(0.5)) {
             return holds(&edge, middle.at(0.5));
         }
-        // A line that both have bounds a part if both lie on the same side of it.
+        // A line that belongs to both curves bounds a part if both have their inside on the same side of it.
         let mut sides = middle.sides().into_iter();
         sides.all(|side| holds(&own, side) == holds(&edge, side))
     };
@@ -65,7 +65,7 @@ pub fn clip(contour: &Contour, region: &[Contour]) -> Vec<Contour> {
     parts.map(contour_of).collect()
 }
 
-/// The pieces of a curve, lines and arcs of circles alone.
+/// The pieces of a curve: lines, and arcs of circles.
 fn pieces(contour: &Contour) -> Vec<Piece> {
     let all = match contour {
         Contour::Ellipse(ellipse) if ellipse.semi_axes[0] != ellipse.semi_axes[1] => {
@@ -118,12 +118,12 @@ fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
     })
 }
 
-/// Whether two rectangles between their smallest and largest (x, y) have points in common.
+/// Whether two rectangles, given by their smallest and largest (x, y), have points in common.
 fn is_close([low, high]: [Point; 2], [other_low, other_high]: [Point; 2]) -> bool {
     (0..2).all(|axis| low[axis] < other_high[axis] + NEAR && other_low[axis] < high[axis] + NEAR)
 }
 
-/// Closed lines of chains that end where others begin or end.
+/// Closed curves, joined from chains that end where others begin or end.
 fn joined(mut chains: Vec<Vec<Piece>>) -> Vec<Vec<Piece>> {
     let ends = |chain: &[Piece]| [chain[0].ends()[0], chain[chain.len() - 1].ends()[1]];
     let meet = |p: Point, q: Point| distance(p, q) < 4.0 * NEAR;
@@ -153,13 +153,13 @@ fn is_on(curve: &[Piece], point: Point) -> bool {
     curve.iter().any(|piece| piece.is_near(point))
 }
 
-/// Whether a point is inside of closed curves, by the even-odd rule: inside of the polygons of the pieces'
-/// chords, or between a chord and its arc. The arcs are counterclockwise, or the curves are cut.
+/// Whether a point is inside closed curves, by the even-odd rule: inside the polygons of the pieces' chords,
+/// or between a chord and its arc. The arcs are counterclockwise, or the curves are cut.
 fn holds(curves: &[Piece], point: Point) -> bool {
     let changes = |piece: &&Piece| {
         let [from, to] = piece.ends();
-        // The ray to the right crosses a rising chord of which the point lies on the left, and a falling one
-        // of which it lies on the right.
+        // The ray to the right crosses a rising chord if the point is on the left of the chord, and a falling
+        // one if the point is on its right.
         let is_right = cross(minus(to, from), minus(point, from)) <= 0.0;
         let crosses = match (from[1] <= point[1], to[1] <= point[1]) {
             (true, false) => !is_right,
@@ -197,8 +197,8 @@ fn direction(from: Point, to: Point) -> Point {
     minus(to, from).map(|part| part / length)
 }
 
-/// The points of a circle on a line, of which `foot` is the point nearest to the centre; a line that touches
-/// the circle has two that are the same, so that curves are divided there, too.
+/// The two points of a circle on a line with `foot` as its point nearest to the centre. For a tangent both
+/// are the same, so that curves are divided there, too.
 fn on_circle(circle: &Ellipse, foot: Point, direction: Point) -> Vec<Point> {
     let (radius, apart) = (circle.semi_axes[0], distance(circle.center, foot));
     if apart > radius + NEAR {
@@ -212,7 +212,7 @@ fn on_circle(circle: &Ellipse, foot: Point, direction: Point) -> Vec<Point> {
 
 /// Pieces of lines and circles.
 impl Piece {
-    /// The point at this share of the way from the first point to the last one.
+    /// The point at this share of the path from the first point to the last one.
     fn at(&self, share: f64) -> Point {
         match self {
             Self::Line([from, to]) => along(*from, minus(*to, *from), share),
@@ -220,7 +220,7 @@ impl Piece {
         }
     }
 
-    /// Share of the way at which the piece, or the line or circle beyond its ends, is nearest to a point.
+    /// Share of the path at which the piece, or its extension to a line or circle, is nearest to a point.
     fn share(&self, point: Point) -> f64 {
         match self {
             Self::Line([from, to]) => {
@@ -230,7 +230,7 @@ impl Piece {
             Self::Arc(circle, [from, to]) => {
                 let (way, [c, s]) = (minus(point, circle.center), circle.axis);
                 let parameter = libm::atan2(way[1] * c - way[0] * s, way[0] * c + way[1] * s);
-                // In the turn around the middle of the arc.
+                // Within half a turn of the middle of the arc.
                 let after = (parameter - 0.5 * (from + to) + PI).rem_euclid(TAU) - PI;
                 0.5 + after / (to - from)
             }
@@ -246,7 +246,7 @@ impl Piece {
         distance(from, to) < NEAR
     }
 
-    /// Points beside the middle of the piece, one on each side.
+    /// Points near the middle of the piece, one on each side.
     fn sides(&self) -> [Point; 2] {
         let [from, to] = self.ends();
         let [x, y] = direction(from, to);
@@ -271,7 +271,7 @@ impl Piece {
         }
     }
 
-    /// Smallest and largest (x, y) of the piece, or of the circle that it is a part of.
+    /// Smallest and largest (x, y) of the piece, or of the whole circle for an arc.
     fn bounds(&self) -> [Point; 2] {
         bounds(match self {
             Self::Line(ends) => *ends,
@@ -281,7 +281,7 @@ impl Piece {
         })
     }
 
-    /// Where the piece meets others, in order along it.
+    /// Points where the piece meets others, in order along it.
     fn meetings(&self, others: &[Self]) -> Vec<Point> {
         let bounds = self.bounds();
         let close = others.iter().filter(|other| is_close(bounds, other.bounds()));
@@ -290,8 +290,8 @@ impl Piece {
         points
     }
 
-    /// Points that the piece and another one have in common: of lines along each other those where one begins
-    /// or ends, of arcs of one circle none.
+    /// Points that the piece and another one have in common: for overlapping lines the points where one
+    /// begins or ends, for arcs of one circle none.
     fn meets(&self, other: &Self) -> Vec<Point> {
         let mut points = match (self, other) {
             (Self::Line(one), Self::Line(two)) => {
@@ -313,7 +313,7 @@ impl Piece {
             (Self::Arc(one, _), Self::Arc(two, _)) => {
                 let apart = distance(one.center, two.center);
                 let [x, y] = direction(one.center, two.center);
-                // Where the line through both points cuts the one through both centres.
+                // Intersection of the line through both common points with the line through both centres.
                 let [a, b] = [one, two].map(|circle| circle.semi_axes[0]);
                 let foot = 0.5 * (apart + (a - b) * (a + b) / apart);
                 if apart < NEAR {
@@ -330,7 +330,7 @@ impl Piece {
         points
     }
 
-    /// Takes the rounding from a point on a line along an axis.
+    /// Removes rounding errors from a point on a line along an axis.
     fn snap(&self, point: &mut Point) {
         if let Self::Line([from, to]) = self {
             (0..2)

@@ -1,26 +1,26 @@
-//! The distance between two closed outlines, and the width of one. Lengths are in blocks.
+//! The distance between two closed outlines, and the width of an outline. Lengths are in blocks.
 
 use std::f64::consts::TAU;
 
 use super::contour::Ellipse;
 
-/// Largest length that is zero but for the rounding of coordinates: outlines that are so near touch.
+/// Largest length that counts as zero, because of rounding of coordinates: outlines that are this near touch.
 const TOUCHING: f64 = 1e-6;
-/// Number of directions of which the best is the first guess of the one in which two ellipses are farthest
-/// apart.
+/// Number of directions that are tried for the first guess of the direction of largest separation of two
+/// ellipses.
 const DIRECTIONS: usize = 256;
-/// Number of times that the interval around this guess is cut by a third: to 1e-9 of it, beyond which the
-/// distance no longer changes.
+/// Number of times that the interval around this guess is reduced by a third: to 1e-9 of its length, below
+/// which the distance no longer changes.
 const CUTS: usize = 52;
-/// Corners of the polygon that stands for an ellipse in comparison with a polygon: its radius is met within
-/// five millionths.
+/// Number of corners of the polygon that replaces an ellipse in comparison with a polygon: the error of the
+/// radius is at most five millionths.
 const CORNERS: usize = 1024;
 
 /// A closed outline.
 #[derive(Debug)]
 pub(super) enum Form {
     Ellipse(Ellipse),
-    /// A polygon, whose inside follows from the even-odd rule.
+    /// A polygon; the even-odd rule defines its inside.
     Polygon(Vec<[f64; 2]>),
 }
 
@@ -39,7 +39,7 @@ impl Closest {
     }
 }
 
-/// Error: there is more to examine than is worth it.
+/// Error: there is too much to examine.
 #[derive(Debug)]
 pub(super) struct TooMuch;
 
@@ -79,8 +79,7 @@ impl Form {
         }
     }
 
-    /// The place where another form, shifted by `shift`, is nearest; none if it touches this one or overlaps
-    /// it.
+    /// The place where another form, shifted by `shift`, is nearest; none if the forms touch or overlap.
     pub(super) fn closest(
         &self,
         other: &Self,
@@ -132,7 +131,7 @@ fn along_axes(ellipse: &Ellipse, vector: [f64; 2]) -> [f64; 2] {
     [dot(ellipse.axis, vector), cross(ellipse.axis, vector)]
 }
 
-/// Distance that an ellipse reaches from its centre in a direction.
+/// Distance by which an ellipse extends from its centre in a direction.
 fn reach(ellipse: &Ellipse, direction: [f64; 2]) -> f64 {
     let [u, v] = along_axes(ellipse, direction);
     libm::hypot(ellipse.semi_axes[0] * u, ellipse.semi_axes[1] * v)
@@ -147,8 +146,8 @@ fn farthest(ellipse: &Ellipse, direction: [f64; 2]) -> [f64; 2] {
     plus(ellipse.center, [u * c - v * s, u * s + v * c])
 }
 
-/// Two convex outlines are as far apart as their shadows on the line on which these are farthest from each
-/// other. Negative if the ellipses overlap.
+/// Distance of two ellipses: the largest distance between their projections onto any line, as for all convex
+/// outlines. Negative if the ellipses overlap.
 fn between_ellipses(one: &Ellipse, other: &Ellipse, shift: [f64; 2]) -> Closest {
     let from_one = less(plus(other.center, shift), one.center);
     let direction = |angle: f64| [libm::cos(angle), libm::sin(angle)];
@@ -191,7 +190,7 @@ fn bounds(corners: &[[f64; 2]], axis: usize) -> [f64; 2] {
     })
 }
 
-/// Lower bound on the distance of two boxes.
+/// Lower bound on the distance between two boxes.
 pub(super) fn between_boxes(one: &[[f64; 2]; 2], other: &[[f64; 2]; 2]) -> f64 {
     let between = |axis: usize| {
         let ([low, high], [from, to]) = (one[axis], other[axis]);
@@ -214,8 +213,8 @@ fn is_inside(point: [f64; 2], corners: &[[f64; 2]], effort: &mut Effort) -> Resu
     Ok(crossed.count() % 2 == 1)
 }
 
-/// The point of an edge that is nearest to a point, as a share of the way along it that may lie beyond its
-/// ends.
+/// The point of the line of an edge that is nearest to a point, as a share of the edge; it may lie beyond the
+/// ends of the edge.
 fn share_of(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let along = less(to, from);
     dot(less(point, from), along) / dot(along, along)
@@ -260,7 +259,7 @@ fn between_polygons(
             }
         }
     }
-    // A first bound, from some corners of each, leaves most others out.
+    // A first bound, from some corners of each polygon, excludes most others.
     let some = |corners: &[[f64; 2]]| corners.len().div_ceil(32);
     let mut least = f64::INFINITY;
     for &corner in one.iter().step_by(some(one)) {
@@ -292,7 +291,7 @@ fn between_polygons(
     }))
 }
 
-/// The corners of a polygon at which it turns.
+/// The corners of a polygon at which its direction changes.
 fn without_straight(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut corners = corners.to_vec();
     corners.dedup();
@@ -311,8 +310,9 @@ fn without_straight(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// The smallest distance of a corner of a polygon from an edge that it faces: across the inside, and across
 /// the outside.
 ///
-/// A corner faces an edge if its distance from the line of the edge is the smallest or the largest beside it.
-/// Along a side that runs to a vertex the distance from the other side falls to nothing, and is no width.
+/// A corner faces an edge if its distance from the line of the edge is smaller, or larger, than the distances
+/// of both adjacent corners. Otherwise it lies on a side that runs to a vertex, where the distance from the
+/// other side falls to zero and is not a width.
 pub(super) fn widths(corners: &[[f64; 2]], effort: &mut Effort) -> Result<[Option<f64>; 2], TooMuch> {
     let corners = without_straight(corners);
     let count = corners.len();
@@ -344,15 +344,16 @@ pub(super) fn widths(corners: &[[f64; 2]], effort: &mut Effort) -> Result<[Optio
             if square >= *least || square <= TOUCHING * TOUCHING {
                 continue;
             }
-            // How much nearer to the edge, and so negative, the corners beside are.
+            // Distances by which the adjacent corners are farther from the edge, relative to the corner's
+            // own.
             let across = less(corner, foot);
             let farther = beside(at).map(|other| dot(less(corners[other], corner), across) / square);
             let is_flat = farther.iter().any(|farther| farther.abs() < TOUCHING);
             if !is_flat && (farther[0] > 0.0) != (farther[1] > 0.0) {
                 continue;
             }
-            // A side of the polygon itself is a width between two corners that turn alike, and a step between
-            // others.
+            // A side of the polygon that joins the corner to the edge is a width if the polygon turns the
+            // same way at both ends, and a step otherwise.
             let foot_at = match share {
                 _ if share < TOUCHING => Some(start),
                 _ if share > 1.0 - TOUCHING => Some(end),
@@ -395,8 +396,8 @@ mod tests {
         found.map(|closest| closest.distance)
     }
 
-    /// Ellipses as their support functions have them, held against polygons of their corners, which are
-    /// within 5e-6 of their size.
+    /// Distances of ellipses from support functions, compared with those of polygons of their corners, which
+    /// are within 5e-6 of their size.
     #[test]
     fn ellipses_are_as_far_apart_as_their_corners() {
         for (degrees, shift) in [(0.0, [9.0, 3.0]), (35.0, [2.0, -8.0]), (80.0, [-7.0, 6.0])] {
@@ -409,7 +410,7 @@ mod tests {
             let measured = distance(&polygons[0], &polygons[1], shift).unwrap();
             assert!((exact - measured).abs() < 2e-5, "{exact} {measured}");
         }
-        // Circles are exact.
+        // Results for circles are exact.
         let circle = ellipse([0.0; 2], [1.5; 2], 0.0);
         assert_eq!(distance(&circle, &circle, [3.0, 4.0]), Some(2.0));
         assert_eq!(distance(&circle, &circle, [3.0, 0.0]), None);
@@ -446,7 +447,7 @@ mod tests {
         assert_eq!(distance(&across, &across, [2.0, 0.0]), None);
     }
 
-    /// However finely an outline is drawn, its corners and tips are no narrow features.
+    /// The corners and tips of an outline are not narrow features, at any resolution of the outline.
     #[test]
     fn polygons_are_as_wide_as_what_faces_each_other() {
         let widths = |corners: &[[f64; 2]]| {
@@ -482,14 +483,14 @@ mod tests {
         ];
         for (corners, width, gap) in [
             (&rectangle[..], 6.0, None),
-            // From the right angle to the longest side, 12 times 9 over 15.
+            // From the right angle to the longest side: 12 times 9 over 15.
             (&triangle, 7.2, None),
             (&stairs, 3.0, None),
             (&notched, 5.0, Some(3.0)),
         ] {
             for corners in [corners.to_vec(), closed(corners), drawn_finely(corners)] {
                 let [found, outside] = widths(&corners);
-                // Corners between the ends of an edge are rounded.
+                // Corners between the ends of an edge have rounding errors.
                 assert!((found - width).abs() < 1e-9, "{corners:?}: {found}");
                 let gap = gap.unwrap_or(f64::NAN);
                 assert!(
@@ -498,8 +499,8 @@ mod tests {
                 );
             }
         }
-        // A lens between two arcs of radius 25 that meet in tips, 8 across where it is thickest and so as far
-        // as to 1 in 500; and an ellipse, whose ends are much narrower than its middle.
+        // A lens between two arcs of radius 25 that meet in tips. Its width is 8 where it is thickest and,
+        // within 1 in 500, nearby. And an ellipse, with ends much narrower than its middle.
         let arc = |k: u32, side: f64| {
             let half = (21.0_f64 / 25.0).acos();
             let angle = half * (f64::from(k) / 50.0 - 1.0);

@@ -27,7 +27,7 @@ impl Distribution {
 }
 
 /// Local coefficients of every block, as if there were no texture. Draws may be negative:
-/// [`Surface`](super::Surface) sets such draws to 0, and counts those of blocks in contact.
+/// [`Surface`](super::Surface) sets these to 0, and counts those of blocks in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     /// Static coefficients `mu_si`, one per block.
@@ -52,13 +52,13 @@ pub const STREAMS: [(&str, u64); 2] = [
 impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for `n_blocks` blocks, textured or not, in block order.
     ///
-    /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and
+    /// The standard normals depend only on `seed` and the index of the block; mean and deviation shift and
     /// scale them.
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
         Self::draw_blocks(0..n_blocks, mu_static, mu_kinetic, seed)
     }
 
-    /// Draws `mu_si` and `mu_ki` as [`draw`](Self::draw) does, for these blocks of a lattice alone.
+    /// Draws `mu_si` and `mu_ki` as [`draw`](Self::draw) does, but only for these blocks of a lattice.
     pub fn draw_blocks(
         blocks: Range<usize>,
         mu_static: Distribution,
@@ -121,27 +121,27 @@ impl Coefficients {
     }
 }
 
-/// Largest number of blocks whose standard normals are kept. The normals of more blocks are drawn on several
-/// threads.
+/// Largest number of blocks for which standard normals are cached. The normals of more blocks are drawn on
+/// several threads.
 const MAX_KEPT: usize = 10_000;
 
-/// Number of blocks for which a thread draws at once: some tenths of a millisecond of work. Fewer are not
-/// worth waking a thread.
+/// Number of blocks for which a thread draws at once: some tenths of a millisecond of work. Waking a thread
+/// is not worth while for fewer.
 pub(super) const PART: usize = 1 << 13;
 
-/// Standard normals, with the seed and the blocks that they are drawn for.
+/// Standard normals, with the seed and the blocks for which they were drawn.
 type CachedNormals = (u64, Range<usize>, Vec<f64>);
 
 thread_local! {
-    /// The standard normals drawn last from each stream, which most of the cases of a study share.
+    /// The standard normals drawn last from each stream, which most cases of a study share.
     static LAST_NORMALS: RefCell<[CachedNormals; STREAMS.len()]> =
         const { RefCell::new([(0, 0..0, Vec::new()), (0, 0..0, Vec::new())]) };
 }
 
-/// Words of 32 bits that a standard normal takes from its stream: two uniforms of two words.
+/// Number of 32-bit words that a standard normal takes from its stream: two uniforms of two words.
 const WORDS_PER_DRAW: u128 = 4;
 
-/// Row of the numbers that are drawn block by block; other rows belong to the nodes of a grid.
+/// Row of the numbers that are drawn block by block; other rows belong to nodes of a grid.
 const BY_BLOCK: u64 = 0;
 
 /// Standard normals of a row from draw `first` on, by Box and Muller from two uniforms each, so that draw n
@@ -216,7 +216,7 @@ mod tests {
         );
     }
 
-    /// Negative draws of blocks in contact alone count: a draw for a textured block changes nothing.
+    /// Only negative draws of blocks in contact count: a draw for a textured block changes nothing.
     #[test]
     fn negative_draws_become_zero_and_are_counted() {
         let wide = Distribution {
@@ -243,8 +243,8 @@ mod tests {
         }
     }
 
-    /// Draws of some blocks are a part of those of all, whether these are kept or not, and wherever the
-    /// generator, which makes 64 words at a time, begins.
+    /// Draws of some blocks are a part of the draws of all, whether these are cached or not, at any starting
+    /// position in the generator, which makes 64 words at a time.
     #[test]
     fn parts_of_a_lattice_draw_what_the_whole_does() {
         let wide = Distribution {
@@ -271,7 +271,7 @@ mod tests {
         }
     }
 
-    /// The numbers are pinned: a change of them changes every surface ever published with a seed.
+    /// The numbers are fixed: changing them would change every surface ever published with a seed.
     #[test]
     fn the_first_draws_of_seed_one_never_change() {
         let z: Vec<f64> = standard_normals(1, Stream::MuStatic, BY_BLOCK, 0)

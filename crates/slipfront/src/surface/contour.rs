@@ -1,5 +1,5 @@
-//! Outlines of textures as closed curves; what lies beyond a periodic edge returns at the opposite one.
-//! Lengths are in blocks.
+//! Outlines of textures as closed curves; parts beyond a periodic edge return at the opposite edge. Lengths
+//! are in blocks.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -13,7 +13,7 @@ use crate::lattice::{Edges, Lattice};
 pub enum Contour {
     /// A whole ellipse.
     Ellipse(Ellipse),
-    /// The corners of a polygon, in order; its inside follows from the even-odd rule.
+    /// The corners of a polygon, in order; the even-odd rule defines its inside.
     Polygon(Vec<[f64; 2]>),
     /// Straight lines and arcs of circles: each piece begins where the one before ends.
     Pieces(Vec<Piece>),
@@ -35,13 +35,12 @@ pub struct Ellipse {
 pub enum Piece {
     /// A straight line between two points.
     Line([[f64; 2]; 2]),
-    /// The ellipse from one parameter to another one, a quarter of a turn away at most: see
-    /// [`Ellipse::at`].
+    /// The ellipse from one parameter to another, at most a quarter of a turn away: see [`Ellipse::at`].
     Arc(Ellipse, [f64; 2]),
 }
 
 impl Contour {
-    /// The rectangle between its smallest and its largest (x, y).
+    /// The rectangle with these smallest and largest (x, y).
     pub fn rectangle(low: [f64; 2], high: [f64; 2]) -> Self {
         Self::Polygon(vec![low, [high[0], low[1]], high, [low[0], high[1]]])
     }
@@ -61,7 +60,7 @@ impl Contour {
 }
 
 impl Ellipse {
-    /// The point of a parameter: `center + a cos(t) axis + b sin(t) axis'`, with the axis' a quarter turn to
+    /// The point at a parameter: `center + a cos(t) axis + b sin(t) axis'`, with the axis' a quarter turn to
     /// the left.
     ///
     /// ```
@@ -70,7 +69,7 @@ impl Ellipse {
     /// assert_eq!(ellipse.at(0.0), [1.0, 3.0]);
     /// ```
     pub fn at(&self, parameter: f64) -> [f64; 2] {
-        // The point after a whole turn is the first one to the last bit, so that no curve is open.
+        // The point after a whole turn equals the first one to the last bit, so that no curve is open.
         let parameter = parameter.rem_euclid(TAU);
         let along = self.semi_axes[0] * libm::cos(parameter);
         let aside = self.semi_axes[1] * libm::sin(parameter);
@@ -92,8 +91,8 @@ impl Piece {
     }
 }
 
-/// The outlines of all copies of a texture's shape, whether it is inverted or not; none for a mask, whose
-/// outlines are the edges of its blocks. They may reach beyond the slider, or lie there. A groove is a
+/// The outlines of all copies of a texture's shape, whether it is inverted or not; none for a mask, since its
+/// outlines are the edges of its blocks. They may reach beyond the slider, or lie outside it. A groove is a
 /// rectangle as long as the slider.
 pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     let grids = grids(&texture.arrays);
@@ -146,7 +145,7 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     Some(contours)
 }
 
-/// The shifts by whole sliders along periodic axes that bring a contour within these bounds onto the slider.
+/// The shifts by whole sliders along periodic axes that bring a contour with these bounds onto the slider.
 fn placed(lattice: &Lattice, bounds: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     let along = |axis: usize| -> Vec<f64> {
         let size = [lattice.nx, lattice.ny][axis] as f64;

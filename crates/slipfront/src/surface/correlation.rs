@@ -1,16 +1,16 @@
-//! Friction coefficients that are alike over a length: means over blocks over a Gaussian random field that
-//! depends on the seed and the place in the slider (Eq. 1).
+//! Correlated friction coefficients: means over blocks of a Gaussian random field that depends on the seed
+//! and the position in the slider (Eq. 1).
 //!
-//! Standard normals z stand at the nodes of a grid whose pitch is a part of the correlation length xi, and
-//! not of a block:
+//! The nodes of a grid have standard normals z. The pitch of the grid is a fraction of the correlation length
+//! xi, not of a block. The field
 //!
 //! ```text
 //! g(x) = A sum_k z_k exp(-2 |x - x_k|^2/xi^2)     A^2 = 4 p_x p_y/(pi xi^2)
 //! ```
 //!
 //! has the variance 1 and the correlation `exp(-(r/xi)^2)`. Its mean over a rectangle is a sum of products of
-//! differences of error functions, one factor along x and one along y, so that means over the parts of a
-//! block have that over the block as their mean.
+//! differences of error functions, one factor along x and one along y, so that the mean over a block is the
+//! mean of the means over its parts.
 
 use std::f64::consts::{FRAC_2_SQRT_PI, PI, SQRT_2};
 use std::ops::{Range, RangeInclusive};
@@ -19,24 +19,24 @@ use super::coefficients::{Coefficients, Distribution, Stream, standard_normals};
 use crate::lattice::{Edges, Lattice};
 use crate::parallel::*;
 
-/// Fewest nodes in a correlation length: the variance of the field then differs by 1e-9 of itself from place
-/// to place, with two by 2e-4.
+/// Least number of nodes in a correlation length. With it the variance of the field varies by 1e-9 of itself
+/// from place to place; with two nodes by 2e-4.
 const NODES_PER_LENGTH: f64 = 3.0;
 
 /// Reach of a node in pitches of `xi/3`: beyond it, from `sqrt(2) 13/3 = 6.1` on, the error function is 1 to
 /// the last bit.
 const REACH: f64 = 13.0;
 
-/// Share of a pitch by which it may exceed a third of the correlation length, so that the rounding of two
-/// lengths leaves the number of nodes as it is.
+/// Share by which a pitch may exceed a third of the correlation length, so that rounding of two lengths does
+/// not change the number of nodes.
 const ROUNDING: f64 = 1e-9;
 
 /// A Gaussian random field in the plane of the slider, of mean 0, variance 1 and correlation `exp(-(r/xi)^2)`
 /// over a distance r.
 ///
-/// Its origin is the corner of the slider at x = 0, y = 0. Along a periodic axis it repeats, and a distance
-/// is any between the copies of two places; the pitch of its nodes divides the length of the axis there.
-/// Lengths are in blocks.
+/// Its origin is the corner of the slider at x = 0, y = 0. Along a periodic axis it repeats, so that a
+/// distance is any distance between copies of two places; the pitch of its nodes divides the length of the
+/// axis there. Lengths are in blocks.
 ///
 /// ```
 /// use slipfront::Lattice;
@@ -73,7 +73,7 @@ impl CorrelatedField {
         self.axes[0].length
     }
 
-    /// Variance of the mean of the field over a block: `I^2`, but for copies beyond periodic edges, with
+    /// Variance of the mean of the field over a block: `I^2`, except for copies beyond periodic edges, with
     /// [`deviation_along`].
     pub fn variance_of_blocks(&self) -> f64 {
         self.axes
@@ -89,9 +89,8 @@ impl CorrelatedField {
     }
 }
 
-/// Factor by which the standard deviation of a field falls when it is averaged along an interval of a length,
-/// for a field correlated over `xi`: `I^(1/2)`, with `a = xi/length`; over a square of that side the factor
-/// is `I`.
+/// Factor by which the standard deviation of a field correlated over `xi` falls when it is averaged along an
+/// interval: `I^(1/2)`, with `a = xi/length`; over a square with this side the factor is `I`.
 ///
 /// ```text
 /// I = sqrt(pi) a erf(1/a) - a^2 (1 - exp(-1/a^2))
@@ -108,12 +107,12 @@ pub fn deviation_along(a: f64) -> f64 {
 }
 
 impl Coefficients {
-    /// Draws `mu_si` and `mu_ki` for the blocks in some rows of the lattice of two fields of the same
-    /// correlation length, independent of each other: `mu_si = mean + deviation g_i`, with the mean g_i of
-    /// the field over block i.
+    /// Draws `mu_si` and `mu_ki` for the blocks in some rows of the lattice from two independent fields of
+    /// the same correlation length: `mu_si = mean + deviation g_i`, with the mean g_i of the field over block
+    /// i.
     ///
-    /// The fields depend only on `seed`, the correlation length, the place and, along a periodic axis, its
-    /// length: other blocks and other rows find the same surface.
+    /// The fields depend only on `seed`, the correlation length, the position and, along a periodic axis, its
+    /// length: other blocks and other rows give the same surface.
     pub fn draw_correlated(
         field: &CorrelatedField,
         rows: &Range<usize>,
@@ -146,9 +145,9 @@ impl Coefficients {
     }
 }
 
-/// Adds the means `sum_m w_jm sum_n w_in z_mn` over the blocks of some rows, of which `first_row` is the
-/// first in `rows`. Both sums follow the order of the nodes, so that the bits of a block do not depend on the
-/// other blocks of the call. `normals` gives the standard normals of a row of nodes from a number on.
+/// Adds the means `sum_m w_jm sum_n w_in z_mn` over the blocks of some rows; `first_row` is the first of
+/// these in `rows`. Both sums are in the order of the nodes, so that the bits of a block do not depend on the
+/// other blocks of the call. `normals` returns the standard normals of a row of nodes from a number on.
 fn add_means<N: Iterator<Item = f64>>(
     columns: &Means,
     rows: &Means,
@@ -162,7 +161,7 @@ fn add_means<N: Iterator<Item = f64>>(
     let mut numbers = vec![0.0; (along.end - along.start) as usize];
     let mut filtered = vec![0.0; nx];
     for node in rows.nodes(range.clone()) {
-        // Row 0 of the key is that of the draw by block.
+        // Row 0 of the key is used for draws by block.
         let row = rows.number(node) as u64 + 1;
         columns.fill(along.start, |first| normals(row, first), &mut numbers);
         for (i, mean) in filtered.iter_mut().enumerate() {
@@ -187,11 +186,11 @@ fn add_means<N: Iterator<Item = f64>>(
 struct Axis {
     /// Correlation length, blocks.
     length: f64,
-    /// Distance of the nodes, blocks: node k stands at `k pitch`.
+    /// Distance between nodes, blocks: node k is at `k pitch`.
     pitch: f64,
     /// Number of nodes after which the nodes repeat, along a periodic axis.
     period: Option<usize>,
-    /// Factor `A` along the axis, with which the field has the variance 1.
+    /// Factor `A` along the axis, for which the field has the variance 1.
     amplitude: f64,
 }
 
@@ -201,7 +200,7 @@ impl Axis {
         let period = (edges == Edges::Periodic)
             .then(|| (NODES_PER_LENGTH * blocks / length * (1.0 - ROUNDING)).ceil());
         let pitch = period.map_or(length / NODES_PER_LENGTH, |nodes| blocks / nodes);
-        // A place is correlated with its own copies, which matters where the axis is not much longer than xi.
+        // A place is correlated with its own copies, which matters if the axis is not much longer than xi.
         let copies = period.map_or(1.0, |_| {
             let of_copy = |k: i32| libm::exp(-(f64::from(k) * blocks / length).powi(2));
             let terms = (1..).map(of_copy).take_while(|term| *term > 0.0);
@@ -280,7 +279,7 @@ impl Means {
         }
     }
 
-    /// The numbers of a row of nodes from node `from` on, of `normals` from a number on.
+    /// Fills `numbers` for a row of nodes from node `from` on, with the `normals` from a number on.
     fn fill<N: Iterator<Item = f64>>(&self, from: i64, normals: impl Fn(usize) -> N, numbers: &mut [f64]) {
         let (start, count) = match self.axis.period {
             Some(period) => (0, period),
@@ -313,7 +312,7 @@ mod tests {
     }
 
     /// `F(n + 1) - 2 F(n) + F(n - 1)`, with `F'' = exp(-(s/a)^2)`: covariance of the means over two intervals
-    /// of length 1 whose beginnings are n apart, of a field correlated over a.
+    /// of length 1, with beginnings n apart, of a field correlated over a.
     fn covariance(a: f64, n: f64) -> f64 {
         let twice = |s: f64| 0.5 * a * (PI.sqrt() * s * libm::erf(s / a) + a * libm::exp(-(s / a).powi(2)));
         twice(n + 1.0) - 2.0 * twice(n) + twice(n - 1.0)
@@ -338,22 +337,21 @@ mod tests {
             .sum()
     }
 
-    /// Means over blocks are correlated as those of a field with the correlation `exp(-(r/xi)^2)` are, at
-    /// every distance.
+    /// Means over blocks have the correlations of a field with the correlation `exp(-(r/xi)^2)`, at every
+    /// distance.
     #[test]
     fn means_are_correlated_as_the_field_says() {
         for a in [0.25, 0.3, 1.0, 4.0, 7.3, 30.0] {
             let means = Axis::new(40, Edges::Free, a).means(0..40, 1);
             for n in 0..20 {
                 let found = of_weights(&means, 11, 11 + n);
-                // The variance swings by 2 exp(-pi^2 9/4) = 4.5e-10 along an axis.
+                // The variance varies by 2 exp(-pi^2 9/4) = 4.5e-10 along an axis.
                 assert!((found - covariance(a, n as f64)).abs() < 1e-9, "{a} {n}: {found}");
             }
         }
     }
 
-    /// Beyond the edges of a periodic axis stand copies; so do they within a field that is longer than the
-    /// axis.
+    /// Beyond the edges of a periodic axis are copies, also for a field correlated over more than the axis.
     #[test]
     fn a_periodic_field_is_correlated_with_its_copies() {
         for (blocks, a) in [(40, 4.0), (40, 7.3), (20, 15.0), (3, 0.25), (5, 2.0)] {
@@ -369,7 +367,8 @@ mod tests {
                 assert!((found - exact).abs() < 1e-9, "{blocks} {a} {n}: {found} {exact}");
             }
         }
-        // A field of ten thousand lengths of the axis is the same everywhere, at every seed another.
+        // A field correlated over ten thousand times the axis is the same everywhere, but differs from seed
+        // to seed.
         let field = CorrelatedField::new(&Lattice::with_edges(5, 4, [Edges::Periodic; 2]), 5e4);
         assert!((field.variance_of_slider() - 1.0).abs() < 1e-9);
     }
@@ -377,7 +376,7 @@ mod tests {
     #[test]
     fn three_nodes_in_a_length_keep_the_variance_and_two_do_not() {
         let swing = |nodes: f64| {
-            // At a node and between two: sums of squares of the kernel.
+            // At a node and between two nodes: sums of squares of the kernel.
             let sum = |place: f64| -> f64 {
                 let kernel = |k: i32| libm::exp(-4.0 * ((f64::from(k) + place) / nodes).powi(2));
                 (-40..=40).map(kernel).sum()
@@ -393,8 +392,8 @@ mod tests {
         let lattice = Lattice::free(30, 12);
         for length in [0.25, 1.0, 5.0, 90.0, 1e5] {
             let field = CorrelatedField::new(&lattice, length);
-            // The variance swings by 1e-9; the differences of error functions are rounded to 1e-16 of 1 and
-            // are 1/length.
+            // The variance varies by 1e-9; the differences of error functions, of the size 1/length, have
+            // rounding errors of 1e-16.
             let tolerance = 2e-9 + 1e-15 * length;
             let of_blocks = deviation_along(length).powi(4);
             assert!(
@@ -409,8 +408,8 @@ mod tests {
         }
     }
 
-    /// The mean of four children is their parent, on free and periodic axes, and of nine with other
-    /// roundings.
+    /// The mean of four children equals their parent, on free and periodic axes; and so does that of nine,
+    /// with other rounding errors.
     #[test]
     fn children_average_to_their_parent() {
         for edges in [Edges::Free, Edges::Periodic] {
@@ -429,8 +428,8 @@ mod tests {
                     let [i, j] = [parts * (b % nx), parts * (b / nx)];
                     let rows = (j..j + parts).map(|j| &fine[parts * nx * j + i..][..parts]);
                     let mean = rows.flatten().sum::<f64>() / (parts * parts) as f64;
-                    // Differences of error functions are rounded to 1e-16 of 1, are 1/length of it, and some
-                    // 700 of them are added.
+                    // Differences of error functions are of the size 1/length, have rounding errors of 1e-16,
+                    // and some 700 of them are added.
                     let tolerance = 1e-14 * (1.0 + length);
                     assert!(
                         (mean - parent).abs() < tolerance,
@@ -441,7 +440,7 @@ mod tests {
         }
     }
 
-    /// A rank, a band and a larger slider find the same numbers to the last bit.
+    /// A rank, a band and a larger slider give the same numbers to the last bit.
     #[test]
     fn parts_draw_what_the_whole_does() {
         let wide = Distribution {
@@ -477,7 +476,7 @@ mod tests {
         }
     }
 
-    /// Over the seeds 0 to 9999, fixed before it was measured: five standard errors at each of 20 lags.
+    /// Over the seeds 0 to 9999, chosen before the measurement: five standard errors at each of 20 lags.
     #[test]
     fn ten_thousand_draws_have_the_correlation() {
         const DRAWS: u64 = 10_000;
@@ -499,7 +498,8 @@ mod tests {
         }
         let variance = along(0).powi(2);
         let check = |sum: f64, exact: f64, at: &str| {
-            // The product of two normals has the variance v^2 + c^2, and -5 to 5 contains all but 6e-7.
+            // The product of two normals has the variance v^2 + c^2, and the interval from -5 to 5 contains
+            // all but 6e-7.
             let error = ((variance * variance + exact * exact) / DRAWS as f64).sqrt();
             let found = sum / DRAWS as f64;
             assert!(
@@ -518,7 +518,7 @@ mod tests {
         check(apart, 0.0, "static and kinetic");
     }
 
-    /// The numbers are pinned: a change of them changes every surface ever published with a seed and a
+    /// The numbers are fixed: changing them would change every surface ever published with a seed and a
     /// correlation length.
     #[test]
     fn the_first_means_of_seed_one_never_change() {

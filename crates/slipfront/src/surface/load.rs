@@ -2,7 +2,7 @@
 
 use crate::lattice::Lattice;
 
-/// Distribution of the load of textured blocks, which carry none.
+/// Distribution of the load of textured blocks, which bear no load themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
     /// The blocks in contact carry the whole load: `F_n,i = p_i l^2 sum_all p/sum_contact p`, which is
@@ -13,8 +13,8 @@ pub enum Load {
 }
 
 impl Load {
-    /// Normal force on a block in contact over `p_i l^2`, from the sums of pressures over all blocks and over
-    /// those in contact.
+    /// Ratio of the normal force on a block in contact to `p_i l^2`, from the sums of pressures over all
+    /// blocks and over those in contact.
     pub(super) fn factor(self, [all, contact]: [f64; 2]) -> f64 {
         match self {
             Load::Redistributed => all / contact,
@@ -30,14 +30,14 @@ pub struct Contact {
     pub load: Load,
     /// Scale of all forces, `mu_s`.
     pub mu_static_mean: f64,
-    /// Local pressure `p_i/P` of every block that this process holds, before the load of textured ones is
-    /// distributed; 1 if there are none.
+    /// Local pressure `p_i/P` of every block that this process holds, before the load of textured blocks is
+    /// distributed; 1 if not given.
     pub pressure: Option<Vec<f64>>,
     /// Friction that does not depend on the load.
     pub adhesion: Adhesion,
     /// Whether every block that this process holds faces the substrate, and bears a load there unless it is
-    /// textured: all blocks if there are none, those of the lowest row of an upright sheet. Means over the
-    /// surface are means over these.
+    /// textured: all blocks if not given, those of the lowest row for an upright sheet. Means over the
+    /// surface are means over these blocks.
     pub faces: Option<Vec<bool>>,
 }
 
@@ -63,7 +63,7 @@ impl Contact {
     }
 }
 
-/// Pressure that rises along an axis, `p/P = 1 + slope (2 x/L - 1)` at the middle of every block of some
+/// Pressure that rises along an axis, `p/P = 1 + slope (2 x/L - 1)` at the centre of every block of some
 /// rows; its mean over the lattice is `P`.
 ///
 /// ```

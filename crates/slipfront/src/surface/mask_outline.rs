@@ -1,24 +1,25 @@
 //! The outline of a textured area, along the edges of its blocks.
 //!
-//! The crate slipfront-plot, which imports none of the others, links to this file.
+//! The crate slipfront-plot, which imports no other crate of the project, links to this file.
 
 use std::collections::BTreeSet;
 
-/// An edge between a textured block, on its left, and another one: y and x of the corner where it starts, and
+/// An edge between a textured block on its left and another block: y and x of the corner where it starts, and
 /// the index of its direction.
 type PixelEdge = (usize, usize, usize);
 
 /// The directions from a corner: right, up, left, down.
 const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// The lines between textured and other blocks, in blocks: each a chain of corners joined by straight lines,
-/// as long as possible. A closed chain ends where it starts; a chain that meets the lattice's edge is open.
+/// The lines between textured and other blocks, in blocks: each is a chain of corners joined by straight
+/// lines that are as long as possible. A closed chain ends where it starts; a chain that meets the lattice's
+/// edge is open.
 ///
 /// `textured` holds `nx` times `ny` blocks, row 0 at y = 0.
 pub fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
     let mut edges = edges(textured, nx, ny);
-    // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in
-    // this order, which is never in the middle of a straight line.
+    // Open chains first: they must be entered at an end. A closed chain is then entered at its first corner
+    // in this order, which is never in the middle of a straight line.
     let is_at_border = |&(y, x, _): &PixelEdge| x == 0 || y == 0 || x == nx || y == ny;
     let (border, inside): (Vec<PixelEdge>, Vec<PixelEdge>) =
         edges.iter().partition(|edge| is_at_border(edge));
@@ -57,7 +58,8 @@ fn follow(edges: &mut BTreeSet<PixelEdge>, (mut y, mut x, mut direction): PixelE
         edges.remove(&(y, x, direction));
         x = x.wrapping_add_signed(DIRECTIONS[direction].0);
         y = y.wrapping_add_signed(DIRECTIONS[direction].1);
-        // Left before straight before right: two textured blocks that meet at a corner only stay two areas.
+        // Left before straight before right: two textured blocks that meet only at a corner stay separate
+        // areas.
         let mut turns = [1, 0, 3].into_iter().map(|turn| (direction + turn) % 4);
         let next = turns.find(|&next| edges.contains(&(y, x, next)));
         let is_closed = chain[0] == (x, y);
@@ -75,7 +77,7 @@ fn follow(edges: &mut BTreeSet<PixelEdge>, (mut y, mut x, mut direction): PixelE
 mod tests {
     use super::*;
 
-    /// The outline of a drawing whose first line is y = 0.
+    /// The outline of a drawing; its first line is y = 0.
     fn traced(rows: &[&str]) -> Vec<Vec<(usize, usize)>> {
         let textured: Vec<bool> = rows
             .iter()

@@ -1,5 +1,5 @@
-//! Textured blocks: those whose centre lies inside the outline of any texture. Outlines wrap around periodic
-//! axes and are clipped at free edges. A rank meshes its own rows and no others.
+//! Textured blocks: blocks with centres inside the outline of any texture. Outlines wrap around periodic axes
+//! and are clipped at free edges. A rank meshes only its own rows.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -26,8 +26,8 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
     meshed
 }
 
-/// Meshes some rows as [`mesh`] does, with textures that may take long: `watch` gets the share that is done,
-/// row of blocks by row of blocks, and its error ends the meshing.
+/// Meshes some rows as [`mesh`] does, with textures that may take long. `watch` receives the share that is
+/// done, row of blocks by row of blocks; an error of `watch` ends the meshing.
 pub fn mesh_watched<E>(
     lattice: &Lattice,
     rows: &Range<usize>,
@@ -71,8 +71,8 @@ pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
     mask.overlaps
 }
 
-/// Least distance of crossings that have the same order around every centre: coordinates of up to 10^7 blocks
-/// are rounded by 10^-9.
+/// Least distance of crossings for which they have the same order around every centre: coordinates of up to
+/// 10^7 blocks have rounding errors of 10^-9.
 const DISTINCT: f64 = 1e-6;
 
 /// The largest distance between neighbouring lines of a grid.
@@ -81,13 +81,13 @@ fn largest_gap(lines: &[f64]) -> f64 {
     gaps.fold(0.0, f64::max)
 }
 
-/// The blocks that are textured so far.
+/// The blocks marked as textured so far.
 struct Mask<'a> {
     lattice: &'a Lattice,
     /// The rows that are meshed.
     rows: &'a Range<usize>,
     textured: Vec<bool>,
-    /// Rows that one outline, or overlapping ones, cover from edge to edge.
+    /// Rows that one outline, or overlapping outlines, cover from edge to edge.
     full: Vec<bool>,
     /// Whether the present texture covers any block of these rows.
     covers: bool,
@@ -169,8 +169,8 @@ impl<'a> Mask<'a> {
 
     /// Marks the blocks of a row inside any of the outlines around `centers`, which are at most `gap` apart.
     ///
-    /// Where all neighbours overlap, their union is one interval from the first to the last, and the work
-    /// does not grow with their number.
+    /// If all neighbours overlap, their union is one interval from the first to the last, and the work does
+    /// not grow with their number.
     fn cover_row(
         &mut self,
         row: isize,
@@ -188,7 +188,7 @@ impl<'a> Mask<'a> {
             return self.cover_pairs(row, sweep, crossings, centers);
         }
         for pair in crossings.chunks_exact(2) {
-            // By a whole block, far more than rounding.
+            // A margin of a whole block, far more than rounding errors.
             if width(pair) > gap + 1.0 {
                 self.overlaps = true;
                 self.cover_interval(row, sweep, [(first, pair[0].x(first)), (last, pair[1].x(last))]);
@@ -198,7 +198,7 @@ impl<'a> Mask<'a> {
         }
     }
 
-    /// Marks the blocks of a row between the crossings, centre after centre.
+    /// Marks the blocks of a row between the crossings, one centre after the other.
     fn cover_pairs(&mut self, row: isize, sweep: &Sweep, crossings: &[Crossing], centers: &[f64]) {
         let mut ends = Vec::with_capacity(crossings.len());
         for &center in centers {
@@ -211,11 +211,11 @@ impl<'a> Mask<'a> {
         }
     }
 
-    /// Marks the blocks of a row from where one outline is entered to where another, or the same, is left;
-    /// each is given by x of its centre and x of the crossing.
+    /// Marks the blocks of a row from the entry into one outline to the exit from the same or another
+    /// outline; each is given by x of the centre and x of the crossing.
     fn cover_interval(&mut self, row: isize, sweep: &Sweep, [enter, leave]: [(f64, f64); 2]) {
         let Lattice { nx, edges, .. } = *self.lattice;
-        // Clipped afterwards: a block at a free edge may lie far inside.
+        // Clipped afterwards: a block at a free edge may lie far inside an outline.
         let Range { mut start, mut end } = blocks_between(enter.1, leave.1, nx, Edges::Periodic);
         let is_inside =
             |column: isize, center: f64| sweep.contains(center, [column as f64 + 0.5, row as f64 + 0.5]);
@@ -303,13 +303,13 @@ impl<'a> Mask<'a> {
         self.lattice.edges[axis] == Edges::Free && coordinates.iter().any(is_beyond)
     }
 
-    /// The position of a row, counted on beyond periodic edges, among those that are meshed.
+    /// Index of a row, counted on beyond periodic edges, among the meshed rows.
     fn meshed_row(&self, row: isize) -> Option<usize> {
         let row = row.rem_euclid(self.lattice.ny as isize) as usize;
         self.rows.contains(&row).then(|| row - self.rows.start)
     }
 
-    /// Marks the blocks of a row, both counted on beyond periodic edges.
+    /// Marks the blocks of a row; row and columns are counted on beyond periodic edges.
     fn fill(&mut self, row: isize, columns: Range<isize>) {
         let Some(row) = self.meshed_row(row) else { return };
         let nx = self.lattice.nx;
@@ -327,7 +327,7 @@ impl<'a> Mask<'a> {
     }
 }
 
-/// Blocks along one axis whose centre k + 1/2 lies in [from, to); outside the lattice only along a periodic
+/// Blocks along one axis with their centre k + 1/2 in [from, to); outside the lattice only along a periodic
 /// axis.
 fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> Range<isize> {
     let (mut first, mut end) = ((from - 0.5).ceil(), (to - 0.5).ceil());
@@ -382,7 +382,8 @@ mod tests {
         assert!(meshed.clipped.is_empty());
     }
 
-    /// At these radii centres lie on the outline: 19, 21 and 35 are given exactly, and 35^2 = 28^2 + 21^2.
+    /// Radii for which block centres lie on the outline: 19, 21 and 35 are represented exactly, and
+    /// 35^2 = 28^2 + 21^2.
     #[test]
     fn the_mesh_of_a_circle_is_as_symmetric_as_the_circle() {
         for (n, lambda) in [
@@ -522,8 +523,8 @@ mod tests {
         assert!(meshed.textured[lattice.block(10, 15)] && meshed.textured[lattice.block(50, 45)]);
     }
 
-    /// A staggered pattern of whole and half blocks repeats itself after a row and half a column, and covers
-    /// as many blocks as one cavity for each of its places.
+    /// A staggered pattern of whole and half blocks repeats after a row and half a column, and covers as many
+    /// blocks as one separate cavity for each of its positions.
     #[test]
     fn a_staggered_pattern_repeats_itself_exactly() {
         let lattice = Lattice::with_edges(48, 40, [Edges::Periodic; 2]);
@@ -635,8 +636,8 @@ mod tests {
             assert!(meshed.clipped.is_empty());
             for (b, textured) in meshed.textured.iter().enumerate() {
                 let (i, j) = lattice.column_row(b);
-                // A quarter of a cell is one and a half blocks: even rows of cells go to the left by one, odd
-                // ones to the right by two.
+                // A quarter of a cell is one and a half blocks: even rows of cells move to the left by one
+                // block, odd rows to the right by two.
                 let shift = match (staggered, j / 3 % 2) {
                     (false, _) => 0,
                     (true, 0) => 23,
@@ -663,7 +664,7 @@ mod tests {
         let found = outside.textured.iter().filter(|&&t| t).count();
         assert_eq!(found, 2500 - inside);
         assert!(!outside.textured[lattice.block(25, 25)] && outside.textured[0]);
-        // Pillars everywhere leave nothing.
+        // Pillars everywhere leave no textured block.
         let all = Texture {
             inverted: true,
             ..Shape::Polygon(vec![[0.0, 0.0], [50.0, 0.0], [50.0, 50.0], [0.0, 50.0]]).into()

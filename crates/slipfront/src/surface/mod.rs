@@ -1,8 +1,8 @@
 //! The sliding surface: local friction coefficients, texture and load of every block.
 //!
 //! [`Coefficients`] are drawn by block or from a [`CorrelatedField`], or given; [`mesh`] finds the textured
-//! blocks, and the [`Load`] is distributed over the blocks in contact; [`Surface::new`] makes the friction
-//! thresholds of all blocks from the three, and [`Surface::of_ranks`] does so for the blocks that a rank
+//! blocks, and the [`Load`] is distributed over the blocks in contact. [`Surface::new`] computes the friction
+//! thresholds of all blocks from these three, and [`Surface::of_ranks`] does so for the blocks that a rank
 //! holds.
 
 mod clearance;
@@ -44,7 +44,7 @@ use crate::slider::Slider;
 
 /// Friction of every block; arrays have one value per block that this process holds.
 ///
-/// The results of its methods on the whole surface are those of the arrays at the time when it was made.
+/// The results of its methods on the whole surface belong to the arrays at the time of its creation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Whether a block has no contact with the substrate: it lies over a texture, or does not exist.
@@ -55,14 +55,14 @@ pub struct Surface {
     pub mu_kinetic: Vec<f64>,
     contact: Contact,
     whole: Whole,
-    /// Normal force on a block in contact over `p_i l^2`.
+    /// Ratio of the normal force on a block in contact to `p_i l^2`.
     load_factor: f64,
     min_slip_threshold: f64,
 }
 
 impl Surface {
-    /// A surface on which the coefficients of textured blocks, and negative ones, are set to 0 and the load,
-    /// at first equal on all blocks, is distributed.
+    /// A surface on which the coefficients of textured blocks, and negative coefficients, are set to 0 and
+    /// the load, at first equal on all blocks, is distributed.
     ///
     /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
     pub fn new(
@@ -75,12 +75,12 @@ impl Surface {
         Self::of_ranks(coefficients, textured, contact, &Slider::default(), &Alone)
     }
 
-    /// The surface under the blocks of `slider` that this rank holds, called by all `ranks` of a lattice at
-    /// once. Numbers of the whole surface have the same bits on all ranks, for any number of them. Fails when
-    /// no block is left in contact.
+    /// The surface under the blocks of `slider` that this rank holds. All `ranks` of a lattice must call this
+    /// together. Values for the whole surface have the same bits on all ranks, for any number of ranks. Fails
+    /// when no block is left in contact.
     ///
     /// # Panics
-    /// Unless coefficients, texture and pressures are of the same number of blocks.
+    /// Unless coefficients, texture and pressures have the same number of blocks.
     pub fn of_ranks(
         mut coefficients: Coefficients,
         mut textured: Vec<bool>,
@@ -138,7 +138,7 @@ impl Surface {
         Ok(surface)
     }
 
-    /// The surface under some of the blocks. Numbers of the whole surface stay.
+    /// The surface under some of the blocks. Values for the whole surface stay the same.
     pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
         let some = |values: &[f64]| values[blocks.clone()].to_vec();
         Self {
@@ -179,7 +179,8 @@ impl Surface {
         self.load_factor * pressure
     }
 
-    /// Normal force `F_n,i` on block `b` in units of `P mu_s l^2`, as other forces; 0 over a texture.
+    /// Normal force `F_n,i` on block `b` in units of `P mu_s l^2`, the unit of other forces; 0 over a
+    /// texture.
     pub(crate) fn load(&self, b: usize) -> f64 {
         self.normal_force(b) / self.contact.mu_static_mean
     }
@@ -226,7 +227,7 @@ impl Surface {
         self.textured.len()
     }
 
-    /// Number of blocks of the whole surface that touch the substrate.
+    /// Number of blocks of the whole surface in contact with the substrate.
     pub fn n_contact(&self) -> usize {
         self.whole.n_contact
     }
@@ -237,8 +238,8 @@ impl Surface {
         self.whole.n_blocks
     }
 
-    /// Negative draws of coefficients that were set to 0, static and kinetic together, of all blocks of the
-    /// whole surface in contact.
+    /// Number of negative draws of coefficients that were set to 0, static and kinetic together, of all
+    /// blocks in contact of the whole surface.
     pub fn negative_draws(&self) -> usize {
         self.whole.negative_draws
     }
@@ -282,8 +283,8 @@ impl Surface {
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_static) / whole.n_blocks as f64
     }
 
-    /// Load of a block in contact over its load if every block touched: `N/N_contact` for an even pressure; 1
-    /// if the load of textured blocks is not redistributed.
+    /// Ratio of the load of a block in contact to its load if all blocks were in contact: `N/N_contact` for a
+    /// uniform pressure; 1 if the load of textured blocks is not redistributed.
     pub fn load_factor(&self) -> f64 {
         self.load_factor
     }
@@ -299,9 +300,9 @@ impl Surface {
         self.whole.n_contact as f64 * self.contact.adhesion.of_kinetic / self.whole.n_blocks as f64
     }
 
-    /// The smallest force that makes a block in contact slip, the larger of its static threshold and its
-    /// kinetic friction (D12), over the whole surface; each over the relative stiffness of the drive spring
-    /// that exerts it.
+    /// The smallest force that makes a block in contact slip: the larger of its static threshold and its
+    /// kinetic friction (D12), over the relative stiffness of its drive spring, as a minimum over the whole
+    /// surface.
     pub fn min_slip_threshold(&self) -> f64 {
         self.min_slip_threshold
     }

@@ -1,12 +1,12 @@
-//! Closed outlines that can be cut by a horizontal line, once or on grids of centres.
+//! Closed outlines that can be cut by a horizontal line, singly or on grids of centres.
 //!
-//! The cut of a line with an outline depends only on the height of its centre, but for a shift along x. So
-//! the cut is found once for all outlines of a row of a grid, and each of its ends is placed with the
-//! rounding of an outline that stands there alone.
+//! The cut of a line with an outline depends only on the height of its centre, except for a shift along x. So
+//! the cut is computed once for all outlines of a row of a grid, and each of its ends is placed with the same
+//! rounding as for a single outline at this position.
 
 use super::pattern::Crossings;
 
-/// Outlines of one curve, around every crossing of some grids of lines.
+/// Outlines of one curve, around every crossing of the lines of some grids.
 pub(super) struct Outlines {
     pub(super) curve: Curve,
     /// The grids of the outlines' centres.
@@ -15,13 +15,13 @@ pub(super) struct Outlines {
 
 /// An outline around (0, 0).
 pub(super) enum Curve {
-    /// An ellipse, by its semi-axes and the direction of the first.
+    /// An ellipse, given by its semi-axes and the direction of the first.
     Ellipse { semi_axes: [f64; 2], axis: [f64; 2] },
-    /// A polygon, whose inside follows from the even-odd rule.
+    /// A polygon; the even-odd rule defines its inside.
     Polygon(Vec<Vertex>),
 }
 
-/// A coordinate less that of the centre, as two terms that are added to it one after the other.
+/// A coordinate relative to the centre, as two terms that are added to it one after the other.
 type Terms = [f64; 2];
 
 fn add([one, other]: Terms, center: f64) -> f64 {
@@ -35,14 +35,14 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    /// Place of the corner in the polygon with this centre.
+    /// Position of the corner if the polygon has this centre.
     pub(super) fn around(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [add(self.x, x), add(self.y, y)]
     }
 }
 
 impl Outlines {
-    /// A curve around the middle of `grids`, which give the shifts of its copies from there.
+    /// A curve around the middle of `grids`, which contain the shifts of its copies from there.
     pub(super) fn at(curve: Curve, middle: [f64; 2], grids: &[Crossings]) -> Self {
         let centers = |grid: &Crossings| {
             let along = |axis: usize| grid[axis].iter().map(|shift| middle[axis] + shift).collect();
@@ -54,7 +54,7 @@ impl Outlines {
         }
     }
 
-    /// The copies of a polygon that stands in the middle of `grids`.
+    /// The copies of a polygon around the middle of `grids`.
     pub(super) fn polygon(points: &[[f64; 2]], grids: &[Crossings]) -> Self {
         let vertex = |&[x, y]: &[f64; 2]| Vertex {
             x: [x, 0.0],
@@ -91,7 +91,7 @@ impl Outlines {
         }
     }
 
-    /// The outlines whose centres lie at this height, to be cut by lines from the lowest to the highest.
+    /// The outlines with centres at this height, to be cut by lines from the lowest to the highest.
     pub(super) fn at_height(&self, center: f64) -> Sweep<'_> {
         let edges = match &self.curve {
             Curve::Ellipse { .. } => Vec::new(),
@@ -140,7 +140,7 @@ fn edges(vertices: &[Vertex], center: f64) -> Vec<Edge> {
     edges
 }
 
-/// Outlines that are cut by one horizontal line after the other.
+/// Outlines to be cut by one horizontal line after the other.
 pub(super) struct Sweep<'a> {
     curve: &'a Curve,
     /// Coordinate y of the centres.
@@ -153,12 +153,12 @@ pub(super) struct Sweep<'a> {
     cut: Vec<Edge>,
 }
 
-/// Where a horizontal line cuts an outline.
+/// Intersection of a horizontal line with an outline.
 #[derive(Clone, Copy)]
 pub(super) struct Crossing {
     from: Terms,
     to: Terms,
-    /// Share of the way from one corner of the edge to the other.
+    /// Share of the path from one corner of the edge to the other.
     share: f64,
 }
 
@@ -179,7 +179,8 @@ impl Crossing {
 }
 
 impl Sweep<'_> {
-    /// Crossings with the line at `y`, which is above the lines before; an even number of them, in any order.
+    /// Crossings with the line at `y`, which must be above earlier lines; an even number of them, in any
+    /// order.
     pub(super) fn intersect(&mut self, y: f64, crossings: &mut Vec<Crossing>) {
         crossings.clear();
         match self.curve {
@@ -187,7 +188,7 @@ impl Sweep<'_> {
                 semi_axes: [a, b],
                 axis: [c, s],
             } => {
-                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic in x.
+                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic inequality in x.
                 let dy = y - self.center;
                 let (p, q, r) = (c / a, s / b, dy * s / a);
                 let t = dy * c / b;
@@ -197,7 +198,7 @@ impl Sweep<'_> {
                 if root > 0.0 {
                     let root = root.sqrt();
                     let (enter, leave) = ((-half - root) / square, (-half + root) / square);
-                    // Slightly wider: `contains` decides about a centre that lies on the outline.
+                    // Slightly wider: `contains` decides about a centre on the outline.
                     let margin = 1e-9 * a.abs().max(b.abs());
                     crossings.extend([[enter, -margin], [leave, margin]].map(Crossing::at));
                 }
@@ -219,8 +220,8 @@ impl Sweep<'_> {
     }
 
     /// Whether a point between two crossings is inside the outline around this x. An ellipse excludes its
-    /// outline and is tested by a formula that rounds symmetrically, so that its mesh is as symmetric as the
-    /// ellipse; polygons are half-open.
+    /// outline and is tested with a formula that rounds symmetrically, so that its mesh is as symmetric as
+    /// the ellipse; polygons are half-open.
     pub(super) fn contains(&self, center: f64, [x, y]: [f64; 2]) -> bool {
         match self.curve {
             Curve::Ellipse {

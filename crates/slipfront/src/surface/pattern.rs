@@ -1,14 +1,14 @@
-//! Patterns: the places of the copies of a shape.
+//! Patterns: the positions of the copies of a shape.
 
 use crate::lattice::Lattice;
 
-/// An array of places around a middle, in columns and rows.
+/// An array of positions around a middle, in columns and rows.
 ///
-/// Odd rows of a staggered array are shifted by half a column against the even ones, a quarter each way: with
-/// rows `sqrt(3)/2` columns apart, every place has six neighbours at one distance.
+/// Odd rows of a staggered array are shifted by half a column relative to even rows, each by a quarter: with
+/// rows `sqrt(3)/2` columns apart, every position has six neighbours at equal distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Array {
-    /// Columns and rows.
+    /// Numbers of columns and rows.
     pub count: [usize; 2],
     /// Distance between columns and between rows, in blocks.
     pub spacing: [f64; 2],
@@ -35,7 +35,7 @@ impl Array {
         }
     }
 
-    /// The distance of a line from the middle of all.
+    /// Distance of a line from the middle of the array.
     fn shift(&self, axis: usize, line: usize) -> f64 {
         self.spacing[axis] * (line as f64 - 0.5 * (self.count[axis] as f64 - 1.0))
     }
@@ -49,13 +49,13 @@ impl Array {
         }
     }
 
-    /// A place, as the shift from the middle.
+    /// A position, as the shift from the middle.
     pub(super) fn place(&self, column: usize, row: usize) -> [f64; 2] {
         let x = self.shift(0, column) + self.aside(row) * self.spacing[0];
         [x, self.shift(1, row)]
     }
 
-    /// Places of the array as rectangular grids: one, or one of even rows and one of odd rows.
+    /// Positions of the array as rectangular grids: one, or one of even rows and one of odd rows.
     fn grids(&self) -> Vec<Crossings> {
         let [columns, rows] = self.count;
         let grid = |first_row: usize, rows: &mut dyn Iterator<Item = usize>| {
@@ -75,11 +75,11 @@ impl Array {
     }
 }
 
-/// Places at every crossing of vertical lines, whose x come first, and horizontal ones, whose y follow; both
-/// in rising order, and none empty.
+/// Positions at every crossing of vertical lines, given first by their x, and horizontal lines, given by
+/// their y; both in ascending order, and not empty.
 pub(super) type Crossings = [Vec<f64>; 2];
 
-/// The places of arrays of arrays, as shifts from the middle of all places.
+/// The positions of arrays of arrays, as shifts from the middle of all positions.
 pub(super) fn grids(arrays: &[Array]) -> Vec<Crossings> {
     let alone = vec![[vec![0.0], vec![0.0]]];
     arrays.iter().fold(alone, |outer, array| {
@@ -93,7 +93,7 @@ pub(super) fn grids(arrays: &[Array]) -> Vec<Crossings> {
     })
 }
 
-/// Sums of every one of the first lines with every one of the second, in rising order.
+/// Sums of every one of the first lines and every one of the second, in ascending order.
 fn sums(outer: &[f64], inner: &[f64]) -> Vec<f64> {
     let sums = outer
         .iter()
@@ -103,12 +103,12 @@ fn sums(outer: &[f64], inner: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Rows of places of all grids.
+/// Number of rows of positions of all grids.
 pub(super) fn n_rows(grids: &[Crossings]) -> usize {
     grids.iter().map(|[_, rows]| rows.len()).sum()
 }
 
-/// Number of places of arrays of arrays.
+/// Number of positions of arrays of arrays.
 ///
 /// ```
 /// # use slipfront::surface::{Array, n_copies};
@@ -162,7 +162,7 @@ mod tests {
         assert!((distances[7] - pitch * libm::sqrt(3.0)).abs() < 1e-13);
     }
 
-    /// Half a turn about the middle leads places to places, where rows are even in number.
+    /// Half a turn about the middle maps positions to positions, for an even number of rows.
     #[test]
     fn patterns_stand_in_the_middle() {
         for (count, staggered) in [([3, 5], false), ([4, 2], true), ([1, 6], true), ([5, 1], true)] {

@@ -1,4 +1,4 @@
-//! The load of textured blocks, shared among the blocks in contact near them.
+//! The load of textured blocks, shared among nearby blocks in contact.
 
 use std::ops::Range;
 
@@ -6,24 +6,25 @@ use crate::communicator::Communicator;
 use crate::error::SurfaceError;
 use crate::lattice::{Edges, Lattice};
 
-/// Number of blocks whose marks fit into a word.
+/// Number of blocks with marks that fit into one word.
 const MARKS: usize = u64::BITS as usize;
 
-/// Pressures, over the mean one, of the blocks in some rows after each textured block has left its load, in
-/// equal parts, to the blocks in contact whose centres are at most `distance` blocks away from its own.
-/// Blocks in contact have their load over `factor`, which [`Load::Redistributed`](super::Load::Redistributed)
-/// gives to each; textured ones keep their pressure. The total is exact but for rounding of each load.
+/// Pressures, over the mean pressure, of the blocks in some rows after the load of each textured block has
+/// been shared in equal parts among the blocks in contact with centres at most `distance` blocks away. The
+/// load of blocks in contact is divided by `factor`, by which
+/// [`Load::Redistributed`](super::Load::Redistributed) multiplies it; textured blocks keep their pressure.
+/// The total is exact except for the rounding of each load.
 ///
 /// ```text
 /// F_i = p_i + sum_j p_j/n_j   over textured blocks j near i,   n_j the number of blocks in contact near j
 /// ```
 ///
-/// `textured` and `exists` have a mark for every block of these rows, and `pressure` has their `p_i`; all
-/// exist, or have an equal pressure, if there are none. All `ranks` of a lattice must call this together, and
-/// find the same bits for any number of them.
+/// `textured` and `exists` have a mark for every block of these rows, and `pressure` has their `p_i`; without
+/// `exists` all blocks exist, and without `pressure` it is uniform. All `ranks` of a lattice must call this
+/// together. Results have the same bits for any number of ranks.
 ///
 /// # Errors
-/// [`SurfaceError::NoContactNear`] if there is no block in contact near a textured one.
+/// [`SurfaceError::NoContactNear`] if there is no block in contact near a textured block.
 pub fn share_load(
     lattice: &Lattice,
     rows: &Range<usize>,
@@ -56,7 +57,7 @@ pub fn share_load(
     let factor = (total[0] + total[1]) / total[0];
     let largest = (0..n).filter(|&b| lends[b]).map(pressure).fold(0.0, f64::max);
     let disc = Disc::new(lattice, distance);
-    // Whole numbers have the same sum in any order. That of a row at the most is 2^62.
+    // Integers have the same sum in any order. The sum of a row is at most 2^62.
     let quantum = largest * lattice.nx as f64 / (1_u64 << 62) as f64;
     let counts = Rows::new(lattice, |b| i64::from(contact[b]));
     let mut shares = vec![0; n];
@@ -79,7 +80,7 @@ pub fn share_load(
     Ok(own.map(after).collect())
 }
 
-/// Marks of all blocks of the lattice, of which each rank knows those of its own blocks.
+/// Marks of all blocks of the lattice; each rank knows those of its own blocks.
 fn of_all_ranks(
     n: usize,
     own: &Range<usize>,
@@ -95,7 +96,7 @@ fn of_all_ranks(
     (0..n).map(|b| words[b / MARKS] >> (b % MARKS) & 1 == 1).collect()
 }
 
-/// Sums over the beginnings of all rows, from which those over parts of them follow.
+/// Cumulative sums from the beginning of every row; their differences are sums over parts of rows.
 struct Rows {
     nx: usize,
     sums: Vec<i64>,
@@ -122,10 +123,10 @@ impl Rows {
     }
 }
 
-/// The blocks near a block: those whose centres lie within a disc about its own.
+/// The blocks near a block: those with centres within a disc about its own centre.
 struct Disc<'a> {
     lattice: &'a Lattice,
-    /// For rows so many away, the number of columns on each side.
+    /// The number of columns on each side, for every distance in rows.
     reach: Vec<usize>,
 }
 
@@ -139,14 +140,15 @@ impl<'a> Disc<'a> {
         }
     }
 
-    /// Sum over the blocks near block `b`; over all rows it may be larger than the sum over one can.
+    /// Sum over the blocks near block `b`; the sum over several rows may exceed the limit for one row.
     fn sum(&self, rows: &Rows, b: usize) -> i128 {
         let mut sum = 0;
         self.for_each_part(b, |j, columns| sum += i128::from(rows.sum(j, columns)));
         sum
     }
 
-    /// Visits the blocks near block `b`, each once: parts of rows, beyond periodic edges at the other side.
+    /// Visits each block near block `b` once, in parts of rows; parts beyond periodic edges are at the other
+    /// side.
     fn for_each_part(&self, b: usize, mut visit: impl FnMut(usize, Range<usize>)) {
         let (i, j) = self.lattice.column_row(b);
         let Lattice { nx, ny, edges } = *self.lattice;

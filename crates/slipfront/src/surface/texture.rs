@@ -16,10 +16,10 @@ use crate::vector_field::unit_vector;
 pub struct Texture {
     /// The shape.
     pub shape: Shape,
-    /// Places of the copies: every place of the first array holds the second one, and so on. Without an array
-    /// the shape stands alone.
+    /// Positions of the copies: every position of the first array contains the second array, and so on.
+    /// Without an array there is only one copy.
     pub arrays: Vec<Array>,
-    /// Whether all blocks but those inside the copies are textured: the shapes are pillars.
+    /// Whether all blocks except those inside the copies are textured: the shapes are pillars.
     pub inverted: bool,
 }
 
@@ -33,22 +33,22 @@ impl From<Shape> for Texture {
     }
 }
 
-/// A shape that is textured, or not, inside.
+/// A shape with a textured inside, or with the outside textured.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// The closed curve of Eq. 17.
     Cavity(Cavity),
     /// A straight strip from edge to edge.
     Groove(Groove),
-    /// Any polygon, by the even-odd rule; the copies are spread around where it stands.
+    /// Any polygon, by the even-odd rule; the copies are spread around its position.
     Polygon(Vec<[f64; 2]>),
     /// A mask, block by block; the copies are spread around the middle of the slider.
     Tile(Tile),
 }
 
 impl Shape {
-    /// Number of copies of the shape that cover different places: copies of a groove beside each other count,
-    /// copies along it do not.
+    /// Number of copies of the shape that cover different places: copies of a groove next to each other
+    /// count, copies along it do not.
     pub fn n_copies(&self, arrays: &[Array]) -> usize {
         match self {
             Self::Groove(groove) => groove.shifts(&grids(arrays)).len(),
@@ -82,12 +82,12 @@ impl Shape {
 /// A mask, block by block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
-    /// Blocks along x and along y.
+    /// Number of blocks along x and along y.
     pub size: [usize; 2],
-    /// The known rows of the mask: all, or for a mask that covers the lattice the rows that are meshed.
+    /// The known rows of the mask: all, or for a mask that covers the lattice the meshed rows.
     pub rows: Range<usize>,
-    /// Whether each block of the known rows is inside, row by row in rising y; several textures may have the
-    /// same mask.
+    /// Whether each block of the known rows is inside, row by row in ascending y; several textures may share
+    /// a mask.
     pub blocks: Arc<Vec<bool>>,
 }
 
@@ -103,7 +103,7 @@ impl Tile {
         places.map(|place| Self::start(lattice, size, place)).collect()
     }
 
-    /// First block of the copy that is shifted by `shift` from the middle: the block nearest to its place.
+    /// First block of the copy that is shifted by `shift` from the middle: the block nearest to its position.
     pub(super) fn start(lattice: &Lattice, size: [usize; 2], shift: [f64; 2]) -> [isize; 2] {
         let lattice = [lattice.nx, lattice.ny];
         [0, 1].map(|axis| {
@@ -130,7 +130,7 @@ pub struct Cavity {
     pub w: f64,
     /// Swaps x and y: elongated across the x axis.
     pub across: bool,
-    /// Turn in degrees from x towards y, after the swap.
+    /// Rotation in degrees from x towards y, after the swap.
     pub rotate: f64,
 }
 
@@ -164,14 +164,15 @@ pub enum Orientation {
     Along,
 }
 
-/// A straight groove, half-open: the block whose centre lies on its lower edge is in, on its upper edge out.
+/// A straight groove, half-open: a block with its centre on the lower edge is inside, on the upper edge
+/// outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groove {
     /// Direction in which the groove runs.
     pub orientation: Orientation,
     /// Width.
     pub width: f64,
-    /// Distance of the groove's middle line from the middle of the slider.
+    /// Distance of the groove's centre line from the middle of the slider.
     pub offset: f64,
 }
 
@@ -184,7 +185,7 @@ impl Groove {
         }
     }
 
-    /// Shifts of the copies across the groove, each once for every grid.
+    /// Shifts of the copies across the groove, each once per grid.
     pub(super) fn shifts(&self, grids: &[Crossings]) -> Vec<f64> {
         let across = grids.iter().flat_map(|grid| &grid[self.axis()]);
         across.copied().collect()

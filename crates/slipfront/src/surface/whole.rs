@@ -1,4 +1,4 @@
-//! Numbers of the surface as a whole, whichever ranks hold its blocks.
+//! Values for the surface as a whole, independent of the division among ranks.
 
 use std::array;
 use std::ops::Range;
@@ -8,10 +8,10 @@ use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::parallel::*;
 
-/// Numbers of the whole surface, equal to the last bit on every rank and for any number of ranks.
+/// Values for the whole surface, equal to the last bit on every rank and for any number of ranks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Whole {
-    /// Blocks that exist and face the substrate.
+    /// Number of existing blocks that face the substrate.
     pub(super) n_blocks: usize,
     pub(super) n_contact: usize,
     pub(super) negative_draws: usize,
@@ -35,9 +35,9 @@ const PART: usize = 1 << 16;
 const SUMS: usize = 6;
 
 impl Whole {
-    /// Finds the numbers together with all other ranks that hold a part of the surface, from coefficients as
-    /// [restricted](Coefficients::restrict), the number of negative draws, and local pressures in units of
-    /// `P`, 1 everywhere if there are none. `faces`: whether each block exists, and whether it faces the
+    /// Computes the values together with all other ranks that hold a part of the surface, from coefficients
+    /// as [restricted](Coefficients::restrict), the number of negative draws, and local pressures in units of
+    /// `P`, 1 everywhere if not given. `faces`: whether each block exists, and whether it faces the
     /// substrate; the others count as textured.
     pub(super) fn find(
         coefficients: &Coefficients,
@@ -65,7 +65,7 @@ impl Whole {
                 mu_static[b] * p,
             ]
         };
-        // Neither maxima nor sums of integers depend on how the blocks are divided among threads.
+        // Neither maxima nor sums of integers depend on the division of blocks among threads.
         let parts = || {
             let starts = (0..textured.len()).into_par_iter().step_by(PART);
             starts.map(|first| first..textured.len().min(first + PART))
@@ -141,8 +141,8 @@ mod tests {
             sum_pressure: [n as f64, (n - 3) as f64],
         };
         assert_eq!(found, expected);
-        // Half the pressure on every other block, from the first on; of those without contact, one has the
-        // whole.
+        // Half the pressure on every second block, beginning with the first; of the blocks without contact,
+        // one has the full pressure.
         let pressure: Vec<f64> = (0..n).map(|b| if b % 2 == 0 { 0.5 } else { 1.0 }).collect();
         let found = Whole::find(&coefficients, 0, &textured, Some(&pressure), [None; 2], &Alone);
         let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;

@@ -17,12 +17,12 @@ use slipfront::{
     Weakening, scales,
 };
 
-/// A slider at rest, stepped by the kernel that this binary tests.
+/// A slider at rest, stepped by the kernel under test.
 pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation {
     executed(model, dt_star, None)
 }
 
-/// A slider in a given state, stepped by the kernel that this binary tests.
+/// A slider in a given state, stepped by the kernel under test.
 pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation {
     executed(model, dt_star, Some(state))
 }
@@ -49,7 +49,7 @@ pub(crate) struct Slider {
     pub(crate) program: Option<Arc<Program>>,
     pub(crate) loading: Loading,
     pub(crate) load: Load,
-    /// Axis and relative slope of a pressure that rises along it.
+    /// Axis and relative slope of a pressure that varies along it.
     pub(crate) pressure: Option<(usize, f64)>,
     pub(crate) adhesion: Adhesion,
     /// Dead load along x and y, and whether it differs from block to block.
@@ -201,12 +201,12 @@ impl Slider {
             .with_dead_load(load)
     }
 
-    /// Steps to t* = `turns`/V*.
+    /// Number of steps to t* = `turns`/V*.
     pub(crate) fn steps(&self, turns: f64) -> u64 {
         (turns / self.v_star / self.dt_star).ceil() as u64
     }
 
-    /// Runs until the first peak is over, to t* = 8/V* at most.
+    /// Runs until the first peak has ended, or to t* = 8/V* at most.
     pub(crate) fn onset(&self) -> Peak {
         let model = self.model();
         let mut simulation = at_rest(&model, self.dt_star);
@@ -239,7 +239,7 @@ impl Slider {
         (simulation.peak(), kinetic)
     }
 
-    /// Runs a simulation of this slider to t* = `turns`/V*: kinetic friction.
+    /// Runs a simulation of this slider to t* = `turns`/V*, and returns its kinetic friction.
     pub(crate) fn watch(
         &self,
         simulation: &mut Simulation,
@@ -256,7 +256,7 @@ impl Slider {
     }
 }
 
-/// The part of a slider that these blocks are.
+/// The part of a slider with these blocks.
 fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
     let of = |values: &Option<Vec<f64>>| values.as_ref().map(|values| values[blocks.clone()].to_vec());
     slipfront::Slider {
@@ -278,8 +278,8 @@ fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
     }
 }
 
-/// A heterogeneous slider of `n` blocks: moduli from 0.25 to 1, densities from 0.5 to 1.5; one block in nine
-/// does not exist if it has an outline.
+/// A heterogeneous slider of `n` blocks: moduli from 0.25 to 1, densities from 0.5 to 1.5; with an outline,
+/// one block in nine does not exist.
 pub(crate) fn varied(n: usize, has_outline: bool) -> slipfront::Slider {
     let wave = |k: f64, low: f64, high: f64| -> Vec<f64> {
         let one = |b: usize| 0.5 * (low + high) + 0.5 * (high - low) * (k * b as f64 + 2.0).sin();

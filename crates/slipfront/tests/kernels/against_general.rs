@@ -11,12 +11,12 @@ use crate::common::{self, Slider, cavity, groove};
 use crate::fields::assert_fields_match_blocks;
 use crate::{bits, fused, general, go, has_room};
 
-/// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up
+/// Rounding errors differ by 1e-16 per spring and step, and slip amplifies them somewhat: to about 1e-14 up
 /// to the end of the first peak, in displacements and velocities of the order of 1.
 const ROUNDING: f64 = 1e-13;
 
 /// The fused kernel rounds every term of a sum to 2^-52 of a bound on it. Terms are squares of speeds and of
-/// differences of displacement between neighbours, and their bounds, at speeds of 1, at most 4000: the square
+/// differences of displacement between neighbours. At speeds of 1 their bounds are at most 4000: the square
 /// of what such speeds add to a difference until it is measured again, times the inverse of the time step.
 const ROUNDING_OF_TERMS: f64 = 1e-12;
 
@@ -31,7 +31,7 @@ fn distance(a: &VectorField, b: &VectorField) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// All sums, those over all blocks divided by their number.
+/// All sums, with those over all blocks divided by their number.
 fn means(totals: &Totals, n_blocks: usize) -> Vec<f64> {
     let stored = totals.stored_energy.unwrap_or_default();
     let mut sums = vec![
@@ -61,7 +61,7 @@ fn assert_alike(fused: &Simulation, general: &Simulation) {
     let n = one.model.lattice.n_blocks();
     let speed = largest(&general.state().velocity);
     for (a, b) in means(&here, n).iter().zip(means(&there, n)) {
-        // Energies of stretched springs may be more than 1.
+        // Energies of stretched springs may exceed 1.
         assert!(
             (a - b).abs() < ROUNDING * b.abs() + ROUNDING_OF_TERMS * speed * speed,
             "step {step}: {here:?} {there:?}"
@@ -86,14 +86,14 @@ fn assert_alike(fused: &Simulation, general: &Simulation) {
             (&here.velocity, &there.velocity),
         ] {
             let far = distance(a, b);
-            // Only blocks without friction come to move by more than 1.
+            // Only blocks without friction move by more than 1.
             assert!(far < ROUNDING * largest(b), "step {step}: {far:e} apart");
         }
     }
 }
 
-/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some
-/// of the steps.
+/// Compares both kernels for up to `steps` steps, or until the first peak has ended; energies are measured at
+/// some of the steps.
 pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     let run = |execution| Simulation::new(model.clone(), dt_star, state.cloned(), execution);
     let (mut fused, mut general) = (run(fused()), run(general()));
@@ -134,8 +134,8 @@ pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, st
 }
 
 /// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in
-/// so many tiles that these begin at every position of the ring buffer of springs, which is 37 vectors long
-/// then.
+/// so many tiles that they begin at every position of the ring buffer of springs, which is 37 vectors long in
+/// this case.
 #[test_matrix(
     [
         [1, 1], [1, 20], [20, 1], [5, 7], [13, 11], [14, 9], [16, 16], [17, 3], [25, 25], [64, 40], [3, 400],
@@ -162,8 +162,8 @@ fn lattices_of_every_shape(blocks: [usize; 2], edges: [Edges; 2], degrees: f64) 
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
-/// Strains for which spring forces come from either series or the square root, and all other parameters of a
-/// step.
+/// Strains for which spring forces are computed from either series or the square root, and all other
+/// parameters of a step.
 #[test_matrix(
     [0.0, 1e-6, 1e-4, 1e-3, 1e-2],
     [0.0, 0.1, 3.0],
@@ -191,7 +191,7 @@ fn forces_of_every_kind(
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// A front that a dead load drives, without drive springs: mu* stays and no peak ends.
+/// A front driven by a dead load, without drive springs: mu* stays constant and no peak ends.
 #[test_matrix([[80, 1], [80, 3], [300, 5]], [[1.0, 0.0], [0.0, 1.0], [0.6, 0.8]])]
 fn a_dead_load_alone(blocks: [usize; 2], direction: [f64; 2]) {
     let lattice = Lattice::free(blocks[0], blocks[1]);
@@ -210,7 +210,7 @@ fn a_dead_load_alone(blocks: [usize; 2], direction: [f64; 2]) {
     assert_same(&model, 0.1, None, 400);
 }
 
-/// Blocks that are displaced at the start, some of them with a velocity.
+/// Blocks displaced at the start, some of them with a velocity.
 #[test_matrix(
     [[1, 1], [17, 5], [5, 60], [300, 4]],
     [
@@ -231,7 +231,7 @@ fn a_state_in_motion(blocks: [usize; 2], edges: [Edges; 2], epsilon: f64) {
         ..Slider::default()
     };
     let state = common::thrown(slider.lattice().n_blocks(), 1.0, 3);
-    // Until most have come to rest.
+    // Until most blocks are at rest.
     assert_same(&slider.model(), slider.dt_star, Some(&state), 100);
 }
 

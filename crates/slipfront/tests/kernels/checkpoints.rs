@@ -55,7 +55,7 @@ fn the_general_kernel_under_every_law(law: FrictionLaw, every: u64) {
     goes_on_from_checkpoints(&slider(law), every);
 }
 
-/// Heterogeneous blocks, with dampers beside their springs.
+/// Heterogeneous blocks, with dampers in parallel with their springs.
 fn unequal(has_outline: bool) -> slipfront::Slider {
     slipfront::Slider {
         viscosity_time: 0.2,
@@ -63,7 +63,7 @@ fn unequal(has_outline: bool) -> slipfront::Slider {
     }
 }
 
-/// A run that stops while the drive stands goes on standing.
+/// In a run that is stopped while the drive stands still, the drive stays still after resuming.
 #[test_matrix([1, 7])]
 fn held_drives(every: u64) {
     let slider = Slider {
@@ -73,7 +73,7 @@ fn held_drives(every: u64) {
     goes_on_from_checkpoints(&slider, every);
 }
 
-/// A run in which the residual force takes the place of rest goes on doing so, in either kernel.
+/// A run in which rest is decided by the residual force continues to do so after resuming, on either kernel.
 #[test_matrix([1, 7], [false, true])]
 fn creep_under_a_held_drive(every: u64, is_fused: bool) {
     let slider = sliders::creeping();
@@ -95,7 +95,7 @@ fn creep_under_a_held_drive(every: u64, is_fused: bool) {
         );
     }
     let now = plain.snapshot();
-    // Exact rest did not come within 1000 times a front across the slider.
+    // Exact rest did not come within 1000 times the time of a front across the slider.
     assert!(
         (now.step - now.drive_steps) as f64 > 1000.0 * 12.0 / dt_star,
         "{}",
@@ -186,7 +186,7 @@ fn is_kept(friction: Friction, every: u64) {
     assert!(!have_differed.contains(&false), "there is nothing to remember");
 }
 
-/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its
+/// A run without stops and a run in parts, each of which continues from a checkpoint of the run and of its
 /// observers. Observers have seen every instant exactly once.
 #[test_matrix([general(), fused()], [1, 13, 250], [slipfront::Slider::default(), unequal(false)])]
 fn observers_see_every_instant_once(execution: Execution, piece: u64, body: slipfront::Slider) {
@@ -261,8 +261,8 @@ fn a_checkpoint_of_another_kernel_does_not_fit() {
     assert!(resumed(&simulation, &model, dt_star, general()).is_none());
 }
 
-/// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not
-/// been stopped.
+/// Drives at an edge, by a program and in rotation, and observers of them, continue as if they had not been
+/// stopped.
 #[test_matrix([false, true], [1, 7])]
 fn other_drives_and_their_observers(turns: bool, every: u64) {
     let slider = Slider {

@@ -1,4 +1,4 @@
-//! Events of slip are the same, bit by bit, on any number of threads and ranks, and across stops.
+//! Slip events are the same, bit by bit, on any number of threads and ranks, and across stops.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::{fused, general, stopped_and_resumed};
 
 const DT_STAR: f64 = 0.2;
 
-/// A rough slider with a cavity, in which events are of few blocks and of all.
+/// A rough slider with a cavity, in which some events have few blocks and some all.
 fn slider(blocks: [usize; 2]) -> Slider {
     Slider {
         blocks,
@@ -32,7 +32,7 @@ fn start(model: Model, execution: Execution) -> Simulation {
     Simulation::new(model, DT_STAR, None, execution)
 }
 
-/// Blocks enough for three bands of either kernel.
+/// Enough blocks for three bands of either kernel.
 const MANY: [usize; 2] = [49, 64];
 
 const DRIVE_STEPS: u64 = 270;
@@ -110,7 +110,7 @@ fn events_go_on_from_checkpoints(every: u64, is_fused: bool) {
 fn a_list_that_is_full_counts_on() {
     let model = slider([20, 16]).model();
     let all = recorded(start(model.clone(), fused()));
-    // A run that has listed all but two of the events that it can.
+    // A run that has listed all but two of the possible number of events.
     let earlier = Event {
         after: Some((0.0, 0.0)),
         from_star: 0.0,

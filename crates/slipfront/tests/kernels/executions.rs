@@ -8,7 +8,7 @@ use test_case::test_matrix;
 use crate::common::{cavity, groove};
 use crate::{bits, fused, go, has_room, sliders, stopped_and_resumed};
 
-/// Everything that can be read of a run at one instant except for its state.
+/// Everything that can be read from a run at one instant except its state.
 pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
     let (totals, contact) = (now.totals, now.contact);
@@ -47,11 +47,11 @@ pub(crate) fn state(simulation: &Simulation) -> Vec<Vec<u64>> {
     states.flat_map(of).collect()
 }
 
-/// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in
-/// parts of so many steps; energies are measured at some of the steps. Sums are compared at every step, whole
-/// states at every seventh and at the last: a difference stays in the state.
+/// Compares the fused kernel on one thread without skipping with all other ways to execute it, including runs
+/// in parts; energies are measured at some of the steps. Sums are compared at every step, whole states at
+/// every seventh and at the last step: a difference stays in the state.
 pub(crate) fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
-    // One of the pool steps them: another thread would sleep and be woken at every step.
+    // A thread of the pool steps them: another thread would sleep and be woken at every step.
     rayon::scope(|_| assert_same_bits_in_pool(model, dt_star, from, steps));
 }
 
@@ -68,7 +68,7 @@ fn assert_same_bits_in_pool(model: &Model, dt_star: f64, from: Option<&State>, s
         .flat_map(of)
         .skip(1)
         .map(|execution| (execution, u64::MAX));
-    // After every step, at and between measurements of the extent of displacements, and seldom.
+    // After every step, at and between measurements of the extent of displacements, and rarely.
     let stopped = of(1).into_iter().chain(of(3)).zip([1, 5, 16, 61]);
     let skipping = of(1).into_iter().skip(1).map(|execution| (execution, 16));
     let executions: Vec<_> = unstopped.chain(stopped).chain(skipping).collect();
@@ -127,7 +127,7 @@ fn lattices_of_every_shape(blocks: [usize; 2], edges: [Edges; 2]) {
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// The strains need either series and the square root, and change from one to the other.
+/// The strains need either series and the square root, and change from one to another.
 #[test_matrix(
     [None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0))],
     [0.0, 2e-5, 1e-3, 5e-3]
@@ -137,7 +137,7 @@ fn textures_and_strains(texture: Option<Texture>, epsilon: f64) {
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// Skipped blocks are predicted to slip by a drive that never stands.
+/// For a drive that never stands still, the kernel predicts when skipped blocks slip.
 #[test_matrix(
     [([40, 24], Edges::Free), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic)],
     [0.0, 65.0],
@@ -148,7 +148,8 @@ fn held_drives((blocks, edges): ([usize; 2], Edges), degrees: f64, has_program: 
     assert_same_bits(&slider.model(), slider.dt_star, None, 2 * slider.steps(4.0));
 }
 
-/// Rest by force is found alike, once exact rest has not come within 1000 times a front across the slider.
+/// All executions find rest by force at the same step, if exact rest has not come within 1000 times the time
+/// of a front across the slider.
 #[test]
 fn creep_under_a_held_drive() {
     let slider = sliders::creeping();
@@ -164,7 +165,7 @@ fn creep_under_a_held_drive() {
     );
 }
 
-/// The strains need every formula of springs, and change it while blocks are at rest.
+/// The strains need every spring formula, and the formula changes while blocks are at rest.
 #[test_matrix(
     [
         ([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([300, 3], Edges::Free),
@@ -187,8 +188,8 @@ fn a_state_in_motion(edges: [Edges; 2], epsilon: f64) {
 }
 
 /// A tile of 16 rows is at rest. In its first row a block with a larger threshold than all others is about to
-/// slip. It does so one step after a block in the last row of the tile below, which pushes it: the largest
-/// contact stress is that of its last step at rest.
+/// slip. It does so one step after the block that pushes it, in the last row of the tile below: the largest
+/// contact stress occurs in its last step at rest.
 #[test]
 fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let lattice = Lattice::free(16, 32);
@@ -209,7 +210,7 @@ fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let dt_star = 0.5;
     let mut surface = Surface::uniform(&lattice, 20.0, 20.0);
     let firm = model(surface.clone());
-    // Thresholds that the pushing block reaches after 50 steps and the pushed one after 80, if nothing pushes
+    // Thresholds that the pushing block reaches after 50 steps, and the pushed one after 80 if nothing pushes
     // it.
     for (b, steps) in [(pushing, 50.0), (stored, 80.0)] {
         let block = Simulation::new(firm.clone(), dt_star, Some(from.clone()), fused())

@@ -38,7 +38,7 @@ pub(crate) fn assert_fields_match_blocks(simulation: &Simulation) {
     }
 }
 
-/// Rows of one and of several strips, tiles and bands; blocks that stick and slide; every kind of springs. A
+/// Rows of one and of several strips, tiles and bands; blocks that stick and slide; every kind of spring. A
 /// simulation that has just been resumed is read before its first step.
 #[test_matrix(
     [[1, 1], [7, 1], [1, 9], [25, 25], [120, 3], [250, 6], [30, 90]],
@@ -85,7 +85,7 @@ fn all_blocks_have_the_same_bits_as_single_ones(
     }
 }
 
-/// Laws whose friction does not follow from the velocity: the general kernel keeps it.
+/// Laws with friction that does not follow from the velocity: the general kernel keeps it.
 #[test_matrix([FrictionLaw::Reversal, FrictionLaw::Literal])]
 fn every_friction_law(law: FrictionLaw) {
     let slider = Slider {
@@ -100,7 +100,7 @@ fn every_friction_law(law: FrictionLaw) {
     assert_fields_match_blocks(&simulation);
 }
 
-/// Friction along x alone, on a foundation, whose strength falls with slip.
+/// Friction along x alone, on a foundation, with strength that falls with slip.
 #[test_matrix([fused(), general()])]
 fn upright_sheets(execution: Execution) {
     let slider = Slider {

@@ -1,5 +1,5 @@
-//! Options that the general kernel alone computes, among them stacks under such laws, have the same bits on
-//! several ranks and threads as on one, and go on from a checkpoint on any other number of them.
+//! Options that only the general kernel computes, including stacks under such laws, have the same bits on
+//! several ranks and threads as on one, and continue from a checkpoint on any other number of them.
 
 use slipfront::communicator::Alone;
 use slipfront::{
@@ -26,13 +26,13 @@ enum Variety {
     Stack,
     /// Moduli and densities that differ, and blocks that do not exist.
     Differ,
-    /// A dead load, from block to block if these differ.
+    /// A dead load, which differs from block to block if the blocks do.
     Loaded,
 }
 
 const BLOCKS: [usize; 2] = [19, 17];
 
-/// A lattice of so many blocks that several threads share them.
+/// Enough blocks for several threads to share them.
 const MANY: [usize; 2] = [40, 110];
 
 fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
@@ -144,7 +144,8 @@ fn the_same_bits_over_threads(options: &'static [Variety], edges: Edges) {
 
 #[test_matrix([&[Viscous, Differ, Turns], &[RateState], &[Stack, Ages]], [Edges::Free, Edges::Periodic])]
 fn the_same_bits_over_threads_of_ranks(options: &'static [Variety], edges: Edges) {
-    // Three bands on each of the three ranks that have two threads: one has bands alone beside it.
+    // Three bands on each of the three ranks, which have two threads each: the middle band has only bands of
+    // its own rank as neighbours.
     let blocks = [40, 240];
     let slider = slider(blocks, edges, options);
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
@@ -152,7 +153,7 @@ fn the_same_bits_over_threads_of_ranks(options: &'static [Variety], edges: Edges
     assert_same_with(&slider, &change, Some(&from), 50);
 }
 
-/// The threshold of a spring that is drawn anew may be that of a block far away.
+/// The threshold of a spring that is drawn anew may come from a block far away.
 #[test]
 fn springs_drawn_anew_on_threads() {
     let mut model = slider(MANY, Edges::Free, &[Springs]).model();

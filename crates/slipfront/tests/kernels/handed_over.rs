@@ -1,4 +1,4 @@
-//! The columns of a checkpoint, which are handed over in parts.
+//! The columns of a checkpoint, which are passed in parts.
 
 use std::convert::Infallible;
 
@@ -30,8 +30,7 @@ fn model(lattice: Lattice) -> Model {
     Model::new(lattice, surface, drive, scales::damping(0.1), 1e-6, law)
 }
 
-/// More blocks than are handed over at once, in parts that end within rows and at their ends, and within
-/// bands.
+/// More blocks than are passed at once, in parts that end within rows and at their ends, and within bands.
 #[test_matrix(
     [(300, 300, Edges::Free), (1, 70_000, Edges::Free), (70_001, 3, Edges::Periodic)],
     [

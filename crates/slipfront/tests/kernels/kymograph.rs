@@ -10,7 +10,7 @@ use test_case::test_matrix;
 use crate::common::{Slider, cavity, varied};
 use crate::{fused, general};
 
-/// The share of the blocks in contact that slide, read from the field.
+/// The share of sliding blocks among those in contact, read from the field.
 #[derive(Default)]
 struct FromField {
     rows: Vec<Vec<f64>>,
@@ -118,7 +118,7 @@ fn what_slides_is_counted(which: usize) {
         });
         assert!(ranks.iter().all(|rank| *rank == alone));
     }
-    // The trajectory of the general is another to rounding, and its first slips are the same.
+    // The trajectory of the general kernel differs by rounding, and its first slips are the same.
     let mut simulation = Simulation::new(slider.model(), slider.dt_star, None, general());
     let mut general = Kymograph::default();
     let until_half = Stop::at_step(steps / 2);
@@ -158,7 +158,7 @@ fn memory_does_not_grow_with_the_run() {
     let whole = run(&[full - 1]);
     assert_eq!(whole.rows().count(), Kymograph::MAX_ROWS);
     let halved = run(&[full]);
-    // The last row has one instant alone.
+    // The last row has a single instant.
     assert_eq!(halved.rows().count(), Kymograph::MAX_ROWS / 2 + 1);
     let pairs: Vec<_> = whole.rows().collect();
     for ((step, shares), pair) in halved.rows().zip(pairs.chunks(2)) {

@@ -1,5 +1,5 @@
-//! All kernels and ways to execute them compared: the fused kernel agrees with the general to rounding, and
-//! has the same bits on any number of threads, with and without skipping.
+//! Comparison of all kernels and ways to execute them: the fused kernel agrees with the general kernel to
+//! rounding, and has the same bits on any number of threads, with and without skipping.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 #![allow(clippy::needless_pass_by_value)] // Values of a test are passed to it as they are written.
@@ -11,7 +11,7 @@ use std::convert::Infallible;
 
 use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 
-/// The kernel of the simulations that the common helpers make.
+/// The kernel of the simulations created by the common helpers.
 const KERNEL: Kernel = Kernel::Fused;
 
 /// The fused kernel on one thread without skipping.
@@ -31,8 +31,8 @@ fn general() -> Execution {
     }
 }
 
-/// Makes one step, or with `energies` steps until the drive has moved, including steps in which it stands;
-/// then the stored energies are known.
+/// Makes one step, or with `energies` steps until the drive has moved, including steps in which it stands
+/// still; then the stored energies are known.
 fn go(simulation: &mut Simulation, energies: bool) {
     if energies {
         let next = simulation.snapshot().drive_steps + 1;
@@ -52,7 +52,7 @@ fn has_room(blocks: [usize; 2], edges: [Edges; 2]) -> bool {
     (0..2).all(|axis| edges[axis] == Edges::Free || blocks[axis] >= Lattice::MIN_PERIODIC)
 }
 
-/// The numbers of all blocks that a checkpoint keeps.
+/// The values of all blocks that a checkpoint keeps.
 fn columns(simulation: &Simulation) -> Vec<Vec<f64>> {
     let mut columns = vec![Vec::new(); simulation.snapshot().model.n_columns()];
     let Ok(()) = simulation.write_columns(|column, first, values| {
@@ -64,7 +64,7 @@ fn columns(simulation: &Simulation) -> Vec<Vec<f64>> {
     columns
 }
 
-/// A simulation that continues from a checkpoint of this one, if it is one of the same kernel.
+/// A simulation that continues from a checkpoint of this one, if the checkpoint belongs to the same kernel.
 fn resumed(simulation: &Simulation, model: &Model, dt_star: f64, execution: Execution) -> Option<Simulation> {
     let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
     let checkpoint = postcard::from_bytes(&bytes).unwrap();

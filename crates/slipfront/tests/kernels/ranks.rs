@@ -1,5 +1,5 @@
-//! A lattice that several ranks share has the same bits as on one, whatever their number, threads and
-//! skipping, and goes on from a checkpoint on any other number of ranks.
+//! A lattice that several ranks share has the same bits as on one rank, for any number of ranks and threads,
+//! with and without skipping, and continues from a checkpoint on any other number of ranks.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -18,8 +18,8 @@ use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
 use crate::{bits, columns, fused, go, has_room, sliders};
 
-/// Results of a rank: at every step the numbers that all know, its own state at some steps, and at the end
-/// its first slips and fields.
+/// Results of a rank: at every step the values that all ranks know, its own state at some steps, and at the
+/// end its first slips and fields.
 struct Shown {
     steps: Vec<Vec<u64>>,
     states: Vec<Vec<Vec<u64>>>,
@@ -56,7 +56,7 @@ fn watch(simulation: &mut Simulation, steps: Range<u64>, shown_before: Option<Sh
     seen
 }
 
-/// The part of a state that the blocks of a rank have.
+/// The part of a state that belongs to the blocks of a rank.
 fn part(from: &State, blocks: Range<usize>) -> State {
     let of = |field: &VectorField| VectorField {
         x: field.x[blocks.clone()].to_vec(),
@@ -123,7 +123,7 @@ pub(crate) fn assert_same_with(slider: &Slider, change: &Change, from: Option<&S
     }
 }
 
-/// Asserts that the results of the ranks, row after row, are those of one.
+/// Asserts that the results of the ranks, row after row, are those of one rank.
 fn assert_joined(ranks: &[Shown], alone: &Shown, of: &str) {
     for rank in ranks {
         for (step, (here, expected)) in rank.steps.iter().zip(&alone.steps).enumerate() {
@@ -200,7 +200,7 @@ fn slow_drives((blocks, edges): ([usize; 2], Edges), (degrees, epsilon): (f64, f
     assert_same(&slider, None, slider.steps(2.6));
 }
 
-/// All ranks know alike whether the drive stands.
+/// All ranks agree whether the drive stands still.
 #[test_matrix([0.0, 65.0], [false, true])]
 fn held_drives(degrees: f64, has_program: bool) {
     let slider = sliders::held([40, 24], Edges::Free, degrees, has_program);
@@ -208,7 +208,7 @@ fn held_drives(degrees: f64, has_program: bool) {
     assert_goes_on(&slider, &|_, _| ());
 }
 
-/// All ranks know alike that the residual force is next to nothing.
+/// All ranks agree that the residual force is negligible.
 #[test]
 fn creep_under_a_held_drive() {
     let slider = sliders::creeping();
@@ -222,7 +222,7 @@ fn a_state_in_motion(edges: [Edges; 2], epsilon: f64) {
     assert_same(&slider, Some(&from), 200);
 }
 
-/// All ranks name the block that one rank names: in a lattice whose blocks move alike, the first.
+/// All ranks name the same block as one rank: where all blocks move equally, the first.
 #[test_case(Slider { dt_star: 4.0, ..Slider::default() }.uniform(); "alike")]
 #[test_case(Slider { dt_star: 1.0, ..Slider::default() }; "apart")]
 fn a_run_that_diverges_says_the_same(slider: Slider) {
@@ -295,7 +295,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(v_star: f64) {
     assert_goes_on(&slider, &|_, _| ());
 }
 
-/// Asserts that runs go on with one number of ranks after the other, from the columns of all ranks before.
+/// Asserts that runs continue on one number of ranks after the other, from the columns of all ranks before.
 pub(crate) fn assert_goes_on(slider: &Slider, change: &Change) {
     let steps = slider.steps(4.0);
     let model = with(slider.model(), change, &Alone);

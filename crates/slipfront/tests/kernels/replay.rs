@@ -1,4 +1,4 @@
-//! A run whose steps a device has recorded is the run of the fused kernel, to the last bit.
+//! A run with steps that a device has recorded equals the run of the fused kernel, to the last bit.
 
 use slipfront::communicator::Alone;
 use slipfront::device::{Device, DeviceLattice, EnergySteps};
@@ -22,12 +22,12 @@ fn lattice(model: &Model, dt_star: f64, from: Option<&State>) -> DeviceLattice {
     DeviceLattice::new(model.clone(), dt_star, from, EVERY).unwrap()
 }
 
-/// Takes a lattice through some steps.
+/// Advances a lattice by some steps.
 fn record(lattice: &mut DeviceLattice, steps: u32) {
     FusedDevice.run(&mut [lattice], steps).unwrap();
 }
 
-/// Recorded in parts of so many steps; a number of steps of 16 is that between two measurements.
+/// Recorded in parts; 16 steps are the interval between two measurements.
 #[test_matrix(
     [Edges::Free, Edges::Periodic],
     [None, Some(cavity([17, 12], 10.0, 1, 0.3, true))],
@@ -79,7 +79,7 @@ fn a_replay_has_the_same_bits(edges: Edges, texture: Option<Texture>, epsilon: f
 }
 
 /// Several lattices at once, of different shapes, up to their onsets, which come at different steps: the
-/// device goes beyond some of them.
+/// device goes beyond the onset of some of them.
 #[test]
 fn several_lattices_stop_each_at_its_onset() {
     let sliders: Vec<_> = (1..6_u64)
@@ -140,7 +140,7 @@ fn a_replay_ends_with_what_is_recorded() {
     replayed.step();
 }
 
-/// Models with anything that the equations of a device lack are refused.
+/// Models with anything that the equations of a device do not cover are refused.
 #[test]
 fn models_that_are_not_plain_are_refused() {
     let plain = || Slider {

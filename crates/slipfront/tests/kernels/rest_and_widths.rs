@@ -1,4 +1,4 @@
-//! The fused kernel by itself: vector widths, the bound on strains, and which vectors are skipped.
+//! The fused kernel on its own: vector widths, the bound on strains, and which vectors are skipped.
 
 use proptest::prelude::*;
 use slipfront::lattice::Bond;
@@ -8,7 +8,8 @@ use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, State, Surf
 
 use crate::stacks::{SHEETS, springs};
 
-/// Steps between two measurements of displacements and their differences; in between they are bounded.
+/// Number of steps between two measurements of displacements and their differences; in between, bounds are
+/// used.
 const MEASUREMENT_INTERVAL: u64 = 16;
 
 fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
@@ -84,7 +85,7 @@ fn every_vector_width_gives_the_same_bits() {
     }
 }
 
-/// The bounds on displacements and their differences are never too small, and too large by at most three
+/// The bounds on displacements and their differences are never too small. They are too large by at most three
 /// times the distance that the fastest block, at a speed below 1.5, moves between two measurements.
 #[test]
 fn displacements_are_bounded() {
@@ -122,7 +123,7 @@ fn displacements_are_bounded() {
                     (extent[2 * axis + 1], -low),
                     (difference[axis], kernel.difference_bound(axis)),
                 ] {
-                    // Displacements of up to 20 round by 4e-15.
+                    // Displacements of up to 20 have rounding errors of 4e-15.
                     let over = bound - exact + 1e-13;
                     let largest = 3.0 * 1.5 * 0.2 * MEASUREMENT_INTERVAL as f64;
                     assert!((0.0..largest).contains(&over), "{exact}, bound {bound}");

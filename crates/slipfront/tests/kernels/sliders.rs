@@ -1,4 +1,4 @@
-//! The sliders whose runs have the same bits, however they are executed.
+//! Sliders with runs that must have the same bits in every way to execute them.
 
 use std::sync::Arc;
 
@@ -20,7 +20,8 @@ pub(crate) fn shaped(blocks: [usize; 2], edges: [Edges; 2]) -> Slider {
     }
 }
 
-/// Textured blocks are seldom at rest; strains may need either series or the square root.
+/// A slider with textured blocks, which are rarely at rest; strains may need either series or the square
+/// root.
 pub(crate) fn textured(texture: Option<Texture>, epsilon: f64) -> Slider {
     Slider {
         blocks: [40, 40],
@@ -33,7 +34,7 @@ pub(crate) fn textured(texture: Option<Texture>, epsilon: f64) -> Slider {
     }
 }
 
-/// Between slips the whole slider is at rest, and during a slip most blocks are.
+/// A slider that is wholly at rest between slips, and mostly during a slip.
 pub(crate) fn slow(blocks: [usize; 2], edges: Edges, degrees: f64, epsilon: f64) -> Slider {
     Slider {
         blocks,
@@ -47,7 +48,7 @@ pub(crate) fn slow(blocks: [usize; 2], edges: Edges, degrees: f64, epsilon: f64)
     }
 }
 
-/// Under a drive that stands while blocks slip; with a program it goes back and forth.
+/// A slider with a drive that stands still while blocks slip; with a program the drive moves back and forth.
 pub(crate) fn held(blocks: [usize; 2], edges: Edges, degrees: f64, has_program: bool) -> Slider {
     let program = || Program::new([(0.06, 40.0), (-0.03, 60.0), (0.1, f64::INFINITY)]);
     Slider {
@@ -58,8 +59,8 @@ pub(crate) fn held(blocks: [usize; 2], edges: Edges, degrees: f64, has_program: 
     }
 }
 
-/// Under a held drive and with strong damping, blocks whose strength falls with slip and whose slip is
-/// stable: they creep for ever, so that the drive moves on by the residual force.
+/// Under a held drive and with strong damping, blocks with strength that falls with slip but with stable
+/// slip: they creep forever, so that the residual force decides when the drive moves on.
 pub(crate) fn creeping() -> Slider {
     Slider {
         blocks: [12, 10],
@@ -75,7 +76,7 @@ pub(crate) fn creeping() -> Slider {
     }
 }
 
-/// Blocks that are displaced at the start, a few of them with a velocity.
+/// Blocks displaced at the start, a few of them with a velocity.
 pub(crate) fn in_motion(edges: [Edges; 2], epsilon: f64) -> (Slider, State) {
     let slider = Slider {
         blocks: [17, 90],

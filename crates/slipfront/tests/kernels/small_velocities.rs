@@ -1,5 +1,5 @@
-//! Velocities so small that their squares would be subnormal numbers are zero, in both kernels and however
-//! they are executed.
+//! Velocities so small that their squares would be subnormal numbers are zero, in both kernels and in every
+//! way to execute them.
 
 use slipfront::surface::Orientation;
 use slipfront::testing::FusedKernel;
@@ -12,16 +12,17 @@ use crate::{executions, fused, general, ranks};
 /// Least component of a velocity, 2^-480: no smaller one but zero occurs.
 const SMALLEST: f64 = 3.203_806_5e-145;
 
-/// Steps in which a wave from an edge comes further into the groove than numbers reach.
+/// Number of steps in which a wave from an edge travels so far into the groove that its velocities would
+/// underflow.
 const STEPS: u64 = 130;
 
-/// A wide groove, whose blocks swing on their drive springs: waves run into it from its edges and from the
-/// corners of the slider; only the corners move blocks across the drive.
+/// A wide groove with blocks that oscillate on their drive springs: waves run into it from its edges and from
+/// the corners of the slider; only the corners move blocks across the drive.
 fn grooved(degrees: f64) -> Slider {
     Slider {
         blocks: [280, 12],
         textures: vec![groove(Orientation::Across, 240.0)],
-        // So fast that the blocks at its edges slip before the wave is through.
+        // So fast that the blocks at its edges slip before the wave has crossed it.
         v_star: 1.0,
         degrees,
         ..Slider::default()
@@ -43,7 +44,7 @@ fn no_velocity_is_subnormal(execution: Execution) {
         let displacement = state.displacement.y.iter().filter(|u| **u != 0.0);
         displacement.for_each(|u| assert!(u.abs() >= 1e-4 * SMALLEST, "{u:e}"));
     }
-    // The front has come to the bound, and not beyond: without it, to 1e-308.
+    // The front has reached the bound, but no smaller values; without the bound it would reach 1e-308.
     assert!((SMALLEST..1e3 * SMALLEST).contains(&least), "{least:e}");
 }
 

@@ -38,7 +38,7 @@ fn stack(slider: &Slider, n_sheets: usize) -> Model {
     model
 }
 
-/// Steps until the lowest sheet slips: it is loaded more slowly than a single one.
+/// Number of steps until the lowest sheet slips: it is loaded more slowly than a single sheet.
 fn steps(slider: &Slider) -> u64 {
     slider.steps(9.0)
 }
@@ -66,7 +66,7 @@ fn the_kernels_agree(n_sheets: usize, edges: [Edges; 2]) {
     }
 }
 
-/// Strains for which spring forces come from either series and the square root.
+/// Strains for which spring forces are computed from either series and the square root.
 #[test_matrix(
     [1e-6, 1e-3, 1e-2],
     [0.0, 0.5],
@@ -86,7 +86,7 @@ fn the_kernels_agree_at_any_strain(epsilon: f64, omega_star: f64, texture: Optio
     against_general::assert_same(&stack(&slider, 2), slider.dt_star, Some(&from), 100);
 }
 
-/// Thresholds that change have a sweep of their own.
+/// A slider with thresholds that change, which need a separate sweep.
 fn changing(law: usize) -> Slider {
     let slider = Slider {
         blocks: [40, 24],
@@ -141,7 +141,7 @@ fn the_same_bits_over_threads(n_sheets: usize, edges: [Edges; 2]) {
     assert_same_bits(&stack(&slider, n_sheets), slider.dt_star, Some(&from), 100);
 }
 
-/// The drive stands while blocks slip, and the sheets above swing on.
+/// The drive stands still while blocks slip, and the sheets above keep oscillating.
 #[test_matrix([false, true])]
 fn held_drives(has_program: bool) {
     let slider = sliders::held([40, 24], Edges::Free, 25.0, has_program);
@@ -163,7 +163,7 @@ fn the_same_bits_over_ranks(n_sheets: usize, edges: [Edges; 2]) {
                 *model = model.clone().with_sheets(SHEETS[..n_sheets].to_vec(), springs());
             };
             assert_same_with(&slider, &change, None, steps(&slider));
-            // Each of its seven ranks has a row.
+            // Each of the seven ranks has a row.
             if blocks[1] > 7 {
                 assert_goes_on(&slider, &change);
             }
@@ -171,7 +171,7 @@ fn the_same_bits_over_ranks(n_sheets: usize, edges: [Edges; 2]) {
     }
 }
 
-/// Fields of the lowest sheet, in which the pull of the sheet above has the place of the drive.
+/// Fields of the lowest sheet, where the pull of the sheet above replaces the drive.
 #[test_matrix([[Edges::Free; 2], [Edges::Periodic; 2]], [1e-6, 1e-2])]
 fn fields_are_those_of_single_blocks(edges: [Edges; 2], epsilon: f64) {
     let slider = Slider {
@@ -190,14 +190,14 @@ fn fields_are_those_of_single_blocks(edges: [Edges; 2], epsilon: f64) {
     }
 }
 
-/// A sheet above that diverges first ends the run as one in friction does.
+/// A sheet above that diverges first ends the run in the same way as the sheet in friction.
 #[test]
 fn a_stack_that_diverges_ends_the_run() {
     let slider = Slider {
         blocks: [12, 9],
         ..Slider::default()
     };
-    // Springs to a light sheet, which alone swings too fast for the step.
+    // Springs to a light sheet, which alone oscillates too fast for the step.
     let light = Sheet {
         thickness: 0.1,
         coupling: 2.0,

@@ -1,5 +1,5 @@
 //! Heterogeneous sliders, dead loads, kinetic friction that weakens and drives by a program on the fused
-//! kernel: it agrees with the general kernel to rounding, and has the same bits however it is executed.
+//! kernel: it agrees with the general kernel to rounding, and has the same bits in every way to execute it.
 
 use std::sync::Arc;
 
@@ -13,20 +13,20 @@ use crate::{against_general, executions, ranks, sliders};
 /// A departure from the paper's slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Variety {
-    /// Drive springs at the left edge alone.
+    /// Drive springs only at the left edge.
     EdgeDrive,
     /// Moduli and densities, and drive springs as stiff as their blocks.
     Grading,
     /// One block in nine does not exist.
     Outline,
     Weakening,
-    /// Strength falls with slip, and comes back at rest or not.
+    /// Strength falls with slip, and either recovers at rest or not.
     SlipWeakening {
         heals: bool,
     },
-    /// A program with a stop and a way back.
+    /// A program with a stop and a return.
     Program,
-    /// A dead load that is alike, or differs from block to block.
+    /// A dead load that is uniform, or differs from block to block.
     Load {
         differs: bool,
     },
@@ -51,7 +51,7 @@ fn with(slider: Slider, options: &[Variety]) -> Slider {
             Variety::Outline => {
                 let exists = (0..nx * ny).map(|b| b * b % 9 != 4).collect();
                 slider.body.outline = Some(Outline::new(exists, &Alone));
-                // Blocks outside have no drive springs.
+                // Blocks outside the outline have no drive springs.
                 let relative = (0..nx * ny).map(|b| slider.body.drive_spring(b)).collect();
                 slider.body.drive_springs = Some(DriveSprings::new(relative, &Alone));
             }

@@ -20,7 +20,7 @@ const LAW: Ageing = Ageing {
 };
 const V: f64 = 0.03;
 
-/// Nine blocks that move as one.
+/// Nine blocks that move as a rigid body.
 fn model(law: Ageing, damping: f64, segments: &[(f64, f64)], adhesion: Adhesion) -> Model {
     let lattice = Lattice::free(3, 3);
     let coefficients = Coefficients::given(vec![1.0 - adhesion.of_static; 9], vec![0.5; 9]);
@@ -47,7 +47,7 @@ fn model(law: Ageing, damping: f64, segments: &[(f64, f64)], adhesion: Adhesion)
     Model::new(lattice, surface, drive, damping, 0.0, friction)
 }
 
-/// Steps until all blocks begin to slide, and gives the time.
+/// Steps until all blocks begin to slide, and returns the time.
 fn next_slip(simulation: &mut Simulation) -> f64 {
     loop {
         simulation.step();
@@ -65,7 +65,7 @@ fn advance_to(simulation: &mut Simulation, time_star: f64) {
     }
 }
 
-/// Nothing moves before, so that the time is exact but for being seen up to a step late.
+/// Nothing moves before, so that the time is exact, except that it is seen up to a step late.
 #[test_matrix([0.0, 0.05, 0.15])]
 fn the_time_to_the_first_slip_counts_in_the_age(beta: f64) {
     let law = Ageing { beta, ..LAW };
@@ -94,9 +94,9 @@ fn adhesion_does_not_age() {
     assert!(-1e-9 < late && late < 0.1 + 1e-9, "late by {late}");
 }
 
-/// The age counts from the stop of the block, which lies after that of the drive. A stop is placed to first
-/// order in the step: its time within a step, the pull there within k V of that, and so the next slip within
-/// two steps and the step in which it is seen.
+/// The age counts from the stop of the block, which comes after the stop of the drive. The stop is located to
+/// first order in the step: its time to within a step, and the pull there to within k V times a step. So the
+/// next slip is found to within two steps, plus the step in which it is seen.
 #[test_matrix([0.3, 0.6, 1.2], [0.05, 0.01])]
 fn after_steady_sliding_age_counts_from_the_stop(omega_star: f64, dt: f64) {
     let damping = scales::damping(omega_star);

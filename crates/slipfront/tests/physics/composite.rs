@@ -12,8 +12,8 @@ const V_STAR: f64 = 0.005;
 const OMEGA_STAR: f64 = 1.5;
 const DT_STAR: f64 = 0.1;
 
-/// 10 x 10 blocks, of which the first `weak` rows have `mu_1`, the others `mu_2`; apart from each other, so
-/// that nothing joins them, or not.
+/// A slider of 10 x 10 blocks. The first `weak` rows have `mu_1`, the others `mu_2`; `apart`: blocks are not
+/// joined by springs.
 fn model(weak: usize, [mu_1, mu_2]: [f64; 2], r_star: f64, apart: bool) -> Model {
     let step = if apart { 2 } else { 1 };
     let size = 10 * step;
@@ -40,8 +40,8 @@ fn largest(model: &Model) -> f64 {
     simulation.peak().largest.mu_star
 }
 
-/// The drag of the zone that slides already adds at most f Omega V*, and a slip is seen at most the pull of
-/// one step late.
+/// The drag of the zone that slides already adds at most f Omega V*, and a slip is seen late by at most the
+/// increase of the pull in one step.
 #[test_matrix([2, 5, 8], [[0.5, 1.0], [0.8, 1.0], [0.3, 1.5]], [0.2, 0.6])]
 fn the_largest_friction_of_zones_apart(weak: usize, mu: [f64; 2], r_star: f64) {
     let f = weak as f64 / 10.0;
@@ -54,7 +54,7 @@ fn the_largest_friction_of_zones_apart(weak: usize, mu: [f64; 2], r_star: f64) {
     );
 }
 
-/// The thresholds of both zones at once are a bound that no slider reaches, however its blocks are joined.
+/// The sum of the thresholds of both zones is a bound that no slider reaches, joined or not.
 #[test_matrix([false, true])]
 fn no_slider_has_both_thresholds_at_once(apart: bool) {
     let (mu, r_star) = ([0.5, 1.0], 0.5);

@@ -13,7 +13,7 @@ use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, cavity};
 
-/// Blocks whose thresholds are spread evenly over 1 - w to 1 + w, in an order without a pattern.
+/// Blocks with thresholds distributed uniformly from 1 - w to 1 + w, in an order without a pattern.
 fn spread(w: f64, law: ContactSprings, damping: f64, v_star: f64) -> Model {
     let lattice = Lattice::free(20, 20);
     let n = lattice.n_blocks();
@@ -34,7 +34,7 @@ fn spread(w: f64, law: ContactSprings, damping: f64, v_star: f64) -> Model {
     )
 }
 
-/// Springs that slide pull with half the mean of their thresholds.
+/// In steady sliding, springs that form again pull with half the mean of their thresholds on average.
 #[test_matrix([0.05, 0.1, 0.2], [None, Some(5)])]
 fn the_level_of_sliding_is_half_the_mean_threshold(w: f64, redraw: Option<u64>) {
     let stiffness = 1e-3 * K_DRIVE;
@@ -51,9 +51,9 @@ fn the_level_of_sliding_is_half_the_mean_threshold(w: f64, redraw: Option<u64>) 
     assert!((model.steady_level(&Alone) - (0.5 + damping * v_star)).abs() < 1e-12);
 }
 
-/// Until the first spring breaks the slider moves as one against all of them: k_t u = k_t k_s V t/(k_t + k_s)
-/// in equilibrium, about which it swings by the jerk of the start, at most V/w_0 with w_0^2 = k_s + k_t; the
-/// step adds V dt.
+/// Until the first spring breaks the slider moves as a rigid body against all springs: k_t u = k_t k_s V
+/// t/(k_t + k_s) in equilibrium. It oscillates about this by at most V/w_0 with w_0^2 = k_s + k_t, because of
+/// the sudden start; the step adds V dt.
 #[test]
 fn the_weakest_spring_breaks_first() {
     let law = ContactSprings {
@@ -72,20 +72,19 @@ fn the_weakest_spring_breaks_first() {
         "{off}"
     );
     assert_eq!(simulation.snapshot().earliest_first_slip(), Some(found));
-    // Which block it was is known: the one of the least threshold.
+    // The first block to slip is the one with the least threshold.
     let weakest = (0..400).min_by(|&a, &b| model.surface.mu_static[a].total_cmp(&model.surface.mu_static[b]));
     assert!(!simulation.snapshot().first_slip_time_star()[weakest.unwrap()].is_nan());
 }
 
-/// Stiffness of the springs in contact where blocks slide after they break.
+/// Contact springs under which blocks slide after their springs have broken.
 const SLIDING: ContactSprings = ContactSprings {
     stiffness: 0.4,
     after_break: AfterBreak::Slides,
 };
 
-/// Position of one block that is pulled from rest, piece by piece: held by `k_t` and the drive spring `k`,
-/// sliding at `mu_k` on the drive spring alone from the extension 1/k_t on, and held again from where it
-/// stops.
+/// Position of one block that is pulled from rest, in three pieces: held by `k_t` and the drive spring `k`,
+/// sliding at `mu_k` on the drive spring alone from the extension 1/k_t on, and held again from the stop on.
 struct Piecewise {
     mu_k: f64,
     v_star: f64,
@@ -123,7 +122,7 @@ impl Piecewise {
         low
     }
 
-    /// Times of the break and of the stop, and the position at a time after it.
+    /// Times of the break and of the stop, and the position at a time after the stop.
     fn solve(&self, after_stop: f64) -> [f64; 3] {
         let k_t = SLIDING.stiffness;
         let held = self.motion([0.0; 3], k_t, 0.0, 0.0);
@@ -137,10 +136,10 @@ impl Piecewise {
     }
 }
 
-/// One block against the exact solution, through hold, slide and hold. A break and a stop are noted up to a
-/// step late, when the force is off by 1 - mu_k at most, so that the speed then is off by (1 - mu_k) dt, and
-/// the position, which swings with the frequency sqrt(k + k_t), by that over the frequency, for each of the
-/// two.
+/// Compares one block with the exact solution, through hold, slide and hold. A break and a stop are detected
+/// up to a step late. The force is wrong by at most 1 - mu_k then, so that the error of the speed is
+/// (1 - mu_k) dt. The error of the position, which oscillates with the frequency sqrt(k + k_t), is this over
+/// the frequency, for each of the two events.
 #[test_matrix([0.05, 0.005])]
 fn one_block_slides_and_is_held_again(dt_star: f64) {
     let exact = Piecewise {
@@ -176,7 +175,7 @@ fn one_block_slides_and_is_held_again(dt_star: f64) {
     assert!((found - position).abs() < bound, "{found} {position} {bound}");
 }
 
-/// A rigid slider that moves at V slides at the mean kinetic friction plus Omega V, whatever the stiffness.
+/// A rigid slider that moves at V slides at the mean kinetic friction plus Omega V, at any stiffness.
 #[test]
 fn a_slider_that_slides_pulls_with_its_kinetic_friction() {
     let mut model = spread(0.1, SLIDING, scales::damping(0.5), 0.5);
@@ -192,14 +191,14 @@ fn a_slider_that_slides_pulls_with_its_kinetic_friction() {
     simulation
         .run(until, &mut [Scheduled::always(&mut curve)])
         .unwrap();
-    // Blocks swing about it with less and less: by exp(-Omega t/2) of the first peak, below 1e-12 of it here.
+    // The oscillation about it decays as exp(-Omega t/2), here to below 1e-12 of the first peak.
     let found = curve.rows.last().unwrap().point.mu_star;
     assert!((found - level).abs() < 1e-9, "{found} {level}");
     assert_eq!(simulation.snapshot().totals.n_slipping, 400);
 }
 
-/// A kinetic friction above the static one is the force at which a spring yields (D12): it breaks where it
-/// then slides on, and no energy is lost with it.
+/// A kinetic friction above the static friction is the force at which a spring yields (D12): the block then
+/// slides at the same force, and no energy is lost with the spring.
 #[test]
 fn a_kinetic_friction_above_the_static_one_holds() {
     let lattice = Lattice::free(1, 1);
@@ -215,19 +214,19 @@ fn a_kinetic_friction_above_the_static_one_holds() {
     simulation
         .run(until, &mut [Scheduled::always(&mut curve)])
         .unwrap();
-    // It lags by the drag and swings by V/w at most.
+    // The block lags by the drag and oscillates by at most V/w.
     let first = simulation.snapshot().earliest_first_slip().unwrap();
     assert!(
         (first - expected).abs() < delay * (0.1 + 1.0) / K_DRIVE,
         "{first} {expected}"
     );
     let energies = curve.rows.last().unwrap().energies;
-    // The overshoot of a step, over which the extension grows by V dt at most.
+    // The overshoot of a step, in which the extension grows by at most V dt.
     assert!((0.0..1.2 * 2e-3 * 0.1).contains(&energies.broken_springs_loss));
 }
 
-/// Springs in contact delay first slip and onset by (k_s + k_t)/k_t, in a rotation at every radius; where the
-/// drive springs differ the slider is bent, and the first slip is not known.
+/// Contact springs delay first slip and onset by (k_s + k_t)/k_t, in a rotation at every radius. If the drive
+/// springs differ the slider bends, and the first slip is not known.
 #[test]
 fn first_slip_and_onset_are_delayed_alike() {
     let rigid = spread(0.1, SLIDING, 0.0, 0.01);
@@ -251,7 +250,7 @@ fn first_slip_and_onset_are_delayed_alike() {
     assert_eq!(rigid.with_slider(slider).first_slip_estimate(&Alone), None);
 }
 
-/// Springs hold a dead load below their thresholds where they are: no block moves.
+/// Springs hold a dead load below their thresholds: no block moves.
 #[test_matrix([AfterBreak::Slides, AfterBreak::FormsAgain { redraw: None }])]
 fn springs_hold_a_dead_load(after_break: AfterBreak) {
     let law = ContactSprings {
@@ -264,7 +263,8 @@ fn springs_hold_a_dead_load(after_break: AfterBreak) {
         simulation.step();
     }
     let state = simulation.state();
-    // The load over the stiffness and the stiffness times that differ by some last places.
+    // The load over the stiffness, times the stiffness, differs from the load by some units in the last
+    // place.
     assert!(
         state
             .displacement
@@ -275,9 +275,9 @@ fn springs_hold_a_dead_load(after_break: AfterBreak) {
     );
 }
 
-/// The whole energy is found again: stored, lost to damping, to friction of blocks that slide, or with the
-/// springs that broke, which is threshold^2/(2 k_t) of each up to the overshoot of a step, less what is left.
-/// The error falls with the square of the step.
+/// All energy is accounted for: stored, lost to damping, to friction of blocks that slide, or with the
+/// springs that broke. Each of these loses threshold^2/(2 k_t), less the energy that is left, except for the
+/// overshoot of a step. The error is proportional to the square of the step.
 #[test_matrix([AfterBreak::Slides, AfterBreak::FormsAgain { redraw: Some(1) }])]
 fn the_balance_of_energy_closes(after_break: AfterBreak) {
     let error = |dt: f64| {

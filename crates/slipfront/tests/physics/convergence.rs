@@ -30,7 +30,7 @@ fn assert_order(steps: &[f64], errors: &[f64], expected: f64, tolerance: f64) {
 }
 
 /// Displacement and velocity at `time`, the velocity as the mean of the half steps around it, of a lattice
-/// without friction that starts from rest, bent.
+/// without friction that starts at rest from a bent shape.
 fn smooth_motion(model: &Model, time: f64, steps: u32) -> (VectorField, VectorField) {
     let dt = time / f64::from(steps);
     let n = model.lattice.n_blocks();
@@ -39,7 +39,7 @@ fn smooth_motion(model: &Model, time: f64, steps: u32) -> (VectorField, VectorFi
         x: wave(0.37, 0.2),
         y: wave(0.91, 1.4),
     };
-    // At rest at t = 0: half a step earlier the velocity is minus that of half a step later.
+    // At rest at t = 0: the velocity half a step before is minus the velocity half a step after.
     let state = |velocity| State {
         displacement: bent.clone(),
         velocity,
@@ -105,7 +105,7 @@ fn smooth_motion_is_of_second_order(omega_star: f64, epsilon: f64) {
     assert_order(&steps, &runs.each_ref().map(|run| distance(&run.1, &v)), 2.0, 0.1);
 }
 
-/// Steps in which one block starts and stops its first slip.
+/// Numbers of the steps in which one block starts and stops its first slip.
 fn first_slip(v_star: f64, dt_star: f64) -> (u64, u64) {
     let slider = Slider {
         blocks: [1, 1],
@@ -129,9 +129,9 @@ fn first_slip(v_star: f64, dt_star: f64) -> (u64, u64) {
     (start, simulation.snapshot().step)
 }
 
-/// Events fall on steps: their times err in proportion to the step. Averaged over 300 phases of the first
-/// slip against the steps, which slightly different speeds give: a mean of that many is good to 0.6/sqrt(300)
-/// = 3 % of itself.
+/// Events occur at steps, so that the errors of their times are proportional to the step. They are averaged
+/// over 300 phases of the first slip relative to the steps, by slightly different speeds: the error of this
+/// mean is 0.6/sqrt(300) = 3 % of it.
 #[test]
 fn times_of_slip_and_stop_are_of_first_order() {
     let steps = [0.1, 0.05, 0.025, 0.0125, 0.00625];
@@ -178,8 +178,9 @@ fn in_transition(seed: u64, steps: u32) -> VectorField {
 
 const TRANSITION: f64 = 27.0;
 
-/// With friction whole trajectories are of first order, since blocks start and stop on steps. The median over
-/// 24 surfaces: on some of them a slip that just happens with one time step does not happen with another.
+/// With friction whole trajectories are of first order, since blocks start and stop at steps. The median over
+/// 24 surfaces is used: on some of them a slip that just happens with one time step does not happen with
+/// another.
 #[test]
 fn motion_with_friction_is_of_first_order() {
     let counts = [270, 540, 1080, 2160];

@@ -1,4 +1,4 @@
-//! Coefficients that are alike over a length: one physical slider on finer and finer blocks.
+//! Correlated coefficients: one physical slider on finer and finer blocks.
 
 use slipfront::lattice::K_DIAGONAL;
 use slipfront::surface::{Coefficients, CorrelatedField, Distribution, Load};
@@ -12,9 +12,10 @@ const SIGMA: f64 = 0.1;
 /// Method of drawing the coefficients of finer blocks.
 #[derive(Clone, Copy)]
 enum Draw {
-    /// By block, with the spread that means over areas have: in proportion to the blocks along a side.
+    /// By block, with the spread that keeps that of means over areas: in proportion to the number of blocks
+    /// along a side.
     ByBlock,
-    /// Coefficients that are alike over this share of the slider.
+    /// Coefficients correlated over this share of the slider.
     Alike(f64),
 }
 
@@ -52,10 +53,10 @@ fn static_friction(n: usize, draw: Draw, seed: u64) -> f64 {
     simulation.snapshot().peak.mu_star
 }
 
-/// A surface that is alike over a tenth of the slider has a static friction that finer blocks do not change:
-/// means over blocks, springs and weakening are of second order in the size of a block, so that its changes
-/// fall to a quarter. With coefficients drawn by block it goes on changing, although their means over areas
-/// scatter alike on all blocks.
+/// With coefficients correlated over a tenth of the slider, finer blocks do not change static friction: means
+/// over blocks, springs and weakening are of second order in the size of a block, so that its changes fall to
+/// a quarter. With coefficients drawn by block it keeps changing, although their means over areas scatter
+/// equally on all blocks.
 #[test]
 fn static_friction_of_correlated_coefficients_converges() {
     let changes = |draw: Draw| {
@@ -63,8 +64,8 @@ fn static_friction_of_correlated_coefficients_converges() {
         [middle - coarse, fine - middle].map(f64::abs)
     };
     let [alike, by_block] = [Draw::Alike(0.1), Draw::ByBlock].map(changes);
-    // Halfway between the quarter of second order and no convergence.
+    // Halfway between a quarter, for second order, and no convergence.
     assert!(alike[1] < 0.5 * alike[0] && alike[0] < 1e-3, "{alike:?}");
-    // A hundred times the last change of the other.
+    // A hundred times the last change of the correlated case.
     assert!(by_block[1] > by_block[0] && by_block[1] > 0.01, "{by_block:?}");
 }

@@ -1,4 +1,5 @@
-//! Dead loads: what they leave to the drive, how they accelerate, their part of mu* and their work.
+//! Dead loads: how they change the force that the drive must add, the acceleration that they cause, their
+//! contribution to mu*, and their work.
 
 use slipfront::communicator::Alone;
 use slipfront::lattice::K_DRIVE;
@@ -30,7 +31,7 @@ fn first_slips(simulation: &mut Simulation, until_star: f64, dt: f64) -> Vec<f64
     simulation.snapshot().first_slip_time_star()
 }
 
-/// The drive makes up the difference alone: k_s V t = mu_s - F_0. It is seen at the first instant after it.
+/// The drive adds only the difference: k_s V t = mu_s - F_0. The slip is seen at the first instant after it.
 #[test_case(0.0, 0.7)]
 #[test_case(137.0, 0.7)]
 #[test_case(30.0, -0.4; "against the drive")]
@@ -40,7 +41,7 @@ fn a_block_slips_when_drive_and_load_reach_its_threshold(degrees: f64, tau: f64)
     let load = DeadLoad::uniform(along(&model, tau));
     let model = model.with_dead_load(load);
     let exact = (1.0 - tau) / (K_DRIVE * v_star);
-    // Some roundings.
+    // Some rounding errors.
     assert!((model.first_slip_estimate(&Alone).unwrap() / exact - 1.0).abs() < 1e-14);
     let found = first_slips(&mut at_rest(&model, dt), 1.5 * exact, dt)[0];
     assert!(
@@ -49,8 +50,8 @@ fn a_block_slips_when_drive_and_load_reach_its_threshold(degrees: f64, tau: f64)
     );
 }
 
-/// A load across the drive takes part of the threshold as the other leg of a right triangle: 0.6 of 1 leaves
-/// 0.8.
+/// A load across the drive and the pull of the drive are the legs of a right triangle with the threshold as
+/// hypotenuse: 0.6 of 1 leaves 0.8.
 #[test]
 fn a_load_across_the_drive_leaves_the_other_leg() {
     let (v_star, dt) = (0.03, 0.1);
@@ -63,8 +64,9 @@ fn a_load_across_the_drive_leaves_the_other_leg() {
     assert!(found > exact && found <= exact + dt, "{found} {exact}");
 }
 
-/// Blocks far from each other slip one by one in the order of what their loads leave, exactly as each would
-/// alone: nothing has moved near them before. Blocks without drive spring slip at once, or not by themselves.
+/// Blocks far from each other slip one by one in the order of the force that their loads leave, exactly as
+/// each would alone: nothing has moved near them before. Blocks without drive spring slip at once, or never
+/// by themselves.
 #[test]
 fn loads_that_differ_leave_each_block_its_own_pull() {
     let (v_star, dt) = (0.01, 0.05);
@@ -75,13 +77,13 @@ fn loads_that_differ_leave_each_block_its_own_pull() {
     let model = plain.with_dead_load(load);
     let exact = 0.1 / (K_DRIVE * v_star);
     assert!((model.first_slip_estimate(&Alone).unwrap() / exact - 1.0).abs() < 1e-14);
-    // The mean of all loads, of which each is rounded.
+    // The mean of all loads, each of which is rounded.
     assert!((at_rest(&model, dt).snapshot().point.mu_star - 1.65 / 60.0).abs() < 1e-16);
     let found = first_slips(&mut at_rest(&model, dt), exact + 2.0 * dt, dt);
     assert!(found[10] > exact && found[10] <= exact + dt);
     assert!(found.iter().enumerate().all(|(b, time)| b == 10 || time.is_nan()));
 
-    // Pulled at the left end alone, a load beyond the threshold moves its block from the first instant on.
+    // Only the left end is driven. A load beyond the threshold moves its block from the first instant on.
     let lattice = Lattice::free(60, 1);
     let mut body = Slider::default();
     body.attach_edge(&lattice, &(0..1), Edge::Left, &Alone);
@@ -96,9 +98,9 @@ fn loads_that_differ_leave_each_block_its_own_pull() {
     assert!(found[50] == 0.0 && found[10].is_nan(), "{found:?}");
 }
 
-/// Under a load beyond friction a = F_0 - mu_k, and the scheme, whose velocity is 0 half a step before t = 0,
-/// has u_n = a dt^2 n (n + 1)/2 exactly. Load and drive have one sum in mu*, and the load works along all of
-/// the way.
+/// Under a load beyond friction a = F_0 - mu_k. The scheme, with velocity 0 half a step before t = 0, gives
+/// exactly u_n = a dt^2 n (n + 1)/2. mu* contains the sum of load and drive, and the load does work along the
+/// whole path.
 #[test_case(false)]
 #[test_case(true; "given block by block")]
 fn a_block_is_accelerated_by_what_friction_leaves(given: bool) {
@@ -121,18 +123,19 @@ fn a_block_is_accelerated_by_what_friction_leaves(given: bool) {
     let state = simulation.state();
     for b in 0..18 {
         let [x, y] = state.displacement.at(b);
-        // A rounding in each of 500 steps, and of the springs, which are stretched by roundings alone.
+        // A rounding error in each of 500 steps, and of the springs, which only rounding errors stretch.
         assert!((x.hypot(y) / way - 1.0).abs() < 1e-12, "{x} {y} {way}");
     }
     let last = curve.rows.last().unwrap();
     assert!((last.point.mu_star - tau).abs() < 1e-15);
     assert!((last.energies.work / (18.0 * tau * way) - 1.0).abs() < 1e-12);
-    // As for a constant force without friction the scheme keeps the balance in every step, but for the power
-    // of friction at t = 0, where the block has no velocity half a step before.
+    // As for a constant force without friction, the scheme keeps the balance in every step, except for the
+    // power of friction at t = 0, since the block has no velocity half a step before.
     assert!(last.energies.error().abs() < dt * dt, "{}", last.energies.error());
 }
 
-/// The balance closes while blocks slip and stop, as without a load: it falls with the square of the step.
+/// The balance closes while blocks slip and stop, as without a load: its error is proportional to the square
+/// of the step.
 #[test]
 fn the_balance_of_energy_closes_with_a_load_on_a_varied_slider() {
     let error = |dt_star: f64| {
@@ -160,7 +163,7 @@ fn the_balance_of_energy_closes_with_a_load_on_a_varied_slider() {
     assert!(coarse < 1e-3 && fine < 0.2 * coarse, "{coarse:e} {fine:e}");
 }
 
-/// In steady sliding drive springs and load balance friction: mu* is L, whatever the load.
+/// In steady sliding drive springs and load balance friction: mu* is L, for any load.
 #[test]
 fn steady_sliding_takes_the_level_of_sliding_with_any_load() {
     let level = |tau: f64| {
@@ -175,7 +178,7 @@ fn steady_sliding_takes_the_level_of_sliding_with_any_load() {
     };
     for tau in [0.0, 0.3, 0.9] {
         let (found, exact) = level(tau);
-        // The swing after the onset has died away: exp(-Omega t/2) with t* of 200 and more.
+        // The oscillation after the onset has died away: exp(-Omega t/2) with t* of 200 and more.
         assert!((found - exact).abs() < 1e-12, "{tau}: {found} {exact}");
     }
 }

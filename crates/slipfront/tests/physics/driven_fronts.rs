@@ -1,4 +1,4 @@
-//! Slip fronts in a chain whose blocks keep their drive springs, under constant far ends.
+//! Slip fronts in a chain of blocks with drive springs, under constant far ends.
 
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::{DeadLoad, Drive, FrictionLaw, Lattice, Model, State, Stop, Surface};
@@ -9,7 +9,8 @@ use crate::common::from_state;
 const BLOCKS: usize = 200;
 const KINETIC: f64 = 0.5;
 
-/// A chain under the prestress `tau = (F - mu_k)/(mu_s - mu_k)`, with drive springs of `kappa` times its own.
+/// A chain under the prestress `tau = (F - mu_k)/(mu_s - mu_k)`, with drive springs of `kappa` times its own
+/// stiffness.
 fn chain(kappa: f64, tau: f64) -> Model {
     let lattice = Lattice::free(BLOCKS, 1);
     let drive = Drive {
@@ -22,9 +23,9 @@ fn chain(kappa: f64, tau: f64) -> Model {
         .with_dead_load(DeadLoad::uniform(force))
 }
 
-/// A block that slides `s` far is pulled back by its drive spring by `k_s s`: fronts are slower than without,
-/// and under a low prestress slower than sound. No closed form is known. The speeds are those that an
-/// independent integration of the same chain gave, to the digits that they have; a front takes a whole number
+/// The drive spring of a block pulls it back by `k_s s` after a slip of `s`: fronts are slower than without
+/// drive springs, and under a low prestress slower than sound. No closed form is known. The reference speeds
+/// come from an independent integration of the same chain, to all digits given. A front takes a whole number
 /// of steps from block to block, hence half a step more.
 #[test_matrix(
     [
@@ -54,8 +55,8 @@ fn drive_springs_slow_fronts_down((kappa, tau, expected): (f64, f64, f64)) {
     );
 }
 
-/// Without drive springs the same chain has the closed form `v = c/sqrt(1 - tau^2)`, which it approaches as
-/// they soften.
+/// Without drive springs the speed has the closed form `v = c/sqrt(1 - tau^2)`, which the speed of this chain
+/// approaches as they soften.
 #[test_matrix([0.6, 0.8])]
 fn soft_drive_springs_change_little(tau: f64) {
     let speeds = [1e-4, 0.0].map(|kappa| {

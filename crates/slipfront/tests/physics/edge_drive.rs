@@ -7,7 +7,7 @@ use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest};
 
-/// A model whose drive springs, as many as there are at the edge, have this stiffness together.
+/// A model with drive springs on one edge that have this stiffness in total.
 fn driven_at(edge: Edge, slider: &Slider, total: f64) -> Model {
     let lattice = slider.lattice();
     let mut body = slider.body.clone();
@@ -21,7 +21,7 @@ fn driven_at(edge: Edge, slider: &Slider, total: f64) -> Model {
     model
 }
 
-/// Until the first slip only the driven blocks feel the drive: `mu* = K V t/N`, and the first of them slips
+/// Until the first slip the drive acts only on the driven blocks: `mu* = K V t/N`. The first of them slips
 /// when its own spring pulls with its threshold, at most a step late.
 #[test_matrix([Edge::Left, Edge::Right, Edge::Bottom, Edge::Top], [0.5, 30.0])]
 fn the_weakest_driven_block_slips_first(edge: Edge, total: f64) {
@@ -60,8 +60,8 @@ fn the_weakest_driven_block_slips_first(edge: Edge, total: f64) {
     assert_eq!(now.first_slip_time_star()[weakest], now.time_star);
 }
 
-/// Springs on all blocks that are together as stiff as those of an edge load as fast, and the times that
-/// count in the loading are equal to the last bit.
+/// Springs on all blocks load as fast as springs on one edge with the same total stiffness. For the plain
+/// slider the loading speed is V* to the last bit.
 #[test]
 fn waiting_times_are_counted_in_the_speed_of_loading() {
     let slider = Slider::default();
@@ -72,9 +72,9 @@ fn waiting_times_are_counted_in_the_speed_of_loading() {
 }
 
 /// In steady sliding the blocks move with the drive, and mu* is the level of a slider driven everywhere: the
-/// forces on all blocks add up to the same. Overdamped, so that it is reached: alone, the drive springs would
-/// let deviations decay at K/(N Omega), and the slider along its length at (pi/2 n_x)^2 k_1/Omega; both in
-/// series are waited for until what is left is exp(-12).
+/// sum of the forces on all blocks is the same. The motion is overdamped, so that the level is reached:
+/// alone, the drive springs would let deviations decay at K/(N Omega), and the slider along its length at
+/// (pi/2 n_x)^2 k_1/Omega; the test waits until both in series have reduced deviations to exp(-12).
 #[test]
 fn the_level_of_steady_sliding_does_not_depend_on_the_place_of_the_drive() {
     let slider = Slider {
@@ -98,8 +98,8 @@ fn the_level_of_steady_sliding_does_not_depend_on_the_place_of_the_drive() {
     );
 }
 
-/// The work of the drive at an edge is stored or lost. Blocks that stop make the balance fall short with the
-/// square of the step.
+/// The work of the drive at an edge is stored or lost. Because of blocks that stop, the balance falls short,
+/// in proportion to the square of the step.
 #[test]
 fn energy_is_accounted_for() {
     let error = |dt_star: f64| {
@@ -123,8 +123,8 @@ fn energy_is_accounted_for() {
         assert!(energies.work > 1.0 && energies.friction_loss > 0.4 * energies.work);
         energies.error().abs()
     };
-    // The order of the method is two; events at other steps scatter its constant, so that a factor of 8 of
-    // the 16 is asked for.
+    // The order of the method is two. Events at other steps scatter its constant, so that the test requires a
+    // factor of 8 instead of 16.
     let (coarse, fine) = (error(0.1), error(0.025));
     assert!(coarse < 1e-2 && fine < coarse / 8.0, "{coarse:e} {fine:e}");
 }
@@ -138,7 +138,7 @@ fn eventful() -> Slider {
     }
 }
 
-/// A chain under a pressure that differs along it, of which halves and their differences are exact.
+/// A chain under a pressure that varies along it; halves of the pressures and their differences are exact.
 fn chain() -> Slider {
     Slider {
         blocks: [128, 1],
@@ -155,8 +155,8 @@ fn chain() -> Slider {
     }
 }
 
-/// A mirrored slider that is driven at the other edge from the other side is the mirror image, with the same
-/// bits, events included, whether it is pulled or pushed.
+/// A mirrored slider that is driven at the opposite edge in the opposite direction is the mirror image, with
+/// the same bits, including events, whether it is pulled or pushed.
 #[test_case(eventful(), 3.0, [180.0, 0.0], 5000)]
 #[test_case(chain(), 0.242 / 128.0, [0.0, 180.0], 100_000)]
 fn the_mirror_image_of_an_edge_is_the_edge_opposite(
@@ -188,10 +188,10 @@ fn the_mirror_image_of_an_edge_is_the_edge_opposite(
     assert_eq!(left.1.events(), right.1.events());
 }
 
-/// The load of a chain that has been crossed grows no further: at mu_s = 0.7 and mu_k = 0.45 it is never
-/// farther from 0.45 than by the threshold of the last block, what the driven one gains before it slips
-/// again, and what the drive adds while sound goes there and back. `slipfront family` holds the events before
-/// to as much.
+/// The load of a chain that has been crossed grows no further: at mu_s = 0.7 and mu_k = 0.45 its distance
+/// from 0.45 never exceeds the threshold of the last block, plus the gain of the driven block before it slips
+/// again, plus the load that the drive adds while sound travels there and back. `slipfront family` checks the
+/// events before that to the same tolerance.
 #[test_matrix([0.0, 0.833, -0.833])]
 fn a_chain_that_was_crossed_bears_no_more_than_kinetic_friction(slope: f64) {
     let n = 100;
@@ -201,7 +201,7 @@ fn a_chain_that_was_crossed_bears_no_more_than_kinetic_friction(slope: f64) {
         ..chain()
     };
     let model = driven_at(Edge::Left, &slider, 0.242 / n as f64);
-    // Until the springs, at rest, would pull with 1.3 times the kinetic friction of the whole chain.
+    // Until the springs would pull a slider at rest with 1.3 times the kinetic friction of the whole chain.
     let duration = 1.3 * slider.r_star / (0.375 * model.loading_speed());
     let mut simulation = at_rest(&model, slider.dt_star);
     let stop = Stop::at_step((duration / slider.dt_star) as u64);

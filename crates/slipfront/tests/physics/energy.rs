@@ -20,7 +20,7 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
 
 /// Through onset and far beyond. The balance misses the kinetic energy that a block loses in the last step of
 /// a slip, at most (mu_k F_n dt)^2/2 = 5e-5, in slips that dissipate R V T = 1 each: a few 1e-5. It is less
-/// where strong damping lets few blocks stop.
+/// where few blocks stop because of strong damping.
 #[test_case(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5; "baseline")]
 #[test_case(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5; "undamped")]
 #[test_case(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-5; "steady")]
@@ -51,9 +51,9 @@ fn the_ledger_closes(slider: Slider, bound: f64) {
     assert!(worst < bound, "closes to {worst}");
 }
 
-/// While all blocks slide the balance misses what the first step and the present one make of it, and nothing
-/// adds up in between. The bound is for the rounding of 400 steps of sums over 20 blocks, each of some units
-/// of the last place.
+/// While all blocks slide, the balance misses only the errors of the first and the present step, and nothing
+/// accumulates in between. The bound is for the rounding of 400 steps of sums over 20 blocks, each with some
+/// units in the last place.
 #[test]
 fn errors_of_sliding_cancel_between_the_first_step_and_the_present_one() {
     let slider = Slider {
@@ -98,8 +98,8 @@ fn errors_of_sliding_cancel_between_the_first_step_and_the_present_one() {
     assert!(largest > 1e6, "{largest}");
 }
 
-/// Before the first slip all work is in the drive springs: N (1/2) k_s (V t)^2, exact, and equal to the work,
-/// which the trapezoidal rule integrates exactly.
+/// Before the first slip all work is in the drive springs: N (1/2) k_s (V t)^2 exactly. The trapezoidal rule
+/// integrates the work exactly.
 #[test]
 fn before_the_first_slip_all_work_is_in_the_drive_springs() {
     let slider = Slider::default();
@@ -142,7 +142,8 @@ fn losses_of_one_slip(omega_star: f64, v_star: f64) {
     let found = *energies(&model, slider.dt_star, steps, State::at_rest(1))
         .last()
         .unwrap();
-    // The slip starts up to a step late and is longer or shorter by up to k_s V dt/(1 - R) of itself.
+    // The slip starts up to a step late, and its duration differs by a relative error of up to k_s V
+    // dt/(1 - R).
     let tolerance = 2.0 * slider.dt_star;
     let ratio = found.friction_loss / exact.friction_loss();
     assert!((ratio - 1.0).abs() < tolerance, "{ratio}");
@@ -154,8 +155,8 @@ fn losses_of_one_slip(omega_star: f64, v_star: f64) {
     }
 }
 
-/// A block with friction alone moves by v^2/(2 mu_k) and loses all of (1/2) v^2 to friction; one with damping
-/// alone moves by v/Omega and loses (1/2) v^2 to damping.
+/// A block with friction alone moves by v^2/(2 mu_k) and loses all of (1/2) v^2 to friction; a block with
+/// damping alone moves by v/Omega and loses (1/2) v^2 to damping.
 #[test_case(0.5, 0.0; "friction")]
 #[test_case(0.0, 0.4; "damping")]
 fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64) {
@@ -192,7 +193,8 @@ fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64)
     } else {
         (1.0 / (2.0 * kinetic), last.friction_loss, last.damping_loss)
     };
-    // The velocity is given half a step before t = 0: v dt/2 of displacement, and the loss over it.
+    // The velocity is given half a step before t = 0: this adds v dt/2 to the displacement, and the loss over
+    // it.
     assert!((x.hypot(y) - way).abs() < dt, "{} {way}", x.hypot(y));
     assert!((y / x + 4.0 / 3.0).abs() < 1e-12, "it keeps its direction");
     assert!((loss - 0.5).abs() < dt && other == 0.0, "{loss}");
@@ -200,7 +202,7 @@ fn a_thrown_block_loses_all_its_energy_to_the_one_loss(kinetic: f64, omega: f64)
     assert!(last.error().abs() < 1e-6, "{}", last.error());
 }
 
-/// A dead load does work as well, exactly that of its force along the way.
+/// A dead load also does work: exactly its force times the displacement.
 #[test]
 fn a_dead_load_does_work() {
     let lattice = Lattice::free(1, 1);
@@ -219,7 +221,7 @@ fn a_dead_load_does_work() {
     .with_dead_load(DeadLoad::uniform([0.3, 0.4]));
     let dt = 0.01;
     let last = *energies(&model, dt, 1000, State::at_rest(1)).last().unwrap();
-    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: displacement a t^2/2, work 0.5 per displacement,
+    // Uniform acceleration of 0.5 - 0.2 from t = -dt/2 on: displacement a t^2/2, work 0.5 per displacement,
     // 0.2 of it to friction.
     let way = 0.5 * 0.3 * 10.0_f64.powi(2);
     assert!(

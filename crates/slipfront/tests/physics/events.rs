@@ -1,5 +1,5 @@
-//! Events of slip: of one block against the closed form, at an edge against the precursors, and of any slider
-//! against displacements and velocities read block by block.
+//! Slip events: of one block compared with the closed form, at an edge compared with the precursors, and of
+//! any slider compared with displacements and velocities read block by block.
 
 use std::f64::consts::PI;
 
@@ -25,11 +25,11 @@ fn events_of(model: &Model, dt_star: f64, steps: u64) -> Vec<Event> {
 }
 
 /// One block without damping at R* = 1/2 slips from the force 1 to the force 0, by the path of the drive in a
-/// period, V T, at most at the speed `V + sqrt(V^2 + (1 - R)^2/k_s)`, and again after every period.
+/// period, V T, with a speed of at most `V + sqrt(V^2 + (1 - R)^2/k_s)`, and again after every period.
 ///
-/// A slip begins up to a step late, by which the force is up to k_s V dt too large, and stops up to a step
-/// late: the n-th begins late by the steps of those before. The drive goes V dt in a step, and the force of
-/// the next slip differs by as much. The leapfrog is of second order, far below.
+/// A slip begins up to a step late, so that the force is up to k_s V dt too large, and stops up to a step
+/// late: the n-th slip is late by the sum of these steps. The drive moves by V dt in a step, and the force of
+/// the next slip differs accordingly. The error of leapfrog is of second order, far below.
 #[test_matrix([0.03, 0.1], [[1, 1], [7, 5]], [0.0, 77.0])]
 fn slips_of_one_block_are_those_of_the_closed_form(v_star: f64, blocks: [usize; 2], degrees: f64) {
     let dt = 1e-3;
@@ -43,7 +43,7 @@ fn slips_of_one_block_are_those_of_the_closed_form(v_star: f64, blocks: [usize; 
     };
     let (r, k): (f64, f64) = (0.5, 0.375);
     let cycle = SlipCycle::new(0.0, r, v_star);
-    // Into the stick after the fourth slip.
+    // Ends in the stick phase after the fourth slip.
     let end = cycle.onset_time_star() + 3.9 * cycle.period();
     let events = events_of(&slider.model(), dt, (end / dt) as u64);
     assert_eq!(events.len(), 4);
@@ -66,16 +66,16 @@ fn slips_of_one_block_are_those_of_the_closed_form(v_star: f64, blocks: [usize; 
             (slip - v_star * cycle.period()).abs() < 3.0 * v_star * dt,
             "{slip}"
         );
-        // The force at the begin is too large by up to `reach`, and the speed with it, over sqrt(k).
+        // The force at the beginning is too large by up to `reach`, and the speed by this over sqrt(k).
         let faster = event.speed_max - fastest;
         assert!(faster.abs() < 2.0 * reach / k.sqrt() + dt * dt, "{faster}");
         assert_eq!((event.nucleation, event.blocks), ([0, 0], blocks[0] * blocks[1]));
     }
 }
 
-/// A drive that stands while the block slips sees a jump by `2 (1 - R)/k_s` in half a swing, `pi/sqrt(k_s)`;
-/// the events are as far apart on the time of the drive as it takes to load the block again. The force is up
-/// to k_s V dt too large when a slip begins.
+/// While the drive stands still the block jumps by `2 (1 - R)/k_s` in half a period, `pi/sqrt(k_s)`. In the
+/// time of the drive, the interval between events is the time that it takes to load the block again. The
+/// force is up to k_s V dt too large when a slip begins.
 #[test]
 fn slips_under_a_held_drive_are_half_swings() {
     let (v_star, dt, k): (f64, f64, f64) = (0.05, 1e-3, 0.375);
@@ -91,7 +91,7 @@ fn slips_under_a_held_drive_are_half_swings() {
     let events = events_of(&slider.model(), dt, steps);
     assert_eq!(events.len(), 3);
     for (number, event) in events.iter().enumerate() {
-        // The block is loaded from 0 to 1 every time, and half of that is lost.
+        // The block is loaded from 0 to 1 every time, and half of this energy is lost.
         let loads = (number + 1) as f64 / (k * v_star);
         assert!((event.drive_from_star - loads).abs() < 2.0 * (number + 1) as f64 * dt);
         let (until, mu_star) = event.after.unwrap();
@@ -105,7 +105,7 @@ fn slips_under_a_held_drive_are_half_swings() {
         .sum();
     let last = events.last().unwrap();
     let standing = events[0].from_star - events[0].drive_from_star;
-    // Both times are equal up to the first event, and differ by the slips from then on.
+    // Both times are equal up to the first event, and later differ by the duration of the slips.
     assert!(standing.abs() < 1e-9);
     let stood = last.from_star - last.drive_from_star;
     let before_last = slips - (last.after.unwrap().0 - last.from_star);
@@ -125,8 +125,8 @@ fn driven_at_the_left(slider: &Slider, total: f64) -> Model {
     model
 }
 
-/// A chain that is driven at its edge has the events that its precursors have, and slip begins at the driven
-/// block. A precursor of so many blocks that it is the longest so far has slid in each of them.
+/// In a chain driven at its edge the events are those that precursors have, and slip begins at the driven
+/// block. In a precursor that is the longest so far, all its blocks have slid.
 #[test]
 fn at_an_edge_the_events_are_the_precursors() {
     let slider = Slider {
@@ -164,7 +164,7 @@ fn at_an_edge_the_events_are_the_precursors() {
 #[derive(Default)]
 struct ByBlock {
     events: Vec<Event>,
-    /// Displacements at the begin of the event, and the blocks that slide in it.
+    /// Displacements at the beginning of the event, and the blocks that slide in it.
     event: Option<(Vec<[f64; 2]>, Vec<usize>)>,
 }
 
@@ -219,9 +219,9 @@ impl Observer for ByBlock {
     }
 }
 
-/// A rough slider with a cavity, in which blocks slip one after the other: obliquely, in rotation, under a
-/// drive that stands while they slip, and one whose last event goes on when the run ends. Sums of the moment
-/// are rounded differently, all else is equal.
+/// A rough slider with a cavity, in which blocks slip one after the other: driven at an angle, in rotation,
+/// under a held drive, and in a run that ends during its last event. Sums of the moment are rounded
+/// differently; everything else is equal.
 #[test_case(25.0, false, false, 0.004, 6.0)]
 #[test_case(0.0, true, false, 0.004, 6.0)]
 #[test_case(180.0, false, true, 0.05, 4.0)]
@@ -256,7 +256,7 @@ fn what_events_say_is_what_the_blocks_do(degrees: f64, turns: bool, held: bool, 
     let (found, expected) = (events.events(), by_block.events);
     assert_eq!(found.len(), expected.len());
     for (found, expected) in found.iter().zip(&expected) {
-        // Displacements are of the order of V t*, up to 10, and those of a hundred blocks are added.
+        // Displacements are of the order of V t*, up to 10, and a hundred of them are added.
         assert!(
             (found.moment - expected.moment).abs() < 1e-12,
             "{} {}",
@@ -275,8 +275,8 @@ fn what_events_say_is_what_the_blocks_do(degrees: f64, turns: bool, held: bool, 
     );
 }
 
-/// Under rate and state nothing is ever stuck: an event lasts as long as the block is faster than the speed
-/// at which it counts as sliding, and its slip is the path of the block meanwhile.
+/// Under rate and state nothing is ever stuck: an event lasts as long as the block is faster than the slip
+/// speed, and its slip is the path of the block in this time.
 #[test]
 fn under_rate_and_state_an_event_is_what_exceeds_the_slip_speed() {
     let law = RateAndState {

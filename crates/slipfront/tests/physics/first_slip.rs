@@ -19,7 +19,7 @@ fn slipping(model: &Model, dt_star: f64) -> Simulation {
 }
 
 /// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding
-/// of a force and of its threshold moves an instant by 1e-12 at most.
+/// of the force and of the threshold shifts an instant by at most 1e-12.
 fn assert_is_first_instant_after(found: f64, exact: f64, dt_star: f64) {
     let late = found - exact;
     assert!(
@@ -45,7 +45,7 @@ fn the_weakest_block_slips_when_its_drive_spring_reaches_its_threshold(slider: S
     let simulation = slipping(&model, slider.dt_star);
     let earliest = simulation.snapshot().earliest_first_slip().unwrap();
     assert_is_first_instant_after(earliest, exact, slider.dt_star);
-    // The block that slips is the one with the least threshold.
+    // The block that slips has the least threshold.
     let threshold = |b: usize| drawn.mu_static[b].max(drawn.mu_kinetic[b]);
     let weakest = (0..drawn.mu_static.len()).min_by(|&a, &b| threshold(a).total_cmp(&threshold(b)));
     let first = simulation.snapshot().first_slip_time_star();
@@ -73,7 +73,7 @@ fn the_scale_of_coefficients_is_their_static_mean() {
     );
 }
 
-/// D12: a block whose kinetic coefficient exceeds the static one sticks up to the kinetic threshold.
+/// D12: a block with a kinetic coefficient above the static one sticks up to the kinetic threshold.
 #[test]
 fn a_block_holds_up_to_the_larger_of_its_coefficients() {
     let lattice = Lattice::free(1, 1);
@@ -118,10 +118,10 @@ fn friction_balances_all_other_forces_until_then() {
     assert!(now.point.mu_lateral_star.abs() < 1e-15 && now.point.n_sliding == 0);
 }
 
-/// One block of 41 x 41 touches, under its own load alone. The others are free and push it with the force of
-/// their drive springs, so that it slips earlier by [`springs_on_a_lone_block`] than it would by its own. The
-/// drive is slow and damping critical for the slider as a whole: its viscous force, Omega V of the blocks
-/// that move, is 1e-3 of the threshold for each, and a step 1e-3 of the time.
+/// Only one block of 41 x 41 is in contact, under its own load alone. The others are free and push it with
+/// the force of their drive springs, so that it slips earlier by the factor [`springs_on_a_lone_block`]. The
+/// drive is slow and damping critical for the slider as a whole: its viscous force, Omega V of the moving
+/// blocks, is 1e-3 of the threshold for each, and a step 1e-3 of the time.
 #[test]
 fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
     let lattice = Lattice::free(41, 41);
@@ -145,8 +145,8 @@ fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
     assert!((found / exact - 1.0).abs() < 5e-3, "{found}, exactly {exact}");
 }
 
-/// By the formula of the onset: blocks that all touch, few that touch, and blocks whose load was not
-/// redistributed.
+/// Onset by the formula for all blocks in contact, for few blocks in contact, and for blocks without
+/// redistributed load.
 #[test]
 fn an_onset_is_expected_between_that_of_lone_blocks_and_that_of_blocks_by_themselves() {
     let model = Slider::default().model();
@@ -162,8 +162,8 @@ fn an_onset_is_expected_between_that_of_lone_blocks_and_that_of_blocks_by_themse
     assert!((to / (20.0 * usual) - 1.0).abs() < 1e-14);
 }
 
-/// 2.5/V* of a slow drive, a block per t* of a fast one, and the swing on soft springs; springs in contact
-/// share the path of the drive.
+/// The maximum of 2.5/V* for a slow drive, a block per t* for a fast one, and the period on soft springs;
+/// contact springs share the path of the drive.
 #[test]
 fn a_transition_takes_no_longer_than_loading_crossing_or_a_swing() {
     let slow = Slider::default().model();

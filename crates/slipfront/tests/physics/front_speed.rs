@@ -41,8 +41,8 @@ fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
     (first[to] - first[from]) / (to - from) as f64
 }
 
-/// A front that runs steadily takes a whole number of steps from one column to the next, the nearest one to
-/// the exact time: hence half a step, 0.2 to 0.6 % of that time.
+/// A steady front takes a whole number of steps from one column to the next, the nearest to the exact time:
+/// hence half a step, 0.2 to 0.6 % of that time.
 #[test_matrix(
     [0.6, 0.8, 0.9],
     [
@@ -60,10 +60,10 @@ fn a_front_runs_at_its_speed(tau: f64, (rows, direction, stiffness): (usize, [f6
     );
 }
 
-/// The speed of a run, which is found from planes over its first slips. Under a low prestress the front must
-/// be started, by five columns that move at the start, and gathers speed over columns that are the more, the
-/// lower it is; the median leaves them out where the strip is several times as long. The rest is half a step
-/// as above.
+/// The speed of a run, computed from planes through its first slips. Under a low prestress the front must be
+/// started, by five columns that move at the start. It accelerates over the more columns, the lower the
+/// prestress; the strip is several times as long, so that they do not affect the median. The remaining error
+/// is half a step, as above.
 #[test_matrix(
     [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9],
     [
@@ -95,7 +95,7 @@ fn planes_find_the_speed_of_a_front(tau: f64, (rows, direction, stiffness): (usi
     assert_eq!(front.nucleations, [0]);
 }
 
-/// The factors over the speed of long waves that `docs/validation/family.md` gives.
+/// Ratios to the speed of long waves that `docs/validation/family.md` gives.
 #[test_case(0.6, 1.25)]
 #[test_case(0.8, 1.6667)]
 #[test_case(0.9, 2.2942)]

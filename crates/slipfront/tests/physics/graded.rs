@@ -14,7 +14,7 @@ fn graded(stiffness: &[f64], density: &[f64]) -> Slider {
     Slider::new(Some(stiffness.to_vec()), Some(density.to_vec()), None, &Alone)
 }
 
-/// Arrays of ones change no bit, energies, mu* and N* included.
+/// Arrays of ones do not change any bit, including energies, mu* and N*.
 #[test_matrix(
     [[Edges::Free; 2], [Edges::Periodic, Edges::Free]],
     [FrictionLaw::Projection, FrictionLaw::Reversal]
@@ -51,8 +51,8 @@ fn fields_of_ones_change_no_bit(edges: [Edges; 2], law: FrictionLaw) {
     );
 }
 
-/// Moduli, masses and all friction times four, by powers of two: the same motion, to the last bit, as the
-/// plain slider has in the same kernel; mu* is four times as large.
+/// Moduli, masses and all friction times four, a power of two: the same motion, to the last bit, as that of
+/// the plain slider on the same kernel; mu* is four times as large.
 #[test]
 fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
     let plain = common::Slider {
@@ -75,15 +75,15 @@ fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
         other.step();
         assert_eq!(one.state(), other.state(), "step {step}");
         let [one, other] = [&one, &other].map(|simulation| simulation.snapshot().point.mu_star);
-        // The terms of the sums are rounded to quanta that follow their bounds: 2^-51 of displacements of up
-        // to 20.
+        // The terms of the sums are rounded to quanta that follow from their bounds: 2^-51 of displacements
+        // of up to 20.
         assert!((4.0 * one - other).abs() < 1e-13, "step {step}: {one} {other}");
     }
     assert!(one.peak().ended);
 }
 
-/// Nothing moves before the first slip, which is seen at most a step late, and the first block to slip is the
-/// one whose spring is first stretched far enough.
+/// Nothing moves before the first slip, which is seen at most a step late. The first block to slip is the
+/// first with a spring that is stretched far enough.
 #[test_matrix([0.0, 0.05, 0.3])]
 fn the_block_with_the_least_threshold_for_its_spring_slips_first(sigma: f64) {
     let slider = common::Slider {
@@ -111,7 +111,8 @@ fn the_block_with_the_least_threshold_for_its_spring_slips_first(sigma: f64) {
     assert!(!now.first_slip_time_star()[expected].is_nan());
 }
 
-/// Each mode swings at leapfrog's own frequency; rounding accumulates to less than 1e-10 in 2000 steps.
+/// Each mode oscillates at the frequency of leapfrog; rounding errors accumulate to less than 1e-10 in 2000
+/// steps.
 #[test_matrix([[1.0, 0.1], [3.0, 0.5], [0.2, 0.2]], [[1.0, 1.0], [0.5, 4.0]], [0, 1])]
 fn two_blocks_have_the_modes_of_their_moduli_and_masses(
     stiffness: [f64; 2],
@@ -150,8 +151,9 @@ fn two_blocks_have_the_modes_of_their_moduli_and_masses(
     }
 }
 
-/// Steady sliding has mu* = mean(mu_k F_n) + Omega V* mean(m), whatever the stiffness. The slowest motion
-/// left decays at k_s min(E)/(Omega max(m)) = 0.027 at least, so that it is gone to rounding at t* = 1200.
+/// Steady sliding has mu* = mean(mu_k F_n) + Omega V* mean(m), at any stiffness. The slowest remaining motion
+/// decays at a rate of at least k_s min(E)/(Omega max(m)) = 0.027, so that at t* = 1200 only rounding errors
+/// remain.
 #[test_matrix([0.05, 0.1])]
 fn heavier_blocks_raise_the_drag(v_star: f64) {
     let slider = common::Slider {
@@ -182,8 +184,8 @@ fn heavier_blocks_raise_the_drag(v_star: f64) {
     );
 }
 
-/// The balance misses, as for equal blocks, the kinetic energy of the last step of a slip, of the second
-/// order in dt.
+/// As for equal blocks, the balance misses the kinetic energy of the last step of a slip, of second order in
+/// dt.
 #[test]
 fn the_ledger_closes() {
     let slider = common::Slider {

@@ -6,9 +6,9 @@ use slipfront::{Model, State, VectorField};
 
 use crate::common::from_state;
 
-/// Growth rate of a small disturbance of steady sliding of blocks that move as one, from four displacements
-/// from the time `from` on, `apart` from each other. The disturbance is so small that laws are linear to a
-/// millionth, and so large that rounding is less.
+/// Growth rate of a small disturbance of steady sliding of blocks that move as a rigid body, from four
+/// displacements at intervals of `apart` from the time `from` on. The disturbance is so small that laws are
+/// linear to a millionth, and so large that rounding errors are smaller.
 pub(crate) fn growth_of_disturbance(model: &Model, dt: f64, [from, apart]: [f64; 2]) -> f64 {
     let (v, n) = (model.drive.v_star, model.lattice.n_blocks());
     let behind = model.steady_level(&Alone) / model.drive.k_drive;

@@ -1,4 +1,4 @@
-//! A drive that stands while a block in contact slides, compared with results found by hand.
+//! A drive that stands still while a block in contact slides, compared with results found by hand.
 
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, Scheduled};
@@ -39,8 +39,8 @@ fn step_until(simulation: &mut Simulation, slides: bool) {
     }
 }
 
-/// One block jumps where the force of its spring first exceeds the threshold, `k_s X > S`, and slides where
-/// the drive stands to `s = 2 (k_s X - K)/k_s`.
+/// One block jumps when the force of its spring first exceeds the threshold, `k_s X > S`, and slides to
+/// `s = 2 (k_s X - K)/k_s` while the drive stands still.
 #[test_matrix([0.001, 0.03, 1.0], [0.01, 0.1])]
 fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     let model = one_block(v_star, KINETIC);
@@ -48,7 +48,7 @@ fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     step_until(&mut simulation, true);
     let jump = simulation.snapshot();
     let force = |n: u64| K_DRIVE * (v_star * (n as f64 * dt));
-    // The path is a product, so that the step of the jump is known to the last bit.
+    // The path is a product, so that the step of the jump is known exactly.
     let first = (0..).find(|&n| force(n) > STATIC).unwrap();
     assert_eq!((jump.step, jump.drive_steps), (first, first));
     assert_eq!(jump.point.mu_star, force(first));
@@ -62,7 +62,8 @@ fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     assert!(rest.step > first);
     let slip = rest.block(0).displacement[0];
     let expected = 2.0 * (force(first) - KINETIC) / K_DRIVE;
-    // Leapfrog from rest, and a stop between two steps: both of the order of the square of k_s^(1/2) dt.
+    // Errors of leapfrog from rest, and of a stop between two steps: both of the order of the square of
+    // k_s^(1/2) dt.
     assert!(
         (slip / expected - 1.0).abs() < K_DRIVE * dt * dt,
         "{slip} {expected}"
@@ -71,7 +72,7 @@ fn one_block_jumps_while_the_drive_stands(v_star: f64, dt: f64) {
     assert_eq!(simulation.snapshot().drive_steps, first + 1);
 }
 
-/// The path is V dt times the number of steps before which nothing in contact slid; textured blocks slide
+/// The path is V dt times the number of steps before which no block in contact slid; textured blocks slide
 /// from the start and do not count.
 #[test]
 fn the_path_is_a_count_of_steps() {
@@ -105,14 +106,14 @@ fn the_path_is_a_count_of_steps() {
         let path = now.model.drive.path(now.drive_time_star);
         assert_eq!(path, slider.v_star * (moved as f64 * slider.dt_star));
         let n = now.model.n_blocks() as f64;
-        // Of some hundred sums and products.
+        // Rounding of some hundred sums and products.
         let mu_star = K_DRIVE * (path - now.totals.displacement[0] / n);
         assert!((now.point.mu_star - mu_star).abs() < 1e-12);
     }
     assert!(stood > 100, "the drive has hardly stood: {stood} steps");
 }
 
-/// A drive that stands does no work, and the balance of energy closes.
+/// A drive that stands still does no work, and the balance of energy closes.
 #[test]
 fn a_drive_that_stands_does_no_work() {
     let slider = Slider {
@@ -133,12 +134,13 @@ fn a_drive_that_stands_does_no_work() {
         "a row for every step of the drive"
     );
     for pair in rows.windows(2) {
-        // Trapezia over the step in which it moved alone, though many may lie between the rows.
+        // The trapezoidal rule, only over the step in which the drive moved, though many steps may lie
+        // between the rows.
         let work = pair[1].energies.work - pair[0].energies.work;
         if pair[1].step == pair[0].step + 1 {
             let mean = 0.5 * (pair[0].point.mu_star + pair[1].point.mu_star);
             let expected = 256.0 * mean * slider.v_star * slider.dt_star;
-            // Of differences of numbers of the order of the work so far.
+            // Rounding of differences of numbers of the order of the work so far.
             assert!(
                 (work - expected).abs() < 1e-12 * pair[1].energies.work.max(1.0),
                 "{work} {expected}"
@@ -146,11 +148,11 @@ fn a_drive_that_stands_does_no_work() {
         }
     }
     let energies = rows.last().unwrap().energies;
-    // First order in the step where blocks start and stop, as under a constant speed.
+    // The error is of first order in the step where blocks start and stop, as under a constant speed.
     assert!(energies.error().abs() < 5e-3, "{}", energies.error());
 }
 
-/// The peak is the largest mu* until the stated step of the drive, whatever falls before it, and the run that
+/// The peak is the largest mu* until the given step of the drive, whatever falls occur before, and a run that
 /// stops at the onset ends there.
 #[test_matrix([400, 900])]
 fn the_largest_counts(onset_steps: u64) {
@@ -181,11 +183,12 @@ fn the_largest_counts(onset_steps: u64) {
         (onset_steps, reference.snapshot().step)
     );
     assert_eq!(peak.mu_star, largest);
-    // Before the fall there is no peak: mu* has hardly risen to its largest value by the first of the two.
+    // Before the fall there is no peak: the first of the two steps comes just after mu* has risen to its
+    // largest value.
     assert_eq!(peak.ended, onset_steps == 900);
 }
 
-/// A slider with next to no friction swings for ever.
+/// A slider with almost no friction oscillates forever.
 #[test]
 fn what_does_not_come_to_rest_is_an_error() {
     let model = one_block(1.0, 1e-9);
@@ -197,7 +200,7 @@ fn what_does_not_come_to_rest_is_an_error() {
     else {
         panic!("{error}")
     };
-    // A thousand swings of 2 pi/sqrt(k_s).
+    // A thousand periods of 2 pi/sqrt(k_s).
     let swings = 1000.0 * std::f64::consts::TAU / K_DRIVE.sqrt();
     assert_eq!((standing, n_slipping), ((swings / 0.2) as u64 + 1, 1));
     assert!(
@@ -207,9 +210,10 @@ fn what_does_not_come_to_rest_is_an_error() {
     );
 }
 
-/// One block whose strength falls with slip, on a spring that makes its slip stable, with strong damping: it
-/// creeps to where spring and friction are equal, `k_s (X - s) = S - (S - K) s/D_c`, for ever nearer. In the
-/// first stop that does not end the residual force takes the place of rest, and in all later ones.
+/// One block with strength that falls with slip, on a spring that makes its slip stable, with strong damping:
+/// it creeps towards the point at which spring force and friction are equal,
+/// `k_s (X - s) = S - (S - K) s/D_c`, without ever reaching it. In the first stop that does not end, the
+/// criterion of residual force replaces that of exact rest, and in all later ones.
 #[test_matrix([1.0, 2.0, 5.0], [0.1, 0.8])]
 fn creep_comes_to_rest_by_force(omega_star: f64, dt: f64) {
     const LENGTH: f64 = 2.0;
@@ -229,7 +233,7 @@ fn creep_comes_to_rest_by_force(omega_star: f64, dt: f64) {
     .uniform();
     let mut simulation = at_rest(&slider.model(), dt);
     let weakening = (STATIC - KINETIC) / LENGTH;
-    // Where all of the fall is behind it the block is at rest with mu* = K.
+    // When the strength has fallen all the way, the block is at rest with mu* = K.
     let end = (KINETIC + K_DRIVE * LENGTH) / K_DRIVE;
     let (mut moved, mut by_force, mut largest) = (0, 0, 0.0_f64);
     let longest = 1000.0 * std::f64::consts::TAU / K_DRIVE.sqrt() / dt;
@@ -243,7 +247,7 @@ fn creep_comes_to_rest_by_force(omega_star: f64, dt: f64) {
         if path > end {
             break;
         }
-        // The drive has moved in this step, and the block has not answered yet.
+        // The drive has moved in this step, and the block has not responded yet.
         let pull = K_DRIVE * (path - slider.v_star * dt);
         let slip = ((pull - STATIC) / (K_DRIVE - weakening)).max(0.0);
         let error = now.totals.displacement[0] - slip;
@@ -251,13 +255,13 @@ fn creep_comes_to_rest_by_force(omega_star: f64, dt: f64) {
         largest = largest.max(error.abs());
     }
     assert!(by_force > 10, "{by_force} stops end by force");
-    // The force at rest is 1e-4 of the strength at most; a block that is stuck beyond has swung over by
-    // inertia, which is nothing with this damping.
+    // The force at rest is at most 1e-4 of the strength. A block that is stuck farther on has overshot by
+    // inertia, which is negligible with this damping.
     assert!((K_DRIVE - weakening) * largest < 1e-4, "{largest}");
     assert!(simulation.peak().mu_star < STATIC + K_DRIVE * slider.v_star * dt);
 }
 
-/// Steady sliding at the speed of the drive, and its drag, have no part in a held run.
+/// The speed of the drive in steady sliding, and its drag, do not affect a held run.
 #[test]
 fn the_steady_level_has_no_drag() {
     let slider = Slider {
@@ -270,7 +274,7 @@ fn the_steady_level_has_no_drag() {
     let constant = slider.model().steady_level(&alone);
     let held = slider.model().with_loading(Loading::Held { onset_steps: 1 });
     let drag = scales::damping(1.0) * 0.2;
-    // Of the mean of equal numbers.
+    // Rounding of the mean of equal numbers.
     assert!((constant - (0.5 + drag)).abs() < 1e-12 && (held.steady_level(&alone) - 0.5).abs() < 1e-12);
 }
 
@@ -299,11 +303,11 @@ fn reduction(v_star: f64) -> f64 {
 }
 
 /// Slow loading has a limit, 31.8 % for steps of 0.1 and Omega* = 0.1, which an independent program found at
-/// V* = 0.0002. At a constant speed of 0.01 it is 34.7 %.
+/// V* = 0.0002. At a constant speed of 0.01 the reduction is 34.7 %.
 #[test]
 fn the_reduction_by_a_circle_has_a_slow_limit() {
     let found = reduction(0.01);
-    // The load grows by 0.375 V* dt* a step, by which each event is late; 0.3 points are what such events
-    // scatter by.
+    // The load grows by 0.375 V* dt* per step, so that each event is late by up to this; such events scatter
+    // by 0.3 points.
     assert!((found - 31.8).abs() < 0.3, "{found}");
 }

@@ -31,7 +31,7 @@ fn block(drive: Drive, foundation: f64) -> Model {
     Model::new(lattice, surface, drive, 0.0, 0.0, law(foundation))
 }
 
-/// A drive that pulls a block along and away from the substrate (or towards it): it slips when
+/// A drive that pulls a block at an angle, away from the substrate or towards it: the block slips when
 ///
 /// ```text
 /// k_s V t cos(theta) = F_n - K u_y     u_y = k_s V sin(theta)/w^2 (t - sin(w t)/w)     w^2 = k_s + K
@@ -50,13 +50,14 @@ fn a_pull_away_from_the_substrate_lowers_friction(foundation: f64, degrees: f64)
         assert!(simulation.time_star() < 2.0 * expected, "no slip at {expected}");
         simulation.step();
     }
-    // It slips at a step; leapfrog shifts the frequency of the swing by (w dt)^2/24 of itself, hardly.
+    // The slip is seen at a step; leapfrog changes the frequency of the oscillation only by a relative (w
+    // dt)^2/24.
     let found = simulation.time_star();
     assert!(
         found - expected > -1e-2 && found - expected < dt + 1e-2,
         "{found} for {expected}"
     );
-    // The fields show the force that the foundation has lost.
+    // The fields show the normal force that the foundation has lost.
     let block = simulation.snapshot().block(0);
     let lost = block.force_drive[1] - k * (v_star * y * found - block.displacement[1]);
     assert!(
@@ -65,7 +66,7 @@ fn a_pull_away_from_the_substrate_lowers_friction(foundation: f64, degrees: f64)
     );
 }
 
-/// Lifted off, a block slides without friction under its load alone: it falls freely.
+/// A block that is lifted off slides without friction and moves under its load alone: it falls freely.
 #[test]
 fn a_block_that_is_lifted_falls_under_its_load() {
     let drive = Drive {
@@ -87,7 +88,8 @@ fn a_block_that_is_lifted_falls_under_its_load() {
     assert!((state.velocity.x[0] - 0.3).abs() < 1e-6, "{state:?}");
 }
 
-/// A block that swings on its foundation while it slides to and fro gives back what the foundation stores.
+/// A block that oscillates on its foundation while it slides to and fro gives back the energy that the
+/// foundation stores.
 #[test]
 fn the_foundation_is_part_of_the_balance_of_energy() {
     let mut curve = Curve::every(1);
@@ -109,14 +111,14 @@ fn the_foundation_is_part_of_the_balance_of_energy() {
     );
 }
 
-/// Speed of Rayleigh waves over that of shear waves in a sheet of Poisson's ratio 1/3, the root of
+/// Ratio of the speeds of Rayleigh and shear waves in a sheet of Poisson's ratio 1/3, from the root of
 /// `(2 - x)^2 = 4 sqrt(1 - x) sqrt(1 - x/3)` with `x = (c_R/c_S)^2`: that of a Poisson solid.
 const RAYLEIGH: f64 = 0.919_402;
 
-/// Rows that the drive pulls with all their blocks, over a row that friction holds: as it rises slowly, the
-/// springs of the rows above and the shear between rows follow each other in series, and the lowest row slips
-/// when they pull with the threshold. Each row lags by the drag and swings by V/w_0 at most, w_0^2 = k_s, of
-/// which the lowest row feels its own spring and that of the row above; it slips at a step.
+/// The drive pulls all blocks of all rows, and friction holds the lowest row. As the pull rises slowly, the
+/// drive springs of the rows above act in series with the shear stiffness between rows, and the lowest row
+/// slips when they pull with the threshold. Each row lags by the drag and oscillates by at most V/w_0,
+/// w_0^2 = k_s; the lowest row feels its own spring and that of the row above. The slip is seen at a step.
 #[test_matrix([1, 2, 6, 30], [0.0, 60.0, 180.0], [0.0, 0.3])]
 fn the_rows_above_pull_the_lowest(rows: usize, degrees: f64, dead_load: f64) {
     let (v_star, dt, damping) = (1e-3, 0.2, 0.1);
@@ -150,7 +152,7 @@ fn the_rows_above_pull_the_lowest(rows: usize, degrees: f64, dead_load: f64) {
         simulation.time_star()
     );
     assert!(!model.slips_at_once(0));
-    // Friction along x takes its part of a pull at an angle.
+    // Of a pull at an angle, friction opposes the part along x.
     let along = model.drive.direction[0].abs();
     let kinetic = model.steady_level(&Alone) - model.steady_drag(&Alone);
     assert!((kinetic - 0.5 * along).abs() < 1e-12);
@@ -159,8 +161,8 @@ fn the_rows_above_pull_the_lowest(rows: usize, degrees: f64, dead_load: f64) {
     assert!(dead_load != 0.0 || (onset / estimate - 1.0).abs() < 1e-12);
 }
 
-/// Speed of a standing surface wave of `length` blocks at the lower edge, which touches without friction,
-/// over `c_S`.
+/// Speed of a standing surface wave of `length` blocks at the lower edge, which is in contact without
+/// friction, over `c_S`.
 fn surface_wave(length: usize, halves_edge_springs: bool) -> f64 {
     let depth = 2 * length;
     let lattice = Lattice::with_edges(length, depth, [Edges::Periodic, Edges::Free]);
@@ -196,7 +198,7 @@ fn surface_wave(length: usize, halves_edge_springs: bool) -> f64 {
     let dt = 0.4;
     let mut simulation = from_state(&model, dt, state);
     let amplitude = |u: &slipfront::VectorField| -> f64 { (0..length).map(|b| u.y[b] * shape.y[b]).sum() };
-    // Less than a wave needs to the far edge and back.
+    // Less time than a wave needs to the far edge and back.
     let steps = (1.5 * depth as f64 / C_P_SQUARE.sqrt() / dt) as usize;
     let found: Vec<f64> = (0..steps)
         .map(|_| {
@@ -212,9 +214,9 @@ fn surface_wave(length: usize, halves_edge_springs: bool) -> f64 {
     2.0 * (0.5 * angle).sin() / dt / k / C_S_SQUARE.sqrt()
 }
 
-/// The edge of an upright sheet without friction carries the surface waves of the continuum. The row of
-/// whole blocks at the edge is an excess of mass, an error of first order in the wave number, which two
-/// lengths remove.
+/// The edge of an upright sheet without friction carries the surface waves of the continuum. The row of whole
+/// blocks at the edge has too much mass, an error of first order in the wave number, which extrapolation from
+/// two wavelengths removes.
 #[test_case(false, 0.002)]
 #[test_case(true, 0.002)]
 fn surface_waves_have_the_speed_of_rayleigh(halves_edge_springs: bool, tolerance: f64) {

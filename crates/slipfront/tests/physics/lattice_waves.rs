@@ -9,7 +9,7 @@ use test_case::test_matrix;
 
 use crate::common::from_state;
 
-/// A lattice without friction: linear springs, and drive springs that pull each block to its site.
+/// A lattice without friction: linear springs, and drive springs that pull each block to its rest site.
 fn floating(nx: usize, ny: usize, omega_star: f64, k_drive: f64) -> Model {
     let lattice = Lattice::with_edges(nx, ny, [Edges::Periodic; 2]);
     let drive = Drive {
@@ -54,7 +54,8 @@ fn inner(a: &VectorField, b: &VectorField) -> f64 {
         .sum()
 }
 
-/// Amplitude of a standing wave after each step, and the largest part of the motion that is not this wave.
+/// Amplitude of a standing wave after each step, and the largest part of the motion that does not belong to
+/// this wave.
 fn amplitudes(model: &Model, shape: &VectorField, dt: f64, steps: usize, frequency: f64) -> (Vec<f64>, f64) {
     // The leapfrog solution is u(n dt) = cos(w n dt); this is its velocity half a step before 0.
     let before = (1.0 - (frequency * dt).cos()) / dt;
@@ -76,8 +77,7 @@ fn amplitudes(model: &Model, shape: &VectorField, dt: f64, steps: usize, frequen
     (found, stray)
 }
 
-/// Rounding accumulates like the number of steps times 1e-16 times the phase per step: 1e-10 is ample for
-/// 2000.
+/// Rounding errors grow as the number of steps times 1e-16 times the phase per step: 1e-10 is ample for 2000.
 #[test_matrix(
     [(1, 0), (0, 1), (2, 1), (3, 5), (6, 0), (6, 4), (5, 4)],
     [0, 1],
@@ -121,7 +121,7 @@ fn a_damped_wave_obeys_the_scheme(omega_star: f64) {
 }
 
 /// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, the speeds of plane stress at nu = 1/3.
-/// Checked on the simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
+/// Checked with the frequency of the simulation; its deviation is O(a^2 + b^2), below 1e-4 here.
 #[test_matrix([(1, 0), (1, 1), (2, 1), (0, 1), (1, 3)], [(0, 3.0 / 8.0), (1, 9.0 / 8.0)])]
 fn long_waves_are_those_of_an_isotropic_sheet(mode: (u32, u32), (branch, c_squared): (usize, f64)) {
     let n = 512.0;
@@ -156,7 +156,8 @@ fn long_waves_run_through_the_lattice((branch, c_squared): (usize, f64)) {
         steps as usize,
         leapfrog_frequency(TAU / period, dt),
     );
-    // Dispersion of the lattice shifts the phase by about 2 pi a^2/24 = 1e-3: its cosine by less than 1e-5.
+    // Dispersion of the lattice shifts the phase by about 2 pi a^2/24 = 1e-3, and its cosine by less than
+    // 1e-5.
     assert!((found[steps as usize - 1] - 1.0).abs() < 1e-5);
     assert!((found[steps as usize / 4 - 1]).abs() < 1e-3 && found[steps as usize / 2 - 1] < -1.0 + 1e-5);
 }
@@ -171,7 +172,7 @@ fn growth(dt: f64, omega_star: f64, steps: usize) -> f64 {
     found[steps - 20..].iter().map(size).fold(0.0, f64::max)
 }
 
-/// dt* < 2/sqrt(6.5 k_1) = 0.9058 is stable and dt* above it is not, at any damping. At large damping the
+/// dt* < 2/sqrt(6.5 k_1) = 0.9058 is stable and a larger dt* is not, at any damping. At large damping the
 /// unstable wave gains only (w^2 dt^2 - 4)/(2 Omega dt) per step, hence the 1 % and the many steps.
 #[test_matrix([0.0, 0.1, 1.0, 3.0, 30.0])]
 fn stability_does_not_depend_on_damping(omega_star: f64) {

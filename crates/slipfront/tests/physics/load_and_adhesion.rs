@@ -1,4 +1,4 @@
-//! Pressure that is not the same everywhere, and friction that does not need any.
+//! Pressure that is not uniform, and friction that does not depend on pressure.
 
 use slipfront::Edges;
 use slipfront::Stop;
@@ -16,7 +16,7 @@ fn adhesive(of_static: f64) -> Adhesion {
     }
 }
 
-/// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the
+/// Nothing moves before the first slip, so that the force is `k_s V t` on every block and the block with the
 /// least threshold slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. The slip is seen at most a
 /// step late.
 #[test_matrix([None, Some((0, 0.8)), Some((1, -0.5))], [0.0, 0.4])]
@@ -27,7 +27,7 @@ fn the_weakest_block_slips_first(pressure: Option<(usize, f64)>, adhesion: f64) 
         ..Slider::default()
     };
     let drawn = slider.coefficients();
-    // p/P = 1 + slope (2 x/L - 1) at the middle of a block.
+    // p/P = 1 + slope (2 x/L - 1) at the centre of a block.
     let relative = |b: usize| {
         let place = |axis: usize| [b % 25, b / 25][axis] as f64;
         pressure.map_or(1.0, |(axis, slope)| {
@@ -53,7 +53,8 @@ fn the_weakest_block_slips_first(pressure: Option<(usize, f64)>, adhesion: f64) 
     assert_eq!(now.first_slip_time_star()[weakest], earliest);
 }
 
-/// Equal blocks slip in the same step: `mu_s* = 1 + tau_a/(P mu_s)`, less than one step of the pull below it.
+/// Equal blocks slip in the same step: `mu_s* = 1 + tau_a/(P mu_s)`, exceeded by less than one step of the
+/// pull.
 #[test_matrix([0.0, 0.1, 1.5])]
 fn adhesion_adds_to_static_friction_without_texture(adhesion: f64) {
     let slider = Slider {
@@ -66,9 +67,10 @@ fn adhesion_adds_to_static_friction_without_texture(adhesion: f64) {
     assert!(-1e-12 < below + pull && below < pull, "{peak}");
 }
 
-/// Only the adhesive part feels how much of the surface a groove leaves: the load is redistributed, the area
-/// is not. The first slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; later by a
-/// step at most, and by the drag of the five free rows, Omega V* each at most, half of which each edge bears.
+/// Only the adhesive part depends on the area that a groove leaves: the load is redistributed, the area is
+/// not. The first slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge. It is later
+/// by at most a step, and by the drag of the five free rows, at most Omega V* each; each edge bears half of
+/// it.
 #[test_matrix([(Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along)], [0.25, 1.0])]
 fn adhesion_is_not_redistributed((facing, orientation): (Facing, Orientation), adhesion: f64) {
     let slider = Slider {

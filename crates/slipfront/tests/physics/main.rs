@@ -1,5 +1,6 @@
 //! Exact answers: every law of the model that has a closed solution, orders of convergence, and claims of the
-//! paper, on the fused kernel. `physics_on_general` runs tests of both kernels on the general one.
+//! paper, on the fused kernel. `physics_on_general` runs the tests that apply to both kernels on the general
+//! kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 #![allow(clippy::needless_pass_by_value)] // Values of a test are passed to it as they are written.
@@ -9,7 +10,7 @@ mod common;
 
 use slipfront::Kernel;
 
-/// The kernel of the simulations of this binary.
+/// The kernel of the simulations of this test binary.
 const KERNEL: Kernel = Kernel::Fused;
 
 mod ageing;

@@ -83,7 +83,7 @@ fn instants_are_those_of_their_definitions(slider: Slider, kinetic: KineticStart
         assert_eq!(frame.point, rows[frame.step as usize].point, "{letter}");
         assert_eq!(frame.values.len(), 3);
         assert!(frame.values.iter().all(|field| field.len() == 9 * 9));
-        // The fields belong to the step of the curve: a run up to that step has these fields.
+        // The fields belong to the step of the curve: a run up to this step has the same fields.
         let mut again = at_rest(&model, slider.dt_star);
         again.run(Stop::at_step(frame.step), &mut []).unwrap();
         let exact = selection.capture(&again.snapshot());
@@ -93,8 +93,8 @@ fn instants_are_those_of_their_definitions(slider: Slider, kinetic: KineticStart
     }
 }
 
-/// A run that stays up (R* = 1, strong damping) has no transition: the largest value is reported, and there
-/// is no D and no E.
+/// In a run that stays up (R* = 1, strong damping) there is no transition: the largest value is reported, and
+/// D and E are missing.
 #[test]
 fn without_a_fall_there_is_no_transition() {
     let slider = Slider {
@@ -135,7 +135,7 @@ fn a_run_may_stop_as_soon_as_the_fall_is_seen() {
     assert_eq!(reason, Ok(StopReason::End));
 }
 
-/// Time is the step times dt*, to the last bit, however long the run.
+/// Time is the step times dt*, to the last bit, for any length of the run.
 #[test]
 fn time_is_a_product() {
     let slider = Slider {
@@ -155,9 +155,9 @@ fn time_is_a_product() {
     );
 }
 
-/// Beyond the limit of stability a run diverges, and names the block that has gone farthest: by then speeds
-/// have squares that are infinite, and displacements are still finite. Strains as large as the last two
-/// stiffen springs beyond the step's limit.
+/// Beyond the limit of stability a run diverges, and names the block with the largest displacement: by then
+/// squares of speeds are infinite, and displacements are still finite. Strains as large as the last two
+/// stiffen springs beyond the stability limit of the step.
 #[test_matrix([(1.0, 0.0), (1.0, 1e-6), (0.9, 1.0), (0.9, 1e3)])]
 fn a_diverging_run_is_reported((dt_star, epsilon): (f64, f64)) {
     let slider = Slider {
@@ -186,7 +186,7 @@ fn a_diverging_run_is_reported((dt_star, epsilon): (f64, f64)) {
         .zip(&displacement.y)
         .map(|(x, y)| x.abs().max(y.abs()));
     let largest = sizes.clone().fold(0.0, f64::max);
-    // Speeds whose squares are infinite come from displacements of about that size.
+    // Speeds with infinite squares come from displacements of about that size.
     assert!(largest > 1e140 && largest.is_finite());
     assert_eq!(
         sizes.clone().position(|size| size == largest),
@@ -197,7 +197,7 @@ fn a_diverging_run_is_reported((dt_star, epsilon): (f64, f64)) {
     assert!(said.contains("has diverged") && said.len() < 250, "{said}");
 }
 
-/// Forces that are no numbers hold blocks that do not move: the run ends before its first step all the same.
+/// NaN forces hold blocks that do not move: the run still ends before its first step.
 #[test_matrix([0.0, 1e-6, 1e3])]
 fn a_state_too_large_to_compute_with_is_reported(epsilon: f64) {
     let slider = Slider {
@@ -220,7 +220,7 @@ fn a_state_too_large_to_compute_with_is_reported(epsilon: f64) {
     };
 }
 
-/// A state with which a run begins must consist of numbers.
+/// A state at the start of a run must be finite.
 #[test_matrix([f64::NAN, f64::INFINITY, f64::NEG_INFINITY], [0, 1, 2, 3])]
 #[should_panic(expected = "of the state to begin with is not finite")]
 fn a_state_that_is_not_finite_is_refused(bad: f64, place: usize) {
@@ -242,8 +242,7 @@ fn a_state_that_is_not_finite_is_refused(bad: f64, place: usize) {
     from_state(&slider.model(), slider.dt_star, state);
 }
 
-/// Eq. 9 as printed: the sum of the drive springs' forces over the load, along the drive and a quarter turn
-/// to its left.
+/// Eq. 9 as printed: the sum of the drive springs' forces over the load, along the drive and to its left.
 #[test]
 fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
     let slider = Slider {
@@ -267,7 +266,7 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
 }
 
 /// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, and later values do not count. The
-/// later part of the curve is invented, because N* and mu* of a real run seldom reach such values again.
+/// later part of the curve is invented, because N* and mu* of a real run rarely reach such values again.
 #[test]
 fn what_comes_after_the_windows_is_neither_d_nor_e() {
     let slider = Slider {
@@ -325,7 +324,8 @@ fn what_comes_after_the_windows_is_neither_d_nor_e() {
     }
 }
 
-/// A run without an end is advanced as long as its user likes, and measures what a run of known length does.
+/// A run without an end is advanced as long as its user likes, and gives the same results as a run of known
+/// length.
 #[test]
 fn a_run_without_an_end_is_a_run_of_known_length_that_has_not_ended() {
     let slider = Slider::default();
@@ -352,10 +352,10 @@ fn a_run_without_an_end_is_a_run_of_known_length_that_has_not_ended() {
     assert!(history.kinetic(200.0, slider.dt_star, slider.v_star).is_some());
 }
 
-/// Bars that an evolutionary search has placed such that mu* ripples just above the level of sliding, at
-/// 0.5005 and falls half-way to it, a fifth below its peak: a rule that takes any fall of half-way for the
-/// end of the first peak finds 0.5005. (Four bars of three blocks, 600 tries; L = 0.5, and a surface without
-/// texture has 1.)
+/// Bars that an evolutionary search has placed so that mu* ripples just above the level of sliding, at
+/// 0.5005, and falls half-way to it, a fifth below its peak. A rule in which any fall of half-way ends the
+/// first peak returns 0.5005. (Four bars of three blocks, 600 tries; L = 0.5, and a surface without texture
+/// gives 1.)
 #[test]
 fn a_search_that_cheats_the_first_peak_is_not_rewarded() {
     let lattice = Lattice::free(50, 50);
@@ -392,8 +392,8 @@ fn a_search_that_cheats_the_first_peak_is_not_rewarded() {
         peak.ended && peak.mu_star > 0.59 && peak.mu_star == peak.largest.mu_star,
         "{peak:?}"
     );
-    // Whoever takes the largest mu* until a path finds the ripple if the path ends there, and the peak if it
-    // goes as far as the run.
+    // The largest mu* until a path is the ripple if the path ends there, and the peak if the path covers the
+    // whole run.
     let (mut until_the_fall, mut until_the_end) = (Largest::until(0.005 * fall), Largest::until(3.0));
     at_rest(&model, 0.1)
         .run(

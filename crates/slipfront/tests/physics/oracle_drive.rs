@@ -1,5 +1,5 @@
-//! Drives computed once more, from the equations and with nothing of the crate: springs at an edge, a program
-//! of speeds and a rotation on small random sliders.
+//! Drives computed independently, from the equations and without any code of the crate: springs at an edge, a
+//! program of speeds and a rotation on small random sliders.
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use slipfront::{Edge, Program, Rotation, Stop};
 
 use crate::common::{Slider, at_rest};
 
-/// Displacements after some steps, all of Eqs. 2 to 8 in the order of the paper. `pull` gives the stiffness
-/// of the drive spring of block (i, j) and where its far end is after a path of the drive.
+/// Displacements after some steps, by Eqs. 2 to 8 in the order of the paper. `pull` returns the stiffness of
+/// the drive spring of block (i, j) and the position of its far end after a path of the drive.
 fn displacements(
     [nx, ny]: [usize; 2],
     thresholds: &[[f64; 2]],
@@ -79,8 +79,8 @@ fn displacements(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Sums in another order differ by rounding, which the motion of a few hundred steps makes 1e-9 of
-    /// displacements at most.
+    /// Sums in another order differ by rounding. In a few hundred steps, the motion amplifies this to at most
+    /// 1e-9 of displacements.
     #[test]
     fn drives_agree_with_the_equations(
         blocks in (2..7_usize, 2..7_usize),

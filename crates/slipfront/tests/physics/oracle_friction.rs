@@ -1,4 +1,4 @@
-//! Laws of friction against a second implementation, written down block by block from their equations, over
+//! Laws of friction compared with a second implementation, written block by block from the equations, over
 //! random small lattices.
 
 use slipfront::surface::{Coefficients, Load};
@@ -27,7 +27,7 @@ impl Numbers {
     }
 }
 
-/// A block by itself.
+/// A single block.
 #[derive(Clone, Copy)]
 struct Body {
     site: [i64; 2],
@@ -35,7 +35,7 @@ struct Body {
     v: [f64; 2],
     mu_s: f64,
     mu_k: f64,
-    /// Time of the last stop of the block; its anchor and state follow.
+    /// Time of the last stop of the block, followed by its anchor and state.
     stopped: f64,
     anchor: [f64; 2],
     theta: f64,
@@ -75,7 +75,7 @@ impl World {
         force
     }
 
-    /// From t_n to the velocities half a step later.
+    /// Computes the velocities half a step after t_n.
     fn evaluate(&mut self, t: f64) {
         let (dt, half) = (self.dt, 0.5 * self.omega * self.dt);
         let forces: Vec<[f64; 2]> = self.bodies.iter().map(|body| self.force(body, t)).collect();
@@ -148,7 +148,7 @@ impl World {
                         }
                     });
                     body.slides = high > law.slip_speed;
-                    // The solution of the linear equation for theta; d_c/speed alone would be huge where it
+                    // Solves the linear equation for theta; d_c/speed alone would be huge where the block
                     // creeps.
                     let x = high * dt / law.d_c;
                     let time = if x > 0.0 { -dt * (-x).exp_m1() / x } else { dt };
@@ -202,9 +202,9 @@ const RATE_AND_STATE: Friction = Friction::RateAndState(RateAndState {
     slip_speed: 0.02,
 });
 
-/// The extension of a spring is found as the difference of nearly equal lengths over epsilon, 1e-3: to 1e-13
-/// of the unit. Over some hundred steps of motion that is sensitive to what begins it, the difference stays
-/// below 1e-8.
+/// The extension of a spring is computed as the difference of nearly equal lengths over epsilon, 1e-3: with
+/// an error of 1e-13 of the unit. Over some hundred steps of motion that is sensitive to its initial state,
+/// the difference stays below 1e-8.
 #[test_matrix(
     [
         coulomb(Some(WEAKENING), None), coulomb(None, Some(AGEING)), coulomb(Some(WEAKENING), Some(AGEING)),

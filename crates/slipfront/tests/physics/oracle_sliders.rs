@@ -1,5 +1,5 @@
-//! The model of heterogeneous blocks, outlines and viscosity once more, in the fewest lines: every pair of
-//! blocks is examined.
+//! The model of heterogeneous blocks, outlines and viscosity implemented again, in the fewest lines: every
+//! pair of blocks is examined.
 
 use proptest::prelude::*;
 use slipfront::communicator::Alone;
@@ -8,7 +8,7 @@ use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Outline, Slider, Stat
 
 use crate::common::from_state;
 
-/// Numbers of every block, and of all.
+/// Values for every block, and for the whole slider.
 #[derive(Clone, Debug)]
 struct Case {
     size: [usize; 2],
@@ -31,7 +31,7 @@ impl Case {
         [(b % self.size[0]) as f64, (b / self.size[0]) as f64]
     }
 
-    /// Vector from site b to site c, the shortest one with periodic edges.
+    /// Vector from site b to site c, the shortest one for periodic edges.
     fn between(&self, b: usize, c: usize) -> [f64; 2] {
         let (b, c) = (self.at(b), self.at(c));
         [0, 1].map(|axis| {
@@ -97,7 +97,7 @@ impl Case {
         u
     }
 
-    /// Displacements after some steps by the kernels.
+    /// Displacements after some steps, computed by the kernels.
     fn simulate(&self, steps: u32) -> Vec<[f64; 2]> {
         let n = self.mass.len();
         let edges = self
@@ -165,7 +165,7 @@ fn case() -> impl Strategy<Value = Case> {
             move |(blocks, (viscosity, damping, epsilon, velocity), has_outline)| {
                 let mut exists: Vec<bool> = blocks.iter().map(|block| !has_outline || block.4).collect();
                 exists[0] = true;
-                // What does not exist may have any numbers.
+                // Missing blocks may have any values.
                 let number = |b: usize, number: f64| if exists[b] { number } else { 0.0 };
                 let start = blocks.iter().zip(&exists).map(|(block, exists)| {
                     let [x, y] = if *exists { block.3 } else { [0.0; 2] };
@@ -173,8 +173,8 @@ fn case() -> impl Strategy<Value = Case> {
                 });
                 Case {
                     size: [nx, ny],
-                    // The fewest blocks along a periodic axis are three; with four, the nearest image is the
-                    // only neighbour.
+                    // A periodic axis has at least three blocks; with four, the nearest image is the only
+                    // neighbour.
                     periodic: [
                         wraps[0] && nx > 3 && !has_outline,
                         wraps[1] && ny > 3 && !has_outline,
@@ -205,8 +205,8 @@ fn case() -> impl Strategy<Value = Case> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// The tolerance is rounding: 1e-16 per operation, times the 1e3 by which lengths cancel over the strain
-    /// of 1e-3, grows little in 40 steps.
+    /// The tolerance is for rounding: 1e-16 per operation, times the 1e3 lost in differences of lengths over
+    /// the strain of 1e-3. It grows little in 40 steps.
     #[test]
     fn an_independent_program_agrees(case in case()) {
         let (found, expected) = (case.simulate(40), case.run(40));

@@ -12,8 +12,8 @@ fn within(exists: Vec<bool>) -> Slider {
     Slider::new(None, None, Some(Outline::new(exists, &Alone)), &Alone)
 }
 
-/// A rectangle that is cut out of a larger lattice moves as a lattice of its own, to the last bit, in all
-/// that is measured.
+/// A rectangle that is cut out of a larger lattice moves as a separate lattice does, to the last bit, in all
+/// measured values.
 #[test_matrix([0.0, 0.2], [0.0, 2.0])]
 fn a_rectangle_cut_out_is_a_smaller_lattice(viscosity_time: f64, omega_star: f64) {
     let viscous = |slider| Slider {
@@ -69,7 +69,7 @@ fn a_rectangle_cut_out_is_a_smaller_lattice(viscosity_time: f64, omega_star: f64
     }
     assert!(one.peak().ended);
     assert_eq!(one.contact_stress_max(), other.contact_stress_max());
-    // What does not exist stays where it is, and has no values.
+    // Missing blocks stay where they are, and have no values.
     let mut fields = Frames::new(Selection {
         fields: Field::ALL.to_vec(),
         stride: 1,
@@ -90,7 +90,7 @@ fn a_rectangle_cut_out_is_a_smaller_lattice(viscosity_time: f64, omega_star: f64
     assert!(inside.iter().all(|&b| !displaced[b].is_nan()));
 }
 
-/// A disc of equal blocks slips as one block: mu_s* is 1 and at most the pull of one step.
+/// A disc of equal blocks slips as a rigid body: mu_s* is 1, plus at most the pull of one step.
 #[test_matrix([1, 2, 7, 20])]
 fn a_uniform_disc_slips_as_one(across: usize) {
     let lattice = Lattice::free(across, across);
@@ -104,7 +104,7 @@ fn a_uniform_disc_slips_as_one(across: usize) {
     assert!(1.0 < peak + 1e-12 && peak < 1.0 + pull + 1e-12, "{peak}");
 }
 
-/// A disc is as large as a circle but for blocks along its rim, and as symmetric as a square.
+/// A disc has the area of a circle except for blocks along its rim, and the symmetry of a square.
 #[test]
 fn discs_are_round() {
     for across in 1..60 {
@@ -134,7 +134,7 @@ fn discs_are_round() {
     assert!((second / (largest * first) - 0.7577).abs() < 5e-5);
 }
 
-/// Sliders that are made by hand, not by `Slider::new`, are refused where they cannot be those of the model.
+/// Sliders that are made by hand, not by `Slider::new`, are refused where they cannot belong to the model.
 #[test_case(
     Slider { stiffness: Some(vec![1.0; 5]), ..Slider::default() }, "the slider has 5 moduli for 4 blocks"
     ; "another lattice"

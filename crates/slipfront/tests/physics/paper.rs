@@ -1,7 +1,7 @@
-//! Claims of the paper (doi 10.1016/j.triboint.2023.108866) that one run or a few can show.
+//! Claims of the paper (doi 10.1016/j.triboint.2023.108866) that one run or a few runs can show.
 //!
-//! Numbers in comments come from one surface of an independent program. Tolerances are three standard
-//! deviations of the same quantity over ten surfaces of this one, unless a comment says otherwise.
+//! Numbers in comments come from one surface in an independent program. Tolerances are three standard
+//! deviations of the same quantity over ten surfaces of this program, unless a comment says otherwise.
 
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Distribution, Load, Orientation, Texture};
@@ -21,7 +21,7 @@ fn textured(textures: Vec<Texture>, seed: u64) -> Slider {
     }
 }
 
-/// Reduction of mu_s* in % (Eq. 16), by comparison with the same surface without texture.
+/// Reduction of mu_s* in % (Eq. 16), compared with the same surface without texture.
 fn reduction(slider: &Slider) -> f64 {
     let plain = Slider {
         textures: Vec::new(),
@@ -47,7 +47,8 @@ fn scatter(x: &[f64]) -> f64 {
 }
 
 /// Sections 3.2 and 3.3. With sigma_s* = 0 only kinetic coefficients scatter, and reductions by 0.04 to 0.13;
-/// 0.33 for the smallest cavity. The step, 0.1 here and 0.02 there, moves them by as much again.
+/// by 0.33 for the smallest cavity. The different step, 0.1 here and 0.02 there, changes them by as much
+/// again.
 #[test_case(middle(10.0, 1, 0.0, false), 31.1, 0.5; "circle")]
 #[test_case(middle(1.0, 1, 0.0, false), 22.7, 1.2; "small circle is already remarkable")]
 #[test_case(middle(30.0, 1, 0.0, false), 37.0, 0.7; "large circle takes more than 35")]
@@ -65,8 +66,8 @@ fn textures_reduce_static_friction(texture: Texture, claimed: f64, tolerance: f6
     }
 }
 
-/// Elongation across the sliding direction improves a cavity, along it slightly worsens it: by many times the
-/// scatter.
+/// Elongation across the sliding direction improves a cavity, and along it slightly worsens it: by many times
+/// the scatter.
 #[test]
 fn elongation_across_improves_and_along_worsens() {
     let [across, circle, along] = [(0.6, true), (0.0, false), (0.6, false)]
@@ -79,7 +80,8 @@ fn elongation_across_improves_and_along_worsens() {
     assert!(steps.is_sorted() && steps[0] > circle - 0.4, "{steps:?}");
 }
 
-/// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7, scatter 0.13.
+/// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7, with a scatter of
+/// 0.13.
 #[test_matrix([2, 3, 4], [1.0, 0.2])]
 fn shapes_make_no_notable_difference(s: u32, sharpness: f64) {
     let found = reduction(&textured(
@@ -89,7 +91,7 @@ fn shapes_make_no_notable_difference(s: u32, sharpness: f64) {
     assert!((30.3..34.1).contains(&found), "s = {s}: {found} %");
 }
 
-/// Without scatter of kinetic coefficients nothing is random; 37.4 is rounded, and of another step.
+/// Without scatter of kinetic coefficients nothing is random; 37.4 is rounded, and belongs to another step.
 #[test]
 fn a_groove_without_any_scatter() {
     let slider = Slider {
@@ -101,8 +103,8 @@ fn a_groove_without_any_scatter() {
     assert!((found - 37.4).abs() < 0.15, "{found} %");
 }
 
-/// Grooves on periodic edges climb again, higher than the first peak, in the next cycle, so that the rule of
-/// the first peak matters. By how much depends on the step, since nothing breaks the symmetry along the
+/// With grooves on periodic edges, mu* climbs higher than the first peak in the next cycle, so that the rule
+/// of the first peak matters. By how much depends on the step, since nothing breaks the symmetry along the
 /// groove: 1.3 % at 0.02, 2.3 % at 0.1, 4 % in the other program.
 #[test]
 fn a_groove_on_periodic_edges_climbs_higher_later() {
@@ -118,7 +120,7 @@ fn a_groove_on_periodic_edges_climbs_higher_later() {
     assert!((reduction(&slider) - 37.3).abs() < 0.3);
 }
 
-/// D9: the 31 % hold at V* = 0.03 and 50 blocks only. Scatter 0.1, and as much for the step.
+/// D9: the 31 % hold only at V* = 0.03 and 50 blocks. The scatter is 0.1, and the step changes as much.
 #[test_case(25, 0.03, 32.5)]
 #[test_case(100, 0.03, 26.1)]
 #[test_case(50, 0.01, 34.9)]
@@ -134,7 +136,7 @@ fn a_cavity_acts_less_on_large_and_fast_sliders(n: usize, v_star: f64, claimed: 
     assert!((found - claimed).abs() < 0.6, "{found} %, claimed {claimed} %");
 }
 
-/// Fig. 16: rough surfaces gain less. Differences of 7 and more, scatter up to 1.
+/// Fig. 16: rough surfaces gain less. Differences are 7 and more, with a scatter of up to 1.
 #[test]
 fn static_scatter_attenuates_the_effect_of_a_texture() {
     let found = [0.0, 0.05, 0.1, 0.2].map(|sigma_static_star| {
@@ -146,7 +148,7 @@ fn static_scatter_attenuates_the_effect_of_a_texture() {
     assert!(found.windows(2).all(|pair| pair[1] < pair[0] - 3.0), "{found:?}");
 }
 
-/// Without redistributing the texture's load, the cavity would take 37 %.
+/// Without redistributing the texture's load, the cavity would reduce mu_s* by 37 %.
 #[test]
 fn without_redistribution_the_cavity_takes_37_percent() {
     let kept = Slider {
@@ -169,8 +171,8 @@ fn over_seeds(slider: &Slider, quantity: impl Fn(&Slider) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// Fig. 5 and 6: mu_s* rises with V* towards 1, and t_s* = (5/2)/V* nearly. `scatter`: of mu_s* over ten
-/// seeds; the mean of six differs from a single one by 1.08 of it.
+/// Fig. 5 and 6: mu_s* rises with V* towards 1, and t_s* is nearly (5/2)/V*. `scatter`: of mu_s* over ten
+/// seeds; the difference of a mean of six seeds from a single seed has 1.08 times this scatter.
 #[test_case(0.01, 0.859, 0.0164, 2.28)]
 #[test_case(0.02, 0.872, 0.0142, 2.33)]
 #[test_case(0.03, 0.883, 0.0114, 2.37)]
@@ -196,7 +198,7 @@ fn static_friction_and_its_time_depend_on_speed(v_star: f64, claimed: f64, scatt
         (mu - claimed).abs() < 3.0 * 1.08 * scatter,
         "mu_s* = {mu}, claimed {claimed}"
     );
-    // t_s* V* = (8/3) mu_s* but for what has slipped already, and scatters with it.
+    // t_s* V* = (8/3) mu_s*, except for blocks that have slipped already, and it scatters as mu_s* does.
     let time = mean(&peaks.iter().map(|p| p.time_star * v_star).collect::<Vec<_>>());
     assert!(
         (time - turns).abs() < 3.0 * 8.0 / 3.0 * scatter,
@@ -208,7 +210,7 @@ fn static_friction_and_its_time_depend_on_speed(v_star: f64, claimed: f64, scatt
     );
 }
 
-/// The surface is the same and the speed rises: no scatter enters the comparison.
+/// The surface stays the same and the speed rises: no scatter affects the comparison.
 #[test]
 fn static_friction_rises_with_speed_on_every_surface() {
     for seed in [1, 2, 3] {
@@ -226,8 +228,8 @@ fn static_friction_rises_with_speed_on_every_surface() {
     }
 }
 
-/// Fig. 10: mu_s* falls with sigma_s*. At sigma_s* = 0 all slip at once, and the slip's own k_s V^2/(2 (1 -
-/// R)) and a step's k_s V dt are all there is beyond 1.
+/// Fig. 10: mu_s* falls with sigma_s*. At sigma_s* = 0 all blocks slip at once, and only the slip's own k_s
+/// V^2/(2 (1 - R)) and a step's k_s V dt exceed 1.
 #[test_case(0.0, 1.000, 0.0004)]
 #[test_case(0.01, 0.980, 0.0020)]
 #[test_case(0.025, 0.941, 0.0063)]
@@ -247,7 +249,7 @@ fn static_friction_falls_with_scatter(sigma_static_star: f64, claimed: f64, scat
 }
 
 /// Over five random surfaces the paper finds a deviation of less than 0.015. This holds for the standard
-/// deviation, 0.013 here; the farthest of five may lie 0.024 from their mean.
+/// deviation, 0.013 here; the farthest of five may be 0.024 from their mean.
 #[test]
 fn five_surfaces_deviate_by_less_than_0_015() {
     let found: Vec<f64> = (1..=5)
@@ -267,7 +269,8 @@ fn five_surfaces_deviate_by_less_than_0_015() {
     );
 }
 
-/// Fig. 7: mu_k* is about R*; a little more, and more at R* = 0.25 (D8). Scatter over seeds 0.0013 to 0.0053.
+/// Fig. 7: mu_k* is about R*, somewhat larger, and more so at R* = 0.25 (D8). Its scatter over seeds is
+/// 0.0013 to 0.0053.
 #[test_case(0.25, 0.305, 0.016)]
 #[test_case(0.5, 0.529, 0.006)]
 #[test_case(0.75, 0.765, 0.006)]
@@ -284,8 +287,8 @@ fn kinetic_friction_is_about_r_star(r_star: f64, claimed: f64, tolerance: f64) {
     }
 }
 
-/// Fig. 8: at Omega* >= 1 stick-slip ends and all slide. At Omega* = 1 exactly, one block in 600 still sticks
-/// on some surfaces; at 2 and 3 none does. Below, a tenth slides at a time.
+/// Fig. 8: at Omega* >= 1 stick-slip ends and all blocks slide. At exactly Omega* = 1, one block in 600 still
+/// sticks on some surfaces; at 2 and 3 none does. Below 1, a tenth of the blocks slide at a time.
 #[test_case(0.1, 10.0, 20.0)]
 #[test_case(1.0, 99.0, 100.0)]
 #[test_case(2.0, 100.0, 100.0)]
@@ -311,8 +314,8 @@ fn strong_damping_ends_stick_slip(omega_star: f64, least: f64, most: f64) {
     }
 }
 
-/// Eq. 14: steps before slip with the paper's step (2/3) V*, within the few % by which t_s* V* differs from
-/// 5/2.
+/// Eq. 14: number of steps before slip with the paper's step (2/3) V*, within the few % by which t_s* V*
+/// differs from 5/2.
 #[test_matrix([0.05, 0.1, 0.2])]
 fn steps_before_slip(v_star: f64) {
     let slider = Slider {
@@ -327,8 +330,8 @@ fn steps_before_slip(v_star: f64) {
     );
 }
 
-/// mu_s* of the same surface at steps from 0.002 to 0.05 agrees within 3e-4, and so does 0.1 on two surfaces
-/// of three (on the first by 4e-4): there a step is k_s V dt = 1.1e-3 of mu*, on which events fall.
+/// mu_s* of the same surface agrees within 3e-4 at steps from 0.002 to 0.05, and so does 0.1 on two surfaces
+/// of three (within 4e-4 on the first): there mu* rises by k_s V dt = 1.1e-3 per step, at which events occur.
 #[test_case(1, 4.5e-4)]
 #[test_case(2, 3e-4)]
 #[test_case(3, 3e-4)]
@@ -353,9 +356,9 @@ fn static_friction_does_not_depend_on_the_step(seed: u64, at_a_tenth: f64) {
     assert!((at(0.1) - exact).abs() < at_a_tenth, "{}, {exact}", at(0.1));
 }
 
-/// Eq. 4 to the letter cannot be what the paper ran: at its step of 0.02, mu_k* = 0.97, all blocks slide for
-/// ever, and there is no transition. (It is 0.64 at a step of 0.1, with a transition, 0.90 at 0.05, and 0.998
-/// at 0.005: it tends to 1.)
+/// The paper cannot have used Eq. 4 to the letter: at its step of 0.02, mu_k* = 0.97, all blocks slide
+/// forever, and there is no transition. (mu_k* is 0.64 at a step of 0.1, with a transition, 0.90 at 0.05, and
+/// 0.998 at 0.005: it tends to 1.)
 #[test]
 fn the_literal_law_never_comes_down() {
     let slider = Slider {
@@ -370,8 +373,8 @@ fn the_literal_law_never_comes_down() {
     assert!(!peak.ended);
 }
 
-/// The two readings with memory agree on mu_s* to 1e-6 on most surfaces, and to 3e-5 on all of these; on
-/// mu_k* within its scatter of 0.002.
+/// The two readings with memory agree on mu_s* to 1e-6 on most surfaces, and to 3e-5 on all of these; they
+/// agree on mu_k* within its scatter of 0.002.
 #[test]
 fn implicit_and_explicit_friction_agree() {
     let with = |law, seed| {
@@ -436,7 +439,7 @@ const TABLE_1: [Row; 8] = [
     Row(0.0949, 1e2, 1e5, 10.0, 1.0),
 ];
 
-/// Speeds that make V* = 0.03 by Eq. 11a (D3).
+/// Speeds that give V* = 0.03 by Eq. 11a (D3).
 const CORRECTED: [(usize, f64); 3] = [(2, 3.796), (5, 0.5694), (6, 1.898)];
 
 fn table_1(case: usize, corrected: bool) -> Model {
@@ -472,7 +475,7 @@ fn table_1(case: usize, corrected: bool) -> Model {
     )
 }
 
-/// mu* at the same times t* up to the end of the transition, largest difference from case 8.
+/// Largest difference of mu* from case 8 at the same times t* up to the end of the transition.
 fn difference_from_case_8(case: usize, corrected: bool) -> f64 {
     let (one, other) = (table_1(case, corrected), table_1(7, false));
     let (mut one, mut other) = (at_rest(&one, 0.1), at_rest(&other, 0.1));
@@ -487,7 +490,8 @@ fn difference_from_case_8(case: usize, corrected: bool) -> f64 {
 }
 
 /// Fig. 3: the eight cases coincide before and through the transition. All have V* = 0.03001 to every digit,
-/// so that only the strain differs: eps = 1e-6 to 2e-4 moves mu* by 1e-4 eps, the 0.04 of case 3 by 0.01 eps.
+/// so that only the strain differs: eps = 1e-6 to 2e-4 changes mu* by 1e-4 eps, the 0.04 of case 3 by 0.01
+/// eps.
 #[test_matrix([0, 1, 2, 3, 4, 5, 6])]
 fn the_cases_of_table_1_coincide(case: usize) {
     let model = table_1(case, true);
@@ -501,7 +505,7 @@ fn the_cases_of_table_1_coincide(case: usize) {
     assert!(found < bound, "{found} at eps = {}", model.epsilon);
 }
 
-/// D3: cases 3, 6 and 7 as printed have V* = 0.015, 0.010, 0.015, and their curves are others.
+/// D3: cases 3, 6 and 7 as printed have V* = 0.015, 0.010, 0.015, and different curves.
 #[test_case(2, 0.015)]
 #[test_case(5, 0.010)]
 #[test_case(6, 0.015)]

@@ -1,4 +1,4 @@
-//! Speeds that follow one another: velocity steps, holds, reversals.
+//! Programs of speeds: velocity steps, holds, reversals.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ fn programmed(slider: &Slider, segments: &[(f64, f64)]) -> Model {
     model
 }
 
-/// After a hold from the start the drive takes as long to the first slip as without it:
+/// After a hold from the start the drive takes as long to the first slip as without the hold:
 /// `k_s V (t - t_h) = min_i threshold_i`, seen at most a step late.
 #[test_matrix([0.0, 12.5, 400.0])]
 fn a_hold_before_the_first_slip_delays_it(hold: f64) {
@@ -36,8 +36,8 @@ fn a_hold_before_the_first_slip_delays_it(hold: f64) {
     assert!(-1e-10 < late && late < 0.1 + 1e-9, "late by {late}");
 }
 
-/// A drive that turns back before the first slip takes its springs along: the pull is `k_s X` of the path,
-/// and the slip backwards is the mirror image of the one forwards. Its time follows from the path.
+/// If the drive reverses before the first slip, the pull is still `k_s X` of the path, and the slip backwards
+/// is the mirror image of the slip forwards. Its time follows from the path.
 #[test]
 fn a_reversal_loads_backwards() {
     let slider = Slider::default().uniform();
@@ -56,8 +56,8 @@ fn a_reversal_loads_backwards() {
     assert!(-1e-10 < late && late < 0.1 + 1e-9, "late by {late}");
 }
 
-/// A program of one speed is that speed, and one of negative speeds the run backwards, to the last bit;
-/// without geometric nonlinearity, which has a sign.
+/// A program of one speed equals this speed, and a program of negative speeds equals the run backwards, to
+/// the last bit, without geometric nonlinearity, which has a sign.
 #[test]
 fn a_program_changes_nothing_but_the_speed() {
     let slider = Slider {
@@ -87,9 +87,9 @@ fn a_program_changes_nothing_but_the_speed() {
     }
 }
 
-/// The work of a step is the mean of the forces at its ends times the path between them, which is exact while
-/// the springs alone take it; afterwards the balance misses what blocks lose when they stop, with the square
-/// of the step.
+/// The work of a step is the mean of the forces at its ends times the path between them. It is exact while
+/// only the springs take up work. Later the balance misses the energy that blocks lose when they stop, in
+/// proportion to the square of the step.
 #[test]
 fn the_ledger_closes_under_a_program() {
     let slider = Slider {
@@ -120,13 +120,13 @@ fn the_ledger_closes_under_a_program() {
     assert!(stuck.friction_loss == 0.0 && stuck.error().abs() < 1e-12);
     let [coarse, fine] = [0.1, 0.025].map(|dt_star| energies(dt_star, 120.0));
     assert!(coarse.friction_loss > 0.3 * coarse.work);
-    // Of the factor of 16 half is asked for, since blocks stop at other instants.
+    // Only half of the factor of 16 is required, since blocks stop at other instants.
     let errors = [coarse, fine].map(|energies| energies.error().abs());
     assert!(errors[0] < 1e-2 && errors[1] < errors[0] / 8.0, "{errors:?}");
 }
 
-/// The peak of each part in which the drive moves forwards: of a stuck slider `k_s X` at its end, and what is
-/// due to an instant belongs to the part that ends there.
+/// The peak of each segment in which the drive moves forwards: for a stuck slider `k_s X` at its end. The
+/// values at an instant belong to the segment that ends there.
 #[test]
 fn every_slide_has_its_peak() {
     let model = programmed(

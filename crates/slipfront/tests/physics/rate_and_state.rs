@@ -1,4 +1,4 @@
-//! Friction that follows speed and state.
+//! Friction that depends on speed and state.
 
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
@@ -20,8 +20,8 @@ const LAW: RateAndState = RateAndState {
     slip_speed: 1e-3,
 };
 
-/// At a prescribed speed the state is exact over any step. Friction is a hundred times finer than its
-/// logarithm: rounding is 1e-15.
+/// At a prescribed speed the state is exact over any step. The error of friction is a hundred times smaller
+/// than that of its logarithm: rounding is 1e-15.
 #[test_matrix([0.1, 3.0, 100.0], [0.01, 0.7])]
 fn friction_after_a_step_of_speed(ratio: f64, dt: f64) {
     let (v_1, v_2) = (0.01, 0.01 * ratio);
@@ -37,8 +37,8 @@ fn friction_after_a_step_of_speed(ratio: f64, dt: f64) {
     }
 }
 
-/// Growth rate of a small disturbance of steady sliding of blocks that move as one, each on a spring of
-/// stiffness `k`.
+/// Growth rate of a small disturbance of steady sliding of blocks that move as a rigid body, each on a spring
+/// of stiffness `k`.
 fn measured_growth(v: f64, k: f64, damping: f64, dt: f64, apart: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let law = RateAndState {
@@ -57,7 +57,7 @@ fn measured_growth(v: f64, k: f64, damping: f64, dt: f64, apart: f64) -> f64 {
 
 /// Disturbances grow below and decay above the critical stiffness. Friction is taken at the speed half a step
 /// after the instant of its state, mu(v + dt v'/2), as if the mass were larger by sigma a dt/(2 v). The cubic
-/// with that mass tells the error, and half the step leaves half of it, to terms of the next order (a fifth
+/// with this mass gives the error, and half the step leaves half of it, to terms of the next order (a fifth
 /// of the error, 10 % of the ratio).
 #[test_case(0.03, 0.1, 0.9, 36.0)]
 #[test_case(0.03, 0.1, 1.1, 36.0)]
@@ -81,8 +81,8 @@ fn disturbances_grow_below_the_critical_stiffness(v: f64, omega_star: f64, ratio
     assert!((coarse / fine - 2.0).abs() < 0.2, "{coarse} {fine}");
 }
 
-/// A stiff drive and strong damping end in steady sliding at the level of the law, textured or not; the state
-/// of the contacts is D_c/V*.
+/// A stiff drive and strong damping lead to steady sliding at the level of the law, textured or not; the
+/// state of the contacts is D_c/V*.
 #[test_matrix([Load::Redistributed, Load::Kept])]
 fn steady_sliding_has_the_level_of_the_law(load: Load) {
     let slider = Slider {
@@ -116,12 +116,11 @@ fn steady_sliding_has_the_level_of_the_law(load: Load) {
         "{}",
         last.mean_state
     );
-    // Friction is integrated with the forces: what is missing is of the order of the rounding.
+    // Friction is integrated with the forces: the energy missing is of the order of rounding.
     assert!(last.energies.error().abs() < 1e-3, "{}", last.energies.error());
 }
 
-/// A block at rest creeps: it counts as slipping from where its speed exceeds the slip speed, and as none
-/// before.
+/// A block at rest creeps: it counts as slipping once its speed exceeds the slip speed, and not before.
 #[test]
 fn slip_begins_at_the_slip_speed() {
     let lattice = Lattice::free(1, 1);

@@ -1,5 +1,5 @@
 //! Scale invariance: at equal groups V*, R*, Omega*, sigma* the dimensional quantities do not matter (Eqs.
-//! 11, 12), but for the load's strain eps = P mu_s/E, which makes the springs slightly nonlinear.
+//! 11, 12), except for the strain of the load eps = P mu_s/E, which makes the springs slightly nonlinear.
 
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Scales, Surface, scales};
@@ -47,8 +47,8 @@ const SLIDERS: [Scales; 4] = [
     },
 ];
 
-/// A rigid slider of thickness `h` on a mount of stiffness `K` per area swings with `sqrt(K/(rho h))`,
-/// whatever the size of its blocks.
+/// A rigid slider of thickness `h` on a mount of stiffness `K` per area oscillates with `sqrt(K/(rho h))`, at
+/// any size of its blocks.
 #[test]
 fn a_mount_sets_a_frequency_that_no_block_does() {
     let (thickness, per_area) = (2e-3, 1e13);
@@ -62,7 +62,7 @@ fn a_mount_sets_a_frequency_that_no_block_does() {
             };
             let frequency = scales.stiffness_of_area(per_area).sqrt() / scales.time();
             let exact = (per_area / (scales.density * thickness)).sqrt();
-            // Some roundings.
+            // Some rounding errors.
             assert!(
                 (frequency / exact - 1.0).abs() < 1e-14,
                 "{frequency}, exact {exact}"
@@ -108,17 +108,17 @@ fn difference(one: &Model, other: &Model) -> f64 {
     largest
 }
 
-/// With linear springs (eps = 0) only the rounding of the conversions differs, 1e-16 each, and no event comes
-/// a step earlier or later for that.
+/// With linear springs (eps = 0) only the rounding of the conversions differs, 1e-16 each, which does not
+/// shift any event by a step.
 #[test_matrix([1, 2, 3])]
 fn without_strain_the_groups_alone_decide(slider: usize) {
     let found = difference(&model(&SLIDERS[0], 0.0), &model(&SLIDERS[slider], 0.0));
     assert!(found < 1e-12, "{found}");
 }
 
-/// Sliders with strains of their own, from 1e-6 to 9e-6, agree to first order in the strain. The stretch
-/// between neighbours, e = 0.1 to 1, changes the force of a spring by eps e^2, and mu* by the mean of that
-/// over slipping and stuck blocks: 1e-4 eps here, bounded by 1e-3 of the strain.
+/// Sliders with different strains, from 1e-6 to 9e-6, agree to first order in the strain. The stretch between
+/// neighbours, e = 0.1 to 1, changes the force of a spring by eps e^2, and mu* by the mean of this over
+/// slipping and stuck blocks: 1e-4 eps here, bounded by 1e-3 of the strain.
 #[test_matrix([1, 2, 3])]
 fn a_small_strain_changes_little(slider: usize) {
     let (one, other) = (&SLIDERS[0], &SLIDERS[slider]);
@@ -127,7 +127,7 @@ fn a_small_strain_changes_little(slider: usize) {
     assert!(found < 1e-3 * strain, "{found} at strain {strain}");
 }
 
-/// The difference is proportional to the strain: a strain of 1e-9 is a thousandth of that of 1e-6.
+/// The difference is proportional to the strain: for a strain of 1e-9 it is a thousandth of that for 1e-6.
 #[test]
 fn the_change_is_of_first_order_in_the_strain() {
     let linear = model(&SLIDERS[0], 0.0);

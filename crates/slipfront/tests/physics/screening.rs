@@ -1,4 +1,4 @@
-//! The mount: the distance over which a local change of stress is felt.
+//! The mount: the distance over which it screens a local change of stress.
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use test_case::test_matrix;
 use crate::common::{Slider, at_rest};
 
 /// One column in contact, which does not slip, and textured blocks on both sides, which the mount pulls
-/// along. Where the drive has stopped and all is at rest, `D = X - u` of the mount falls off from the column
-/// by `cosh` towards the free ends, with
+/// along. When the drive has stopped and everything is at rest, `D = X - u` of the mount decays from the
+/// column as `cosh` towards the free ends, with
 ///
 /// ```text
 /// 2 cosh(kappa) - 2 = k_s/K_el
@@ -38,7 +38,7 @@ fn what_is_held_is_felt_over_the_screening_length(
     model.surface = Surface::new(slider.coefficients(), textured, slider.load, 1.0).unwrap();
     model.drive.k_drive = k_drive;
     let mut simulation = at_rest(&model, 0.1);
-    // The slowest motion decays as exp(-2 k_s t/Omega) at worst, beyond e^-40 here.
+    // The slowest motion decays at least as exp(-2 k_s t/Omega), here to below e^-40.
     while simulation.snapshot().time_star < until + 1500.0 {
         simulation.step();
     }
@@ -55,7 +55,7 @@ fn what_is_held_is_felt_over_the_screening_length(
         // Rounding of displacements of 0.1.
         assert!((found - expected).abs() < 1e-12, "{i}: {found}, exact {expected}");
     }
-    // The length is that of the continuum where it is many blocks.
+    // The length is that of the continuum if it is many blocks.
     let [along, _] = model.drive.screening_lengths(&model.lattice);
     let of_chain = if ny == 1 {
         along

@@ -6,7 +6,7 @@ use test_case::test_matrix;
 
 use crate::common::{Slider, at_rest, from_state};
 
-/// Forces of the lattice alone at a given displacement. If nothing else acts on blocks at rest, their
+/// Forces of the lattice alone at given displacements. If nothing else acts on blocks at rest, their
 /// velocities after a step of 1 have the same bits as the forces.
 fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField {
     let n = lattice.n_blocks();
@@ -29,7 +29,7 @@ fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField
     let force = simulation.state().velocity;
     for b in 0..n {
         let shown = simulation.snapshot().block(b).force_lattice;
-        // Recomputed forces may differ from those of the sweep by rounding: by 1e-16 of each of eight
+        // Recomputed forces may differ from those of the sweep by rounding: by 1e-16 for each of eight
         // springs.
         let differs = (0..2).any(|axis| (shown[axis] - force.at(b)[axis]).abs() > 1e-14);
         assert!(!differs, "block {b} shows {shown:?}, moved by {:?}", force.at(b));
@@ -37,7 +37,7 @@ fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField
     force
 }
 
-/// Eq. 3 as printed, block by block: eight neighbours, current lengths, no algebra. Good to 1e-16/eps.
+/// Eq. 3 as printed, block by block: eight neighbours, current lengths, no algebra. Exact to 1e-16/eps.
 fn by_the_letter(lattice: &Lattice, u: &VectorField, epsilon: f64) -> VectorField {
     let mut force = VectorField::zeros(lattice.n_blocks());
     for b in 0..lattice.n_blocks() {
@@ -100,7 +100,7 @@ fn lattice_forces_are_eq_3_to_the_letter(blocks: [usize; 2], edges: [Edges; 2], 
     let found = lattice_forces(lattice, u, epsilon);
     for b in 0..lattice.n_blocks() {
         let ([fx, fy], [ex, ey]) = (found.at(b), exact.at(b));
-        // The printed form subtracts lengths of 1 that differ by a strain of eps.
+        // The printed form subtracts lengths of about 1 that differ by a strain of eps.
         let tolerance = 1e-15 + 2e-15 / epsilon;
         assert!(
             (fx - ex).abs() < tolerance && (fy - ey).abs() < tolerance,
@@ -200,7 +200,7 @@ fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     }
 }
 
-/// Two blocks and one spring, whose force acts on both with opposite signs.
+/// Two blocks and one spring; its force acts on both with opposite signs.
 #[test]
 fn two_blocks_pull_on_each_other() {
     for (lattice, axis) in [(Lattice::free(2, 1), 0), (Lattice::free(1, 2), 1)] {
@@ -227,7 +227,7 @@ fn small_and_odd_lattices_go_through_their_transition(blocks: [usize; 2], degree
     let peak = slider.onset();
     let (weakest, drawn) = (slider.model().surface.min_slip_threshold(), slider.coefficients());
     let strongest = drawn.mu_static.iter().fold(0.0_f64, |m, mu| m.max(*mu));
-    // Between the weakest and the strongest block, but for the k_s V^2 of the slip itself.
+    // Between the weakest and the strongest block, except for the k_s V^2 of the slip itself.
     assert!(
         peak.ended && peak.mu_star > weakest - 1e-3 && peak.mu_star < strongest + 2e-3,
         "{peak:?}"

@@ -1,4 +1,4 @@
-//! One block, and a uniform lattice, which moves as one: slip, stop, stick, and slip again.
+//! One block, and a uniform lattice that moves as a rigid body: slip, stop, stick, and slip again.
 
 use slipfront::exact_solutions::SlipCycle;
 use test_case::{test_case, test_matrix};
@@ -32,7 +32,7 @@ fn the_closed_form_has_the_tabulated_values(omega_star: f64, v_star: f64, durati
         "{}",
         cycle.force_at_stop()
     );
-    // It solves its equation: the block is at rest at both ends and its force starts from the threshold.
+    // Follows from its equation: the block is at rest at both ends and its force starts from the threshold.
     assert!((cycle.force(0.0) - 1.0).abs() < 1e-14 && cycle.velocity(0.0).abs() < 1e-14);
     assert!(cycle.velocity(cycle.slip_duration()).abs() < 1e-12);
     let (t, h) = (1.7, 1e-4);
@@ -52,7 +52,7 @@ fn undamped_answers_are_elementary(v_star: f64, r: f64) {
     assert!((cycle.mean_force() - r).abs() < 1e-9);
 }
 
-/// First slip and stop of a lattice that moves as one: step and mu* of both.
+/// First slip and stop of a lattice that moves as a rigid body: step and mu* of both.
 struct Slip {
     start: u64,
     stop: u64,
@@ -91,8 +91,8 @@ fn first_slip(slider: &Slider) -> Slip {
 }
 
 /// The slip starts at the first instant past the threshold and stops at the first instant past the stop, so
-/// that its duration in steps may err by two of them; the force at the stop is flat to k_s V dt per step; the
-/// start, late by up to a step, increases all forces of the slip by up to k_s V dt.
+/// that its duration may be wrong by two steps. The force at the stop changes by at most k_s V dt per step.
+/// The start, late by up to a step, increases all forces of the slip by up to k_s V dt.
 #[test_matrix([[1, 1], [2, 2], [7, 5]], [(0.0, 0.03), (0.1, 0.03), (0.1, 0.1), (0.3, 0.03)], [0.0, 77.0])]
 fn one_block_and_a_uniform_lattice_slip_as_the_closed_form(
     blocks: [usize; 2],
@@ -130,7 +130,7 @@ fn one_block_and_a_uniform_lattice_slip_as_the_closed_form(
     );
 }
 
-/// Over a whole period the mean force is R* plus what damping adds; a step counts 1/period of it.
+/// Over a whole period the mean force is R* plus the contribution of damping; a step counts 1/period of it.
 #[test_matrix([0.0, 0.1, 0.3], [[1, 1], [6, 6]])]
 fn the_mean_force_over_a_cycle(omega_star: f64, blocks: [usize; 2]) {
     let slider = Slider {
@@ -155,7 +155,7 @@ fn the_mean_force_over_a_cycle(omega_star: f64, blocks: [usize; 2]) {
         simulation.step();
     }
     let steps = (starts[3] - starts[0]) as f64;
-    // First order in the step, through the instants of slip and stop.
+    // The error is of first order in the step, through the instants of slip and stop.
     let tolerance = 0.1 * slider.dt_star;
     assert!(
         (sum / steps - exact.mean_force()).abs() < tolerance,
@@ -202,7 +202,7 @@ fn the_first_peak_of_a_uniform_lattice_is_that_of_its_first_cycle() {
     );
 }
 
-/// A block alone, driven along an angle, moves along it; the other component never appears.
+/// A single block, driven at an angle, moves along this direction; the other component never appears.
 #[test]
 fn one_block_moves_along_the_drive() {
     let slider = Slider {

@@ -21,7 +21,7 @@ const KINETIC: f64 = 0.5;
 /// Both thresholds of a block that cannot slip.
 const HELD: f64 = 1e3;
 
-/// A lattice of which the blocks that `can_slip` weaken by `weakening` per slip.
+/// A lattice in which the blocks that `can_slip` weaken by `weakening` per slip.
 fn weakening_model(
     [nx, ny]: [usize; 2],
     can_slip: &dyn Fn(usize, usize) -> bool,
@@ -68,7 +68,7 @@ fn a_block_on_a_stiff_spring_does_not_jump() {
         }
         let now = simulation.snapshot();
         let exact = (k * path(now.time_star) - WHOLE) / (k - weakening);
-        // Damping holds the block back by Omega v/(k_s - W), v = V k_s/(k_s - W); a step is as long as V dt.
+        // Damping holds the block back by Omega v/(k_s - W), v = V k_s/(k_s - W); V dt is the path of a step.
         let lag = damping * speed * k / (k - weakening).powi(2);
         let found = now.block(0).displacement[0];
         assert!(
@@ -78,7 +78,7 @@ fn a_block_on_a_stiff_spring_does_not_jump() {
     }
 }
 
-/// The highest speed of any block until the drive has gone so far after blocks have begun to slip.
+/// The highest speed of any block until the drive has moved by `path` after blocks have begun to slip.
 fn highest_speed(model: &Model, path: f64) -> f64 {
     let mut simulation = at_rest(model, 0.4);
     let mut highest = 0.0_f64;
@@ -96,18 +96,18 @@ fn highest_speed(model: &Model, path: f64) -> f64 {
     highest
 }
 
-/// Speed that only a jump reaches, many times that of the drive.
+/// Speed that is reached only in a jump, many times that of the drive.
 const JUMP: f64 = 1e-3;
 /// Speed of the drive while blocks slip.
 const SLOW: f64 = 1e-7;
 
-/// Blocks at their threshold between blocks that cannot slip jump if and only if `W - k_s` is above the least
+/// Blocks at their threshold between blocks that cannot slip jump if and only if `W - k_s` exceeds the least
 /// eigenvalue of the stiffness matrix of the springs along the drive, clamped at their rim.
 fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> bool, eigenvalue: f64) {
     let k = K_DIAGONAL;
     for (share, jumps) in [(0.98, false), (1.02, true)] {
         let weakening = k + share * eigenvalue;
-        // All but the last thousandth of the load, at which nothing slips yet, is fast.
+        // The first 0.999 of the load, in which nothing slips yet, is fast.
         let fast = (0.999 * WHOLE / k / 1e-3).floor();
         let model = weakening_model(
             blocks,
@@ -116,8 +116,8 @@ fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> boo
             0.3,
             &[(1e-3, fast), (SLOW, f64::INFINITY)],
         );
-        // While stable, a mode slips by at most k_s/(0.02 lambda) of the path, times its largest part. It
-        // must not reach D_c.
+        // While stable, a mode slips by at most k_s/(0.02 lambda) of the path, times its largest component.
+        // This must not reach D_c.
         let length = (WHOLE - KINETIC) / weakening;
         let path = 0.3 * length * 0.02 * eigenvalue / k;
         let highest = highest_speed(&model, path);
@@ -125,7 +125,7 @@ fn assert_jumps_above(blocks: [usize; 2], can_slip: &dyn Fn(usize, usize) -> boo
     }
 }
 
-/// Critical size of a chain of n blocks: it jumps if `W - k_s` is above `4 k_1 sin^2(pi/(2(n + 1)))`.
+/// Critical size of a chain of n blocks: it jumps if `W - k_s` exceeds `4 k_1 sin^2(pi/(2(n + 1)))`.
 #[test_case(1)]
 #[test_case(3)]
 #[test_case(8)]
@@ -136,8 +136,8 @@ fn chains_jump_from_a_critical_size_on(n: usize) {
 }
 
 /// The least eigenvalue of the matrix of the springs along x of `n` x `n` blocks between clamped ones, by
-/// power iteration of a shifted matrix: straight springs along x pull with k_1, straight ones across not at
-/// all, diagonal ones with k_2/2 each.
+/// power iteration of a shifted matrix: straight springs along x pull with k_1, straight springs across x do
+/// not pull, and diagonal springs pull with k_2/2 each.
 fn least_eigenvalue_along(n: usize) -> f64 {
     let index = |i: isize, j: isize| {
         let within = |i: isize| (0..n as isize).contains(&i);
@@ -159,7 +159,7 @@ fn least_eigenvalue_along(n: usize) -> f64 {
         };
         (0..n * n).map(row).collect()
     };
-    // Gershgorin: no eigenvalue lies above twice the sum of a row's springs.
+    // Gershgorin: no eigenvalue exceeds twice the sum of a row's springs.
     let shift = 4.0 * (K_STRAIGHT + K_DIAGONAL);
     let mut x = vec![1.0; n * n];
     let mut eigenvalue = 0.0;
@@ -172,18 +172,18 @@ fn least_eigenvalue_along(n: usize) -> f64 {
     eigenvalue
 }
 
-/// Friction suppresses slip across the drive at the onset, so that the springs along it alone decide.
+/// Friction suppresses slip across the drive at the onset, so that only the springs along the drive decide.
 #[test]
 fn a_patch_jumps_by_the_springs_along_the_drive() {
     let eigenvalue = least_eigenvalue_along(3);
-    // Clamped all around, by a small program of linear algebra.
+    // Clamped all around; the value comes from a small program of linear algebra.
     assert!((eigenvalue - 0.814).abs() < 5e-4, "{eigenvalue}");
     let inside = |i: usize, j: usize| (1..=3).contains(&i) && (1..=3).contains(&j);
     assert_jumps_above([5, 5], &inside, eigenvalue);
 }
 
-/// The balance of energy closes, and the energy of weakening is a part of the loss to friction: at the end,
-/// where all blocks have slipped far, `(S - K) D_c/2` of each, whatever the step.
+/// The balance of energy closes, and the weakening energy is a part of the friction loss: at the end, when
+/// all blocks have slipped far, it is `(S - K) D_c/2` for each, at any step.
 #[test_matrix([0.2, 0.05], [None, Some(20.0)])]
 fn the_balance_of_energy_closes(dt_star: f64, healing_time: Option<f64>) {
     let blocks = [20, 16];
@@ -205,8 +205,8 @@ fn the_balance_of_energy_closes(dt_star: f64, healing_time: Option<f64>) {
         .run(Stop::at_step(slider.steps(12.0)), &mut observers)
         .unwrap();
     let (surface, last) = (&model.surface, curve.rows[curve.rows.len() - 1].energies);
-    // What the balance misses falls with the square of the step: (mu_k F_n dt)^2/2 = dt^2/8 at most of every
-    // stop, some of each block, over the work of some units of each.
+    // The error of the balance is proportional to the square of the step: at most (mu_k F_n dt)^2/2 = dt^2/8
+    // per stop, for some stops of each block, relative to a work of some units for each block.
     let bound = 0.01 * dt_star * dt_star;
     assert!(last.error().abs() < bound, "{}", last.error());
     let most: f64 = (0..model.lattice.n_blocks())
@@ -265,8 +265,8 @@ fn static_friction(n: usize, has_hole: bool) -> f64 {
     simulation.snapshot().peak.mu_star
 }
 
-/// Where the critical size has five blocks, static friction and what the hole changes about it are those of
-/// finer meshes within 2 %: with strength that falls at once they change by a tenth from level to level.
+/// If the critical size has five blocks, static friction and its change by the hole agree with finer meshes
+/// within 2 %. With strength that falls at once they change by a tenth from level to level.
 #[test]
 fn static_friction_converges() {
     let levels = [60, 80, 100].map(|n| {

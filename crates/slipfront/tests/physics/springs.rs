@@ -1,4 +1,4 @@
-//! The spring law (Eq. 3): exact at any strain, without loss of digits at the smallest.
+//! The spring law (Eq. 3): exact at any strain, without loss of digits at the smallest strains.
 
 use slipfront::lattice::{Bond, K_DIAGONAL, K_STRAIGHT};
 use test_case::test_matrix;
@@ -44,7 +44,7 @@ fn forces_derive_from_the_energy(epsilon: f64) {
     }
 }
 
-/// A turned spring is as long as before, whatever the angle: no force.
+/// Rotation by any angle does not change the length of a spring: no force.
 #[test_matrix([0.1, 1.0, 3.0])]
 fn a_rotation_stretches_no_spring(angle: f64) {
     let (s, c) = f64::sin_cos(angle);

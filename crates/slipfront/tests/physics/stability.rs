@@ -31,9 +31,9 @@ fn growth(model: &Model, dt: f64, steps: usize) -> f64 {
     largest
 }
 
-/// Equal blocks with periodic edges have a wave that reaches the bound: it is strict. Just below the limit
-/// the undamped oscillation beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22 at 0.999 of it, of each
-/// of the waves that make up the start.
+/// Equal blocks with periodic edges have a wave that reaches the bound: the bound is sharp. At 0.999 of the
+/// limit the undamped oscillation beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22, for each of the
+/// waves in the initial state.
 #[test_case(0.0, 0.9058)]
 #[test_case(0.365, 0.6295)]
 #[test_case(2.0, 0.21025)]
@@ -50,7 +50,8 @@ fn the_bound_of_equal_blocks_is_strict(viscosity_time: f64, limit: f64) {
     assert!(growth(&model, 1.01 * found, 4000) > 1e6);
 }
 
-/// Heavy, soft blocks do not raise the limit; light, stiff ones lower it: lambda_max = 4.5 E/rho + k_s E/rho.
+/// Heavy, soft blocks do not raise the limit; light, stiff blocks lower it: lambda_max = 4.5 E/rho + k_s
+/// E/rho.
 #[test_case(0.1, 1.0, 0.9058)]
 #[test_case(4.0, 1.0, 0.4529)]
 #[test_case(2.0, 0.125, 0.22645)]
@@ -65,9 +66,9 @@ fn stiffness_over_density_decides(stiffness: f64, density: f64, limit: f64) {
     assert!((found - limit).abs() < 5e-5, "{found}");
 }
 
-/// The bound is safe for heterogeneous blocks. A light block among heavy ones swings alone, at half of what
-/// the bound takes of its neighbours: the bound is too strict by the square root of 2, or by 2 where the
-/// dampers decide.
+/// The bound is safe for heterogeneous blocks. A light block among heavy ones oscillates alone, with half of
+/// the contribution that the bound assumes for its neighbours: the bound is too strict by the square root of
+/// 2, or by 2 where the dampers decide.
 #[test_matrix([0.0, 0.2], [0.02, 0.5])]
 fn the_bound_of_unequal_blocks_is_safe(viscosity_time: f64, lightest: f64) {
     let mut slider = varied(24, false);
@@ -81,7 +82,8 @@ fn the_bound_of_unequal_blocks_is_safe(viscosity_time: f64, lightest: f64) {
     assert!(growth(&model, 2.1 * limit, 4000) > 1e6);
 }
 
-/// A block alone is held by its drive spring: 2/sqrt(k_s) = 3.27 is above the limit that no slider exceeds.
+/// A single block is held by its drive spring: 2/sqrt(k_s) = 3.27 exceeds the limit that applies to all
+/// sliders.
 #[test]
 fn no_slider_exceeds_the_limit_of_the_paper() {
     let lattice = Lattice::free(1, 1);

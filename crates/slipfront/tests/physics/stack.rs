@@ -1,5 +1,5 @@
-//! Stacks of sheets: blocks one above the other as masses on springs, waves along and across, and the
-//! stability of the step.
+//! Stacks of sheets: columns of blocks as masses on springs, waves along and across, and the stability of the
+//! step.
 
 use std::f64::consts::TAU;
 
@@ -30,10 +30,10 @@ fn model(lattice: Lattice, v_star: f64, damping: f64, sheets: &[Sheet], along_to
         .with_sheets(sheets.to_vec(), springs)
 }
 
-/// Before the lower sheet slips, the upper one is a mass h between the drive and the springs to the lower:
-/// `h u'' = k (V t - u) - g u`, so that `u = k V/(k + g) (t - sin(w t)/w)` with `w^2 = (k + g)/h`.
+/// Before the lower sheet slips, the upper sheet is a mass h between the drive and the springs to the lower
+/// one: `h u'' = k (V t - u) - g u`, so that `u = k V/(k + g) (t - sin(w t)/w)` with `w^2 = (k + g)/h`.
 ///
-/// The error falls with the square of the step.
+/// The error is proportional to the square of the step.
 #[test]
 fn a_sheet_that_is_held_below_swings() {
     let sheet = Sheet {
@@ -53,7 +53,7 @@ fn a_sheet_that_is_held_below_swings() {
             let u = k * 0.05 / (k + sheet.coupling) * (t - (frequency * t).sin() / frequency);
             let found = simulation.snapshot().point.mu_star;
             largest = largest.max((found - k * (0.05 * t - u)).abs());
-            // What holds the lower sheet is the pull of the upper one.
+            // The friction that holds the lower sheet balances the pull of the upper one.
             let pull = simulation.snapshot().block(0).force_friction[0];
             assert!((pull + sheet.coupling * simulation.sheets()[0].displacement.x[0]).abs() < 1e-14);
         }
@@ -67,8 +67,7 @@ fn a_sheet_that_is_held_below_swings() {
     }
 }
 
-/// Stuck blocks that are displaced in a wave take the traction `Z u`, where the sheets above have come to
-/// rest:
+/// Stuck blocks that are displaced in a wave bear the traction `Z u` once the sheets above have come to rest:
 ///
 /// ```text
 /// Z_k = h_k c(q) + 1/(1/g_k+1 + 1/Z_k+1),   c = 2 r k_2 (1 - cos q) along, 2 k_2 (1 - cos q) across
@@ -92,7 +91,7 @@ fn a_wave_takes_the_traction_of_the_sheets(axis: usize, blocks: usize, ratio: f6
         velocity: VectorField::zeros(lattice.n_blocks()),
     };
     let mut simulation = from_state(&model, 0.3, state);
-    // Damped by exp(-0.15 t) at the least.
+    // Damped at least by exp(-0.15 t).
     for _ in 0..2000 {
         simulation.step();
     }
@@ -128,13 +127,13 @@ fn a_wave_takes_the_traction_of_the_sheets(axis: usize, blocks: usize, ratio: f6
     assert_eq!(now.totals.n_sliding, 0);
 }
 
-/// Just below the bound a stack without friction swings for ever, just above it diverges.
+/// Just below the bound a stack without friction oscillates forever; just above it diverges.
 #[test_matrix([3.0, 1.5, 4.5])]
 fn the_bound_on_the_step_is_that_of_the_stack(ratio: f64) {
     let lattice = Lattice::with_edges(6, 6, [Edges::Periodic; 2]);
     let surface = Surface::uniform(&lattice, 0.0, 0.0);
     let drive = Drive::along_x(0.0);
-    // Stiff between the sheets, which lowers the bound to some half of that of one sheet.
+    // Stiff springs between the sheets, which lower the bound to about half of that of one sheet.
     let sheets = vec![Sheet {
         thickness: 0.5,
         coupling: 4.0,
@@ -166,12 +165,12 @@ fn the_bound_on_the_step_is_that_of_the_stack(ratio: f64) {
     assert!(energy(1.01) > 1e6, "{}", energy(1.01));
 }
 
-/// In steady sliding all sheets move with the drive: friction, and the drag of all masses.
+/// In steady sliding all sheets move with the drive: mu* is friction plus the drag of all masses.
 #[test]
 fn steady_sliding_drags_all_sheets() {
     let lattice = Lattice::free(4, 4);
     let mut model = model(lattice, 0.05, 0.1, &SHEETS, 2.3);
-    // Without a fall of friction nothing sticks and slips.
+    // Without a fall of friction there is no stick-slip.
     model.surface = Surface::uniform(&lattice, 0.5, 0.5);
     let mut simulation = at_rest(&model, 0.2);
     for _ in 0..20_000 {
@@ -183,7 +182,7 @@ fn steady_sliding_drags_all_sheets() {
     assert!((found - expected).abs() < 1e-9, "{found} {expected}");
 }
 
-/// Work and losses balance but for the steps in which blocks stop, see
+/// Work and losses balance, except for the steps in which blocks stop, see
 /// [`Energies::error`](slipfront::observe::Energies::error).
 #[test]
 fn energy_is_balanced() {

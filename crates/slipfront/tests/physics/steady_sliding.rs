@@ -7,9 +7,10 @@ use test_case::test_case;
 
 use crate::common::{Slider, cavity};
 
-/// Every block slides and the slider settles on the level exponentially, at the slowest with k_s/Omega =
-/// 0.014 to 0.2 per unit of time: by 20/V* the transition has decayed below 1e-9. (At Omega* = 1 a few blocks
-/// of much friction go on sticking for very long, which the paper's claim tests allow for.)
+/// Every block slides and the slider settles to the level exponentially, at the slowest with
+/// k_s/Omega = 0.014 to 0.2 per unit of time: by 20/V* the transition has decayed below 1e-9. (At Omega* = 1
+/// a few blocks with high friction keep sticking for very long, which the tests of the paper's claims allow
+/// for.)
 #[test_case(Slider { omega_star: 2.0, ..Slider::default() })]
 #[test_case(Slider { omega_star: 3.0, ..Slider::default() })]
 #[test_case(Slider { omega_star: 3.0, v_star: 0.1, ..Slider::default() })]
@@ -39,7 +40,7 @@ fn strong_damping_ends_in_steady_sliding(slider: Slider) {
     let last = outcome.rows.last().unwrap().point;
     assert!((last.mu_star - exact).abs() < 1e-9, "{} {exact}", last.mu_star);
     assert_eq!(last.sliding_percent, 100.0);
-    // The window opens while the last of the transition still dies away.
+    // The window opens before the transition has decayed completely.
     let kinetic = outcome.kinetic.unwrap();
     assert!(
         (kinetic.mu_star - exact).abs() < 1e-3,

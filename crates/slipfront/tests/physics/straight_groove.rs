@@ -1,4 +1,5 @@
-//! A straight groove before anything slips: how the pull on the missing rows loads the rows at its edge.
+//! A straight groove before anything slips: the load that the pull on the rows without contact adds to the
+//! rows at the edge.
 
 use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::surface::Orientation;
@@ -14,7 +15,7 @@ fn the_closed_form_has_the_tabulated_values(facing: Facing, factor: f64) {
 }
 
 /// The blocks of the groove follow the drive with a constant lag and an oscillation that damping removes, so
-/// that the *rate* at which the load of an edge row grows is exact: 1e-9 is rounding over the time between
+/// that the *rate* at which the load of an edge row grows is exact; 1e-9 is rounding over the time between
 /// two instants.
 #[test_matrix(
     [(Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along)],
@@ -68,8 +69,8 @@ fn rows_beside_a_groove_bear_their_factor(
     assert!((rate / exact - 1.0).abs() < 1e-9, "{rate}, exactly {exact}");
 }
 
-/// The edge rows slip when the force on them reaches N/N_contact; the lag and the oscillation of the
-/// groove that the quasi-static answer leaves out are of the order of V*.
+/// The edge rows slip when the force on them reaches N/N_contact. The lag and the oscillation of the groove,
+/// which the quasi-static answer leaves out, are of the order of V*.
 #[test_case(Facing::Across, Orientation::Across)]
 #[test_case(Facing::Along, Orientation::Along)]
 fn the_first_slip_beside_a_groove_comes_as_much_earlier(facing: Facing, orientation: Orientation) {

@@ -1,5 +1,5 @@
-//! Quarter turns and mirrors of lattice, drive, surface and texture together turn the motion, to the last
-//! bit, through onset and far beyond.
+//! Quarter turns and reflections of lattice, drive, surface and texture together transform the motion in the
+//! same way, to the last bit, through onset and far beyond.
 
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Contact, Load, Shape, Texture, mesh};
@@ -8,7 +8,7 @@ use test_case::{test_case, test_matrix};
 
 use crate::common::{Slider, at_rest, cavity, varied};
 
-/// A symmetry of the square: first a mirror at the x axis, if any, then quarter turns to the left.
+/// A symmetry of the square: first a reflection in the x axis, if any, then quarter turns to the left.
 #[derive(Clone, Copy, Debug)]
 struct Operation {
     mirror: bool,
@@ -36,7 +36,7 @@ impl Operation {
         if self.quarters % 2 == 1 { [y, x] } else { [x, y] }
     }
 
-    /// Place to which block (i, j) of a lattice of nx x ny blocks goes.
+    /// Position to which block (i, j) of a lattice of nx x ny blocks moves.
     fn place(self, [nx, ny]: [usize; 2], i: usize, j: usize) -> [usize; 2] {
         let (mut size, mut at) = ([nx, ny], if self.mirror { [i, ny - 1 - j] } else { [i, j] });
         for _ in 0..self.quarters {
@@ -88,7 +88,7 @@ fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
     ]
 }
 
-/// The slider whose blocks have gone to these places.
+/// The slider after its blocks have moved to these places.
 fn moved(body: &slipfront::Slider, to: &[usize]) -> slipfront::Slider {
     fn moved<T: Copy + Default>(values: &[T], to: &[usize]) -> Vec<T> {
         let mut moved = vec![T::default(); to.len()];
@@ -187,7 +187,7 @@ fn every_symmetry_of_the_square_is_exact(
     );
 }
 
-/// Symmetry holds for heterogeneous sliders, some of whose blocks do not exist, with dampers beside their
+/// Symmetry holds for heterogeneous sliders with missing blocks and with dampers in parallel with their
 /// springs.
 #[test_matrix([(false, 1), (false, 2), (true, 0), (true, 1)], [0.0, 0.3], [true, false])]
 fn sliders_of_unequal_blocks_too((mirror, quarters): (bool, usize), viscosity_time: f64, has_outline: bool) {

@@ -52,8 +52,8 @@ fn blocks_in_contact_carry_the_whole_load() {
     }
 }
 
-/// A textured block has no friction, so that it moves as soon as any force acts: in the first step after t =
-/// 0. N* counts it, first-slip times do not.
+/// A textured block has no friction, so that it moves as soon as any force acts: in the first step after
+/// t = 0. N* counts it, first-slip times do not.
 #[test_matrix([FrictionLaw::Projection, FrictionLaw::Reversal])]
 fn textured_blocks_move_at_once(law: FrictionLaw) {
     let slider = Slider { law, ..textured() };
@@ -106,12 +106,12 @@ fn contact_stress_and_traction_of_stuck_blocks() {
         largest = largest.max(block.traction());
     }
     assert!(largest > 1.5 * pull, "the rim bears {largest}, the rest {pull}");
-    // All pulls on stuck and sliding blocks add up to the drive's.
+    // The sum of all pulls on stuck and sliding blocks is that of the drive.
     let total = (0..625).map(|b| now.block(b).force_drive[0]).sum::<f64>() / 625.0;
     assert!((total - now.point.mu_star).abs() < 1e-13);
 }
 
-/// The scale of tau_c* is the largest over blocks in contact and steps, at every step. The recomputed stress
+/// The scale of tau_c* is the maximum over blocks in contact and steps, at every step. The recomputed stress
 /// of a sliding block may differ by rounding: by some 1e-16 of its forces, which are of the order of 1.
 #[test]
 fn the_largest_contact_stress_is_over_blocks_in_contact_and_all_steps() {
@@ -131,7 +131,7 @@ fn the_largest_contact_stress_is_over_blocks_in_contact_and_all_steps() {
     assert!(by_hand > 1.0);
 }
 
-/// Implicit and explicit friction with memory agree on the peak; without memory the slider never comes down.
+/// Implicit and explicit friction with memory agree on the peak; without memory mu* never falls.
 #[test]
 fn two_readings_of_the_law_agree_and_the_literal_one_does_not() {
     let with = |law| Slider {
@@ -169,8 +169,8 @@ fn two_readings_agree_beside_a_groove() {
     assert!(difference < 1e-3, "{difference}");
 }
 
-/// However large the stress of a block over a texture is, the largest contact stress is that of blocks in
-/// contact.
+/// The largest contact stress includes only blocks in contact, however large the stress of a block over a
+/// texture is.
 #[test]
 fn the_largest_contact_stress_leaves_textured_blocks_out() {
     let slider = textured();

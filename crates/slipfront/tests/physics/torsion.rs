@@ -22,7 +22,7 @@ fn turned(slider: &Slider) -> Model {
     model
 }
 
-/// Distances of the blocks that exist from the middle of the lattice.
+/// Distances of the existing blocks from the middle of the lattice.
 fn radii(model: &Model) -> Vec<f64> {
     let half = [model.lattice.nx, model.lattice.ny].map(|n| 0.5 * n as f64);
     let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider().exists(b));
@@ -35,7 +35,7 @@ fn radii(model: &Model) -> Vec<f64> {
 }
 
 /// A uniform slider slips at its largest radius first, at `sum r^2/(r_max sum r)` of the torque that it can
-/// bear: for a disc of 20 blocks across 0.7577, near the 3/4 of a continuous one. The torque is seen within
+/// bear: 0.7577 for a disc of 20 blocks across, near the 3/4 of a continuous disc. The torque is found within
 /// the rise of one step.
 #[test_case([20, 20], disc(20))]
 #[test_case([12, 7], slipfront::Slider::default())]
@@ -81,8 +81,8 @@ fn the_rim_slips_first(blocks: [usize; 2], body: slipfront::Slider) {
     );
 }
 
-/// Thresholds in proportion to the radius are reached everywhere at once, up to rounding: the whole disc
-/// slips within a step, at the torque that it can bear.
+/// Thresholds proportional to the radius are reached everywhere at once, up to rounding: the whole disc slips
+/// within a step, at the torque that it can bear.
 #[test]
 fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
     let slider = Slider {
@@ -120,9 +120,9 @@ fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
 
 /// Steady rotation: kinetic friction along the circles and damping,
 /// `[sum mu_k F_n r + Omega V sum r^2/r_max]/sum r`. All motions of the lattice are overdamped, Omega > 2
-/// sqrt(6.5 k_1), so that the slow blocks next to the middle do not stick. Across its circle a block at the
-/// speed v moves as if damped by `Omega + mu_k F_n/v`, and returns at k_s over this; the slowest, next to the
-/// middle, is waited for until exp(-25) is left.
+/// sqrt(6.5 k_1), so that the slow blocks next to the middle do not stick. Across its circle a block with the
+/// speed v moves as if damped by `Omega + mu_k F_n/v`, and returns at a rate of k_s over this. The test waits
+/// until the slowest of these motions, next to the middle, has decayed to exp(-25).
 #[test]
 fn the_level_of_steady_rotation_is_that_of_friction_and_damping() {
     let slider = Slider {
@@ -179,8 +179,8 @@ fn a_quarter_turn_changes_nothing() {
     }
 }
 
-/// Work is torque times angle: exact while the springs alone take it; afterwards the balance misses what
-/// blocks lose when they stop, with the square of the step.
+/// Work is torque times angle. It is exact while only the springs take up work. Later the balance misses the
+/// energy that blocks lose when they stop, in proportion to the square of the step.
 #[test]
 fn the_ledger_closes_in_rotation() {
     let slider = Slider {
@@ -208,7 +208,7 @@ fn the_ledger_closes_in_rotation() {
     assert!(stuck.friction_loss == 0.0 && stuck.error().abs() < 1e-12);
     let [coarse, fine] = [0.1, 0.025].map(|dt_star| energies(dt_star, 120.0));
     assert!(coarse.friction_loss > 0.3 * coarse.work);
-    // Of the factor of 16 half is asked for, since blocks stop at other instants.
+    // Only half of the factor of 16 is required, since blocks stop at other instants.
     let errors = [coarse, fine].map(|energies| energies.error().abs());
     assert!(errors[0] < 1e-2 && errors[1] < errors[0] / 8.0, "{errors:?}");
 }

@@ -1,4 +1,4 @@
-//! Dampers beside the springs between blocks.
+//! Dampers in parallel with the springs between blocks.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use test_case::test_matrix;
 
 use crate::common::{self, at_rest, from_state, thrown, varied};
 
-/// A lattice without friction whose springs are damped.
+/// A lattice without friction and with dampers.
 fn floating(nx: usize, ny: usize, omega_star: f64, k_drive: f64, epsilon: f64, slider: Slider) -> Model {
     let edges = if slider.outline.is_some() {
         Edges::Free
@@ -68,7 +68,7 @@ fn amplitudes(
 }
 
 /// The amplitude obeys (1 + g) u+ - (2 - w^2 dt^2 - c) u + (1 - g - c) u- = 0 with g = Omega dt/2 and
-/// c = tau_v (w^2 - k_s) dt: rounding alone is left, 1e-12 in 500 steps.
+/// c = tau_v (w^2 - k_s) dt: only rounding errors remain, 1e-12 in 500 steps.
 #[test_matrix([(1, 0), (2, 1), (6, 4)], [0, 1], [0.0, 0.1, 1.0], [0.05, 0.365])]
 fn a_mode_obeys_the_scheme(mode: (u32, u32), branch: usize, omega_star: f64, time: f64) {
     let dt = 0.2;
@@ -84,8 +84,8 @@ fn a_mode_obeys_the_scheme(mode: (u32, u32), branch: usize, omega_star: f64, tim
     }
 }
 
-/// Exactly the rate of the lagged force, which is of first order in the step. It is read off amplitudes about
-/// a radian apart, so that it is as exact as they are: 1e-12.
+/// The decay rate is exactly that of the lagged force, which is of first order in the step. The rate is
+/// computed from amplitudes about a radian apart, so that it is as exact as they are: 1e-12.
 #[test_matrix([(1, 0), (2, 1), (6, 4)], [0, 1])]
 fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
     let time = 0.1;
@@ -103,8 +103,8 @@ fn modes_decay_at_their_rate(mode: (u32, u32), branch: usize) {
     assert!((order - 1.0).abs() < 0.01, "order {order}");
 }
 
-/// With both dampings, in the limit: half the sum of both. The step of 1e-3 leaves an error of first order,
-/// gamma dt/2 < 2e-4.
+/// With both dampings, the rate in the limit of small steps is half the sum of both. The step of 1e-3 leaves
+/// an error of first order, gamma dt/2 < 2e-4.
 #[test]
 fn both_dampings_add() {
     let (dt, time, omega_star) = (1e-3, 0.05, 0.2);
@@ -114,8 +114,8 @@ fn both_dampings_add() {
     assert!((rate / exact - 1.0).abs() < 2e-4, "{rate}, exactly {exact}");
 }
 
-/// Dampers act in pairs: the momentum of a slider that nothing holds is conserved. Its change is the rounding
-/// of sums over 120 blocks and 400 steps.
+/// Dampers act in pairs: the momentum of a slider without external forces is conserved. It changes only by
+/// the rounding of sums over 120 blocks and 400 steps.
 #[test_matrix([0.0, 0.02], [false, true])]
 fn momentum_is_conserved(epsilon: f64, has_outline: bool) {
     let slider = Slider {
@@ -150,7 +150,8 @@ fn momentum_is_conserved(epsilon: f64, has_outline: bool) {
     }
 }
 
-/// Blocks that all move alike, to the last bit: on exact numbers no difference of velocities is rounded.
+/// All blocks move equally, to the last bit: with exactly represented numbers no difference of velocities is
+/// rounded.
 #[test]
 fn a_rigid_translation_feels_nothing() {
     let run = |time: f64| {
@@ -171,9 +172,9 @@ fn a_rigid_translation_feels_nothing() {
     assert_eq!(run(0.0), run(0.3));
 }
 
-/// Without friction, what was stored at the start is stored, or lost to one of both dampings. Kinetic energy
-/// is the mean of two half steps, so that what is missing is dt^2/4 times the difference of sum F^2/m: of
-/// second order, at any time.
+/// Without friction, the energy stored at the start is still stored, or lost to one of the two dampings.
+/// Kinetic energy is the mean of two half steps, so that the missing energy is dt^2/4 times the difference of
+/// sum F^2/m: of second order, at any time.
 #[test]
 fn dampers_take_what_is_missing() {
     let worst = |dt: f64| {
@@ -196,7 +197,7 @@ fn dampers_take_what_is_missing() {
         errors.fold(0.0, f64::max)
     };
     let [coarse, fine] = [0.02, 0.01].map(worst);
-    // The next term is omega dt = 0.07 of the first at most.
+    // The next term is at most omega dt = 0.07 of the first.
     let order = (coarse / fine).log2();
     assert!((order - 2.0).abs() < 0.1, "{coarse}, {fine}: order {order}");
     assert!(fine < 1e-4);

@@ -21,7 +21,7 @@ const LAW: Weakening = Weakening {
     ratio: 0.4,
 };
 
-/// Growth rate of a small disturbance of steady sliding at `v`, of blocks that move as one.
+/// Growth rate of a small disturbance of steady sliding at `v`, of blocks that move as a rigid body.
 fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
@@ -30,7 +30,7 @@ fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
 }
 
 /// Friction is taken at the speed half a step before, F(v - dt v'/2), as if the mass were m - (dF/dv) dt/2:
-/// the rate is smaller by that share, and half the step leaves half the error, to terms of the next order (a
+/// the rate is smaller by this share, and half the step leaves half the error, to terms of the next order (a
 /// fifth of the share, 10 % of the ratio). The test covers both sides of dF/dv + Omega = 0.
 #[test_case(0.2, 0.0)]
 #[test_case(0.2, 0.2)]
@@ -49,7 +49,7 @@ fn disturbances_of_steady_sliding_grow_as_the_eigenvalue_says(v: f64, damping: f
     assert_eq!(exact > 0.0, slope + damping < 0.0);
 }
 
-/// With strong damping all blocks slide for good at the level of the law at V*; adhesion does not weaken.
+/// With strong damping all blocks keep sliding at the level of the law at V*; adhesion does not weaken.
 #[test_matrix([0.0, 0.3])]
 fn strong_damping_ends_at_the_level_of_the_law(adhesion: f64) {
     let mut slider = Slider {

@@ -8,7 +8,7 @@ mod common;
 
 use slipfront::Kernel;
 
-/// The kernel of the simulations of this binary.
+/// The kernel of the simulations of this test binary.
 const KERNEL: Kernel = Kernel::General;
 
 #[path = "../physics/composite.rs"]

@@ -1,4 +1,4 @@
-//! Both kernels against the reference, step by step, over random sliders with every option.
+//! Both kernels compared with the reference, step by step, over random sliders with every option.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ use crate::common::Slider;
 use crate::reference::Reference;
 use crate::slider;
 
-/// Steps of a comparison, in which blocks slip, stop, age and slip again.
+/// Number of steps of a comparison, in which blocks slip, stop, age and slip again.
 const STEPS: u64 = 40;
 
 /// Options that [`Slider`] does not have.
@@ -31,12 +31,12 @@ struct Options {
     graded: [bool; 3],
     /// Sheets above the lattice, for equal blocks.
     sheets: Vec<Sheet>,
-    /// Stiffness of sheets along a wave over that across it.
+    /// Stiffness of sheets along a wave over the stiffness across it.
     along_to_across: f64,
     outline: bool,
     attached: Option<Edge>,
     viscosity_time: f64,
-    /// Speeds of a program over V*, and after how many steps they end.
+    /// Speeds of a program over V*, and the number of steps after which each ends.
     program: Option<Vec<(f64, u32)>>,
     rotates: bool,
     held: bool,
@@ -46,10 +46,9 @@ struct Options {
     uneven_load: bool,
     /// Scale of forces over the mean static coefficient.
     mu_static_mean: f64,
-    /// Size of displacements and velocities at the start, and which of the blocks have a velocity: every
-    /// n-th.
+    /// Size of displacements and velocities at the start, and n, where every n-th block has a velocity.
     start: Option<(f64, usize)>,
-    /// Whether the reference is given the state of the kernel before each step.
+    /// Whether the reference receives the state of the kernel before each step.
     follows: bool,
     /// Stiffness of the foundation under an upright sheet.
     foundation: Option<f64>,
@@ -102,9 +101,9 @@ fn after_break() -> impl Strategy<Value = AfterBreak> {
 }
 
 prop_compose! {
-    /// Parameters with which friction is felt at all speeds: where
-    /// `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large there is next to none, and the library finds
-    /// speeds to an absolute error of the exponential of that times the last place alone.
+    /// Parameters for which friction matters at all speeds: where
+    /// `ln(2 V_0) - (mu_0 + b ln(V_0 theta/D_c))/a` is large there is almost none, and the library computes
+    /// speeds only to an absolute error of the exponential of this, times a unit in the last place.
     fn rate_and_state()(
         a in 0.005..0.03,
         b_over_a in 0.0..3.0,
@@ -157,7 +156,7 @@ fn spread(n: usize, seed: u64, low: f64, high: f64) -> Vec<f64> {
     (0..n).map(one).collect()
 }
 
-/// Input of both sides.
+/// Input of both implementations.
 struct Setting {
     model: Model,
     contact: Contact,
@@ -167,7 +166,7 @@ struct Setting {
 }
 
 impl Setting {
-    /// The setting of a slider with options; none where nothing is in contact.
+    /// The setting of a slider with options; none if no block is in contact.
     fn new(slider: &Slider, options: &Options) -> Option<Self> {
         let (lattice, seed) = (slider.lattice(), slider.seed);
         let is_stack = !options.sheets.is_empty();
@@ -229,7 +228,7 @@ impl Setting {
             });
             model.drive.program = Some(Arc::new(Program::new(segments)));
         }
-        // A single block has no arm.
+        // A single block has no lever arm.
         if options.rotates && model.n_blocks() > 1 && !is_stack && !is_upright {
             let rotation = Rotation::about_centroid(&lattice, &model.rows, model.slider(), &Alone);
             model.drive.rotation = Some(rotation);
@@ -362,7 +361,7 @@ impl Setting {
     }
 }
 
-/// Displacements, and velocities of every `apart`-th block, of the blocks that exist.
+/// Displacements of the existing blocks, and velocities of every `apart`-th block.
 fn start(model: &Model, start: Option<(f64, usize)>, seed: u64) -> State {
     let n = model.lattice.n_blocks();
     let Some((size, apart)) = start else {
@@ -386,7 +385,7 @@ fn start(model: &Model, start: Option<(f64, usize)>, seed: u64) -> State {
     }
 }
 
-/// Largest distance of the results of both sides.
+/// Largest difference between the results of both implementations.
 struct Tolerance {
     force: f64,
     velocity: f64,
@@ -396,10 +395,11 @@ struct Tolerance {
 }
 
 impl Tolerance {
-    /// A force is a sum of some ten terms, each found in a few operations, all of which round to half of the
-    /// last place of the largest: 32 last places. In a step a velocity changes by it times dt/(m c_+), and so
-    /// does what is lost of it to the next; in n steps that begin where the one before has ended, velocities
-    /// gather n such errors and displacements n^2, since no law that is followed so amplifies them.
+    /// A force is a sum of some ten terms, each computed in a few operations, all of which round to half a
+    /// unit in the last place of the largest: 32 units. In a step this error, times dt/(m c_+), changes a
+    /// velocity, and so does the rounding of the velocity itself. In n consecutive steps velocities
+    /// accumulate n such errors and displacements n^2, since the laws that are compared over several steps do
+    /// not amplify them.
     fn new(setting: &Setting, state: &State, sheets: &[State], step: u64) -> Self {
         let (model, slider) = (&setting.model, setting.model.slider());
         let blocks = || (0..model.lattice.n_blocks()).filter(|&b| slider.exists(b));
@@ -425,8 +425,9 @@ impl Tolerance {
             .fold(0.0, f64::max);
         let speed = states().map(|state| most(&state.velocity)).fold(0.0, f64::max);
         let path = model.drive.farthest_path(step as f64 * setting.dt);
-        // All springs of a block together are less stiff than 10, in a sheet by its thickness, and those to
-        // other sheets add their stiffness at both ends; dampers are less stiff than 10 times their time.
+        // All springs of a block together have a stiffness of less than 10, in a sheet times its thickness,
+        // and springs to other sheets add their stiffness at both ends; dampers have less than 10 times their
+        // time.
         let couplings = model.sheets().iter().map(|sheet| 2.0 * sheet.coupling);
         let stiffness = 10.0 * thickness.clone().fold(1.0, f64::max) + couplings.sum::<f64>();
         let springs = stiffness * (distance + path + slider.viscosity_time * speed) + 1.0;
@@ -439,9 +440,9 @@ impl Tolerance {
         };
         let force = 32.0 * f64::EPSILON * largest * steps;
         let velocity = force * setting.dt / lightest;
-        // Terms of sums are rounded to a last place of their bounds. Those on speeds assume that springs are
-        // stretched as far as blocks may have moved since displacements were measured, which is done every 16
-        // steps.
+        // Terms of sums are rounded to a unit in the last place of their bounds. Those on speeds assume that
+        // springs are stretched by as much as blocks may have moved since displacements were measured, which
+        // is done every 16 steps.
         let gap = distance + path + 2.0 * 16.0 * setting.dt * speed;
         let highest = speed + (stiffness * gap + bears) * setting.dt / lightest;
         let powers = heaviest * (1.0 + model.damping * setting.dt) / setting.dt * highest * highest;
@@ -460,15 +461,15 @@ impl Tolerance {
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     instants: usize,
-    /// Instants at which rounding decides which blocks slide.
+    /// Number of instants at which rounding decides which blocks slide.
     undecided: usize,
-    /// Blocks that begin to slide.
+    /// Number of blocks that begin to slide.
     slips: usize,
-    /// Blocks that stop.
+    /// Number of blocks that stop.
     stops: usize,
 }
 
-/// The kernel against the reference over [`STEPS`] steps.
+/// Compares the kernel with the reference over [`STEPS`] steps.
 fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult {
     let execution = Execution {
         kernel,
@@ -488,7 +489,7 @@ fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult
                 reference.move_to(&simulation.state(), &simulation.sheets());
             }
             let before = reference.slides.clone();
-            // Where rounding decides what slides, it decides whether the drive stands, too.
+            // Where rounding decides which blocks slide, it also decides whether the drive stands still.
             let moves = match is_decided {
                 true => reference.drive_moves(),
                 false => !setting.model.drive.is_held() || simulation.snapshot().totals.n_slipping == 0,
@@ -516,7 +517,7 @@ fn compare(setting: &Setting, kernel: Kernel, seen: &mut Seen) -> TestCaseResult
         let place = |error| TestCaseError::fail(format!("{kernel:?}, step {step}: {error}"));
         compare_blocks(&now, &reference, &tolerance).map_err(place)?;
         prop_assert_eq!(now.drive_steps, reference.drive_steps);
-        // Energies are known where the drive has moved.
+        // Energies are known at steps in which the drive has moved.
         if let Some(row) = curve.rows.last().filter(|row| row.step == step) {
             compare_sums(row, &reference, &tolerance).map_err(place)?;
         }
@@ -542,9 +543,9 @@ fn agree(what: &str, found: f64, expected: f64, tolerance: f64) -> TestCaseResul
     Ok(())
 }
 
-/// Whether rounding decides if a block slides: a block that no friction holds, and that moves by no more than
-/// rounding, since the forces on it cancel or a wave has just come to it. For other blocks it decides with a
-/// chance of 1e-13 per block and step, where a force comes so close to a threshold.
+/// Whether rounding decides if a block slides: a block without friction that moves by no more than rounding,
+/// since the forces on it cancel or a wave has just reached it. For other blocks rounding decides with a
+/// probability of 1e-13 per block and step, if a force comes this close to a threshold.
 fn is_undecided(model: &Model, state: &State, reference: &Reference, tolerance: &Tolerance) -> bool {
     let is_upright = model.friction.interface().is_some();
     let is_tiny = |[x, y]: [f64; 2]| {
@@ -556,7 +557,7 @@ fn is_undecided(model: &Model, state: &State, reference: &Reference, tolerance: 
     free.any(|b| is_tiny(state.velocity.at(b)) || is_tiny(reference.velocity[b]))
 }
 
-/// Motion of every block and the forces on it.
+/// Compares the motion of every block and the forces on it.
 fn compare_blocks(now: &Snapshot, reference: &Reference, tolerance: &Tolerance) -> TestCaseResult {
     for b in (0..reference.velocity.len()).filter(|&b| now.model.slider().exists(b)) {
         let block = now.block(b);
@@ -612,11 +613,11 @@ fn compare_counts(now: &Snapshot, reference: &Reference) -> TestCaseResult {
     let bits = |times: &[f64]| -> Vec<u64> { times.iter().map(|time| time.to_bits()).collect() };
     prop_assert_eq!(bits(&now.first_slip_time_star()), bits(&reference.first_slips));
     prop_assert_eq!([now.totals.n_sliding, now.totals.n_slipping], reference.sliding());
-    // A quotient of whole numbers.
+    // A quotient of integers.
     agree("N*", now.point.sliding_percent, reference.n_star(), 1e-13)
 }
 
-/// mu* and the account of energy.
+/// Compares mu* and the energy balance.
 fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) -> TestCaseResult {
     let (point, energies, losses) = (&row.point, &row.energies, reference.losses());
     let [mu_star, mu_lateral_star] = reference.mu_star();
@@ -676,8 +677,8 @@ fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) ->
     )
 }
 
-/// Both kernels take single steps from arbitrary states, and chains of them, as the reference does, whatever
-/// the options.
+/// Both kernels agree with the reference in single steps from arbitrary states, and in chains of steps, with
+/// any options.
 #[test]
 fn kernels_agree_with_the_reference() {
     let reached = RefCell::new(BTreeMap::<&str, usize>::new());

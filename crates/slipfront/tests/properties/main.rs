@@ -26,7 +26,7 @@ use slipfront::{
 
 use common::{Slider, at_rest, from_state, thrown};
 
-/// The kernel of the simulations of this binary.
+/// The kernel of the simulations of this test binary.
 const KERNEL: Kernel = Kernel::Fused;
 
 fn edges() -> impl Strategy<Value = [Edges; 2]> {
@@ -112,7 +112,7 @@ fn law() -> impl Strategy<Value = FrictionLaw> {
 }
 
 prop_compose! {
-    /// Any slider that a case file could ask for, contact or no contact.
+    /// Any slider that a case file could specify, with or without contact.
     fn slider()(
         lattice in lattice(),
         textures in prop::collection::vec(texture(), 0..3),
@@ -157,7 +157,7 @@ prop_compose! {
     }
 }
 
-/// The slider's surface, or none when its texture leaves no contact.
+/// Whether a slider has contact: its texture may leave none.
 fn has_contact(slider: &Slider) -> bool {
     mesh(&slider.lattice(), &slider.textures)
         .textured
@@ -216,7 +216,7 @@ proptest! {
         shift in [0..14_usize, 0..14_usize],
     ) {
         let lattice = Lattice::with_edges(blocks[0], blocks[1], [Edges::Periodic; 2]);
-        // Centres off the outline by more than rounding, so that the shift moves no block across it.
+        // Centres are off the outline by more than rounding, so that the shift moves no block across it.
         let center = center.map(|c| (c * 64.0).round() / 64.0 + 0.003_1);
         let cavity = |center| Shape::Cavity(Cavity {
             center, lambda, s: 1, w, across: false, rotate: 17.0,
@@ -231,8 +231,8 @@ proptest! {
         }
     }
 
-    /// On periodic axes an outline covers what its copies in a sheet of many sliders cover, folded back onto
-    /// one: also where it is larger than the slider.
+    /// On periodic axes an outline covers the same blocks as its copies in a sheet of many sliders, folded
+    /// back onto one slider: also if it is larger than the slider.
     #[test]
     fn periodic_meshes_are_folded_sheets(
         blocks in [3..9_usize, 3..9_usize],
@@ -294,7 +294,7 @@ proptest! {
         prop_assert_eq!(now.totals.n_slipping, (0..n).filter(slips).count());
     }
 
-    /// Friction on a sliding block is mu_k F_n against its motion. On a stuck one it balances the other
+    /// Friction on a sliding block is mu_k F_n against its motion. On a stuck block it balances the other
     /// forces and never exceeds max(mu_s, mu_k) F_n unless the block has just stopped.
     #[test]
     fn friction_stays_in_its_bounds(slider in slider()) {
@@ -323,8 +323,8 @@ proptest! {
         }
     }
 
-    /// The number of threads and skipping change no bit, and the general kernel agrees to rounding, from rest
-    /// and from a state in motion.
+    /// The number of threads and skipping do not change any bit, and the general kernel agrees to rounding,
+    /// from rest and from a state in motion.
     #[test]
     fn kernels_and_executions_agree(
         slider in slider(), lattice in lattice_below(41), moves in any::<bool>(),
@@ -358,7 +358,7 @@ proptest! {
             let size = |v: &VectorField| v.x.iter().chain(&v.y).fold(1.0_f64, |most, x| x.abs().max(most));
             for (a, b) in [(&here.displacement, &exact.displacement), (&here.velocity, &exact.velocity)] {
                 let far = (0..n).map(|k| (a.x[k] - b.x[k]).abs().max((a.y[k] - b.y[k]).abs())).fold(0.0, f64::max);
-                // Rounding errors of 1e-16 in each of hundreds of steps, which add up where nothing
+                // Rounding errors of 1e-16 in each of hundreds of steps, which accumulate where nothing
                 // dissipates energy.
                 prop_assert!(far < 1e-12 * size(b), "step {}: {:e} apart", step, far);
             }
@@ -367,8 +367,8 @@ proptest! {
         prop_assert_eq!(bits(plain.snapshot().first_slip_time_star()), bits(other.snapshot().first_slip_time_star()));
     }
 
-    /// Newton's third law: the forces between blocks add up to nothing, and so do their moments about any
-    /// point when edges are free.
+    /// Newton's third law: the forces between blocks add up to zero, and so do their moments about any point
+    /// if edges are free.
     #[test]
     fn forces_between_blocks_cancel(lattice in lattice(), seed in any::<u64>(), epsilon in prop_oneof![Just(0.0), 1e-6..0.2_f64]) {
         let n = lattice.n_blocks();
@@ -404,7 +404,7 @@ proptest! {
         }
     }
 
-    /// The first peak of a whole run against two passes over its curve.
+    /// The first peak of a whole run, compared with two passes over its curve.
     #[test]
     fn the_first_peak_is_that_of_two_passes_over_the_curve(
         slider in slider(), r_star in 0.1..1.1_f64, omega_star in 0.0..2.0_f64, seed in any::<u64>(),
@@ -425,7 +425,7 @@ proptest! {
             let half_way = 0.5 * (largest + level);
             largest > level && curve[n] <= half_way && largest - curve[n] >= 0.05 * (most - level).max(0.0)
         };
-        // A slider whose mu* falls too late has crept: no fall ends its peak any more.
+        // If mu* falls too late the slider has crept: no later fall ends its peak.
         let time = |n: usize| outcome.rows[n].time_star;
         let is_in_time = |n: &usize| time(*n) - time(largest_to(*n)) <= slider.model().longest_fall();
         let fall = (0..curve.len()).find(|&n| is_fall(n)).filter(is_in_time);
@@ -437,7 +437,7 @@ proptest! {
         prop_assert_eq!(peak.largest.mu_star, curve.iter().copied().fold(f64::NEG_INFINITY, f64::max));
     }
 
-    /// The means kept in bins against a direct mean over the steps of the window.
+    /// The means kept in bins, compared with a direct mean over the steps of the window.
     #[test]
     fn kinetic_means_are_those_of_the_steps(
         last_step in 1..60_000_u64, from in 0.0..1.0_f64, rate in 0.0001..1.0_f64,
@@ -459,7 +459,7 @@ proptest! {
         let found = history.kinetic(from * end, dt, 1.0);
         let bin = (last_step + 1).div_ceil(KineticHistory::BINS);
         let Some(found) = found else {
-            // Nothing but a window shorter than two bins can be empty.
+            // Only a window shorter than two bins can be empty.
             prop_assert!((1.0 - from) * end < 2.0 * bin as f64 * dt);
             return Ok(());
         };
@@ -471,7 +471,7 @@ proptest! {
         prop_assert!((found.sliding_percent - 50.0 - 50.0 * mean).abs() < 1e-8);
     }
 
-    /// Fields of a frame against those of single blocks, at any stride.
+    /// Fields of a frame, compared with those of single blocks, at any stride.
     #[test]
     fn frames_hold_every_nth_block(slider in slider(), stride in 1..6_usize, steps in 0..60_u32) {
         prop_assume!(has_contact(&slider));

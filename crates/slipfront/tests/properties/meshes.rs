@@ -1,4 +1,4 @@
-//! Meshes of patterns against the plainest way to find them: every block of every copy, one after the other.
+//! Meshes of patterns compared with the simplest method: every block of every copy, one after the other.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use slipfront::{Drive, Edges, Lattice};
 
 use crate::lattice_below;
 
-/// A coordinate on a grid of quarters of a block, where block centres lie on outlines, or anywhere.
+/// A coordinate on a grid of quarters of a block, for which block centres lie on outlines, or any coordinate.
 fn coordinate(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     (range, any::<bool>()).prop_map(|(x, is_round)| if is_round { (4.0 * x).round() / 4.0 } else { x })
 }
@@ -22,7 +22,7 @@ prop_compose! {
         across in any::<bool>(),
         rotate in prop_oneof![Just(0.0), Just(90.0), Just(45.0), -360.0..360.0_f64],
     ) -> Cavity {
-        // |w| = 1/s gives cusps; an ellipse must be one.
+        // |w| = 1/s gives cusps; for an ellipse (s = 1) |w| must be less than 1.
         let w = if s == 1 { 0.99 * w } else { w / f64::from(s) };
         Cavity { center, lambda, s, w, across, rotate }
     }
@@ -33,7 +33,7 @@ prop_compose! {
 type IsInside = Box<dyn Fn([isize; 2]) -> bool>;
 
 /// Eq. 17 as printed, for one cavity: the formula of an ellipse, or the crossings of a polygon of 4096
-/// vertices with the row of the block, of which an odd number lies left of its centre.
+/// vertices with the row of the block: a centre is inside if an odd number of them lies to its left.
 fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> IsInside {
     let Cavity { lambda, w, .. } = *cavity;
     let s = f64::from(cavity.s);
@@ -73,7 +73,7 @@ fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> Is
     let first = rows.start;
     let crossings: Vec<Vec<f64>> = rows.map(crossings).collect();
     Box::new(move |[column, row]| {
-        // The first block whose centre does not lie left of a crossing.
+        // The first block with a centre that does not lie left of a crossing.
         let blocks = crossings[(row - first) as usize].iter().map(|x| (x - 0.5).ceil());
         blocks.filter(|block| *block <= column as f64).count() % 2 == 1
     })
@@ -83,7 +83,7 @@ fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> Is
 fn by_the_letter(lattice: &Lattice, cavity: &Cavity, arrays: &[Array]) -> Vec<bool> {
     let blocks = [lattice.nx as isize, lattice.ny as isize];
     let places = places(arrays);
-    // As many sliders side by side as the farthest outline reaches.
+    // As many sliders next to each other as the farthest outline reaches.
     let range = |axis: usize| match lattice.edges[axis] {
         Edges::Free => 0..blocks[axis],
         Edges::Periodic => {
@@ -108,7 +108,7 @@ fn by_the_letter(lattice: &Lattice, cavity: &Cavity, arrays: &[Array]) -> Vec<bo
     textured
 }
 
-/// The shifts of all copies: place after place, of each of which the next array is the middle.
+/// The shifts of all copies: every position of an array is the middle of the next array.
 fn places(arrays: &[Array]) -> Vec<[f64; 2]> {
     let Some((array, others)) = arrays.split_last() else {
         return vec![[0.0; 2]];
@@ -138,8 +138,8 @@ fn places(arrays: &[Array]) -> Vec<[f64; 2]> {
 prop_compose! {
     fn array()(
         count in [1..5_usize, 1..5_usize],
-        // In quarters of four blocks, so that the shifts of staggered rows are on the grid of the coordinates
-        // too.
+        // In quarters of four blocks, so that the shifts of staggered rows are on the grid of the
+        // coordinates, too.
         spacing in [coordinate(0.5..9.0), coordinate(0.5..9.0)],
         staggered in any::<bool>(),
     ) -> Array {
@@ -147,7 +147,7 @@ prop_compose! {
     }
 }
 
-/// A shape other than a cavity, in a slider of these blocks, and the same moved, if it stands alone.
+/// A shape other than a cavity, in a slider of these blocks.
 fn other_shape(blocks: [usize; 2]) -> impl Strategy<Value = Shape> {
     let place = || coordinate(-4.0..24.0);
     let orientation = prop_oneof![Just(Orientation::Across), Just(Orientation::Along)];
@@ -172,7 +172,7 @@ fn other_shape(blocks: [usize; 2]) -> impl Strategy<Value = Shape> {
     ]
 }
 
-/// The mask of one copy, moved from where the shape stands.
+/// The mask of one copy, moved from the position of the shape.
 fn copy(lattice: &Lattice, shape: &Shape, [x, y]: [f64; 2]) -> Vec<bool> {
     let moved = match shape.clone() {
         Shape::Groove(groove) => {
@@ -269,7 +269,7 @@ proptest! {
         let outside = mesh(&lattice, std::slice::from_ref(&inverted));
         prop_assert!(inside.iter().zip(&outside.textured).all(|(inside, outside)| inside != outside));
         prop_assert_eq!(outside.empty.is_empty(), inside.contains(&false));
-        // Beside another texture the two still unite.
+        // Together with another texture, the two are still combined.
         let other = mesh(&lattice, std::slice::from_ref(&beside)).textured;
         let both = mesh(&lattice, &[beside, inverted]).textured;
         for b in 0..lattice.n_blocks() {

@@ -50,7 +50,7 @@ fn drawn<const N: usize>(rows: [&str; N]) -> Vec<bool> {
         .collect()
 }
 
-/// A strip of one block along an edge is one block wide, whatever may lie outside.
+/// A strip of one block along an edge is one block wide, whatever lies beyond the edge.
 #[test]
 fn slivers_at_edges_are_seen() {
     let lattice = Lattice::free(5, 5);
@@ -60,7 +60,7 @@ fn slivers_at_edges_are_seen() {
     let opened = lattice.opened(&set, 3);
     assert_eq!(opened, drawn([".....", ".....", "..###", "..###", "..###"]));
     assert_eq!(lattice.width(&opened), Some(3));
-    // Around a periodic axis, the strip is a part of what lies beyond.
+    // Around a periodic axis, the strip is a part of the set at the opposite edge.
     let around = Lattice::with_edges(5, 3, [Edges::Periodic, Edges::Free]);
     let set = drawn(["##..#"; 3]);
     assert_eq!((around.width(&set), around.n_pieces(&set)), (Some(3), 1));

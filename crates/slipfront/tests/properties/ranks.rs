@@ -1,5 +1,5 @@
-//! Surfaces that several ranks make, each its own rows, compared with the surface that one process makes
-//! alone.
+//! Surfaces that several ranks create, each for its own rows, compared with the surface that one process
+//! creates.
 
 use proptest::prelude::*;
 use slipfront::Surface;
@@ -22,7 +22,7 @@ fn make(slider: &Slider, rank: &dyn Communicator) -> (Meshed, Surface) {
     (meshed, surface.unwrap())
 }
 
-/// Numbers of the whole surface.
+/// Values for the whole surface.
 fn numbers(surface: &Surface) -> ([usize; 2], [u64; 5]) {
     let numbers = [
         surface.texture_percent(),

@@ -1,4 +1,4 @@
-//! The load of textured blocks that blocks in contact near them take, against plain loops.
+//! The load of textured blocks that nearby blocks in contact take, compared with plain loops.
 
 use proptest::prelude::*;
 use slipfront::communicator::Alone;
@@ -8,7 +8,7 @@ use slipfront::{Communicator, Edges, Lattice, SurfaceError};
 
 use crate::lattice;
 
-/// Square of the distance of two blocks, the least one where an axis is periodic.
+/// Square of the distance between two blocks, the least distance on a periodic axis.
 fn distance_square(lattice: &Lattice, a: usize, b: usize) -> usize {
     let (ia, ja) = lattice.column_row(a);
     let (ib, jb) = lattice.column_row(b);
@@ -22,7 +22,8 @@ fn distance_square(lattice: &Lattice, a: usize, b: usize) -> usize {
     along(ia, ib, 0).pow(2) + along(ja, jb, 1).pow(2)
 }
 
-/// Load of every block in contact, 0 of others; none where a textured block has no block in contact near it.
+/// Load of every block in contact, 0 for other blocks; none if a textured block has no block in contact near
+/// it.
 fn plainly(
     lattice: &Lattice,
     textured: &[bool],
@@ -75,12 +76,12 @@ proptest! {
             return Ok(());
         };
         let found = found.unwrap();
-        // Of loads over the factor of equal sharing.
+        // Sums of loads over the factor of equal sharing.
         let sum = |of: &dyn Fn(usize) -> bool| (0..n).filter(|&b| of(b)).map(|b| pressure[b]).sum::<f64>();
         let factor = sum(&|b| exists[b]) / sum(&|b| !textured[b]);
         for b in 0..n {
             let load = if textured[b] { pressure[b] } else { expected[b] / factor };
-            // Each load is rounded, and so is each of at most 14 x 14 parts to 2^-62 of the largest row.
+            // Each load is rounded, and so is each of at most 14 x 14 shares, to 2^-62 of the largest row.
             prop_assert!((found[b] - load).abs() < 1e-12 * load, "{} {}", found[b], load);
         }
         if ranks <= lattice.ny {

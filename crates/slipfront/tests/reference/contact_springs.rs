@@ -8,7 +8,7 @@ use super::step::{Motion, Update};
 use super::vector::{Vector, difference, length, sum, times};
 
 /// Coefficient of the spring of block `b` that has broken `breaks` times: its own, or with `redraw` that of a
-/// block in contact which the random stream of seed, block and number of breaks chooses.
+/// block in contact, chosen by the random stream of seed, block and number of breaks.
 pub(crate) fn coefficient(law: &ContactSprings, surface: &Surface, b: usize, breaks: u64) -> f64 {
     let AfterBreak::FormsAgain { redraw: Some(seed) } = law.after_break else {
         return surface.mu_static[b];
@@ -36,12 +36,12 @@ pub(crate) struct Yielding {
     pub(crate) anchor: Vector,
     /// Energy that is lost with a spring that breaks.
     pub(crate) lost: f64,
-    /// Work of a block that has slid before against its kinetic friction.
+    /// Work against kinetic friction of a block that has slid before.
     pub(crate) slip_work: f64,
 }
 
-/// The update of a block at `place` whose spring has its anchor there, and how the spring yields: at `holds`,
-/// or at `slows` while the block slides. `F_f = -k_t (u - a)`, of a spring that breaks the mean of its forces
+/// The update of a block at `place`, with the anchor of its spring, and how the spring yields: at `holds`, or
+/// at `slows` while the block slides. `F_f = -k_t (u - a)`; for a spring that breaks the mean of its forces
 /// before and after.
 pub(crate) fn update(
     law: &ContactSprings,

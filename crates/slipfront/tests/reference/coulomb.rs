@@ -13,12 +13,12 @@ pub(crate) fn weakened(law: Option<Weakening>, speed: f64) -> f64 {
     })
 }
 
-/// Static friction after `age` over that of age 0: `1 + beta ln(1 + t_stuck/tau)`.
+/// Ratio of static friction after `age` to that at age 0: `1 + beta ln(1 + t_stuck/tau)`.
 pub(crate) fn aged(law: Option<Ageing>, age: f64) -> f64 {
     law.map_or(1.0, |law| 1.0 + law.beta * (1.0 + age / law.time).ln())
 }
 
-/// Strength of a block while it is stuck and while it slides after a slip `s`:
+/// Strength of a block while it is stuck and while it slides, after a slip `s`:
 /// `f = K + (S - K) max(0, 1 - s/D_c)` for both, unless `K >= S`.
 pub(crate) fn after_slip(law: Option<SlipWeakening>, [holds, slows]: [f64; 2], slip: f64) -> [f64; 2] {
     match law {
@@ -27,14 +27,14 @@ pub(crate) fn after_slip(law: Option<SlipWeakening>, [holds, slows]: [f64; 2], s
     }
 }
 
-/// Whether a block is whole again that has been stuck for so long.
+/// Whether a block that has been stuck for so long has its full strength again.
 pub(crate) fn is_whole_again(law: Option<SlipWeakening>, stuck_for: f64) -> bool {
     law.and_then(|law| law.healing_time)
         .is_some_and(|time| stuck_for >= time)
 }
 
-/// The update of a block on which `force` acts beside friction, which bears `holds` while it is stuck and
-/// `slows` while it slides.
+/// The update of a block under `force`, the sum of all forces except friction. Friction is at most `holds`
+/// while the block is stuck and `slows` while it slides.
 pub(crate) fn update(law: FrictionLaw, motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     match law {
         FrictionLaw::Projection => projection(motion, force, holds, slows),
@@ -43,7 +43,7 @@ pub(crate) fn update(law: FrictionLaw, motion: &Motion, force: Vector, holds: f6
     }
 }
 
-/// A block that stays where it is: friction balances the other forces.
+/// A block that stays stuck: friction balances the other forces.
 fn stuck(force: Vector) -> Update {
     Update {
         velocity: [0.0, 0.0],
@@ -51,8 +51,8 @@ fn stuck(force: Vector) -> Update {
     }
 }
 
-/// Moreau's time-stepping: kinetic friction takes `q = dt mu_k F_n/(m c_+)` from the velocity that the block
-/// would have without it.
+/// Moreau's time-stepping: kinetic friction subtracts `q = dt mu_k F_n/(m c_+)` from the velocity that the
+/// block would have without it.
 fn projection(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     if motion.is_at_rest() && length(force) <= holds {
         return stuck(force);
@@ -68,11 +68,11 @@ fn projection(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update 
     }
 }
 
-/// Explicit friction along `-v`, along minus the force for a block that starts; a block whose velocity turns
-/// round within the static threshold sticks.
+/// Explicit friction along `-v`, and along minus the force for a block that starts; a block with a velocity
+/// that reverses within the static threshold sticks.
 fn reversal(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     let starts = motion.is_at_rest();
-    // D12: what does not overcome kinetic friction does not start.
+    // D12: a block starts only if the force also exceeds kinetic friction.
     if starts && length(force) <= holds.max(slows) {
         return stuck(force);
     }
@@ -85,7 +85,8 @@ fn reversal(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     Update { velocity, friction }
 }
 
-/// Eq. 4 as printed but for the sign (D1): friction balances the forces below the threshold, at any velocity.
+/// Eq. 4 as printed, except for the sign (D1): friction balances the forces below the threshold, at any
+/// velocity.
 fn literal(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     let against = if motion.is_at_rest() {
         force

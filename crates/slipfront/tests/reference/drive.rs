@@ -1,11 +1,11 @@
-//! The drive: springs whose far ends move along a path X(t) (Eq. 2); and the dead load.
+//! The drive: springs with far ends that move along a path X(t) (Eq. 2); and the dead load.
 
 use slipfront::Model;
 
 use super::lattice::{exists, place};
 use super::vector::{Vector, difference, left_of, length, sum, times};
 
-/// Path X of the far ends at `time`: `V t`, or the sum of the parts of a program.
+/// Path X of the far ends at `time`: `V t`, or the sum over the segments of a program.
 pub(crate) fn path(model: &Model, time: f64) -> f64 {
     let Some(program) = &model.drive.program else {
         return model.drive.v_star * time;
@@ -19,7 +19,7 @@ pub(crate) fn path(model: &Model, time: f64) -> f64 {
     path
 }
 
-/// Middle of all blocks that exist, about which a rotation turns.
+/// Centroid of all existing blocks, the centre of a rotation.
 fn middle(model: &Model) -> Vector {
     let (mut total, mut count) = ([0.0, 0.0], 0.0);
     for b in (0..model.lattice.n_blocks()).filter(|&b| exists(model, b)) {
@@ -29,7 +29,7 @@ fn middle(model: &Model) -> Vector {
     [total[0] / count, total[1] / count]
 }
 
-/// Arms **r** of all blocks of a rotation, from its axis to their middles; 0 for blocks that do not exist.
+/// Arms **r** of all blocks in a rotation, from its axis to their centres; 0 for missing blocks.
 fn arms(model: &Model) -> Vec<Vector> {
     let axis = middle(model);
     let arm = |b| {
@@ -42,7 +42,7 @@ fn arms(model: &Model) -> Vec<Vector> {
     (0..model.lattice.n_blocks()).map(arm).collect()
 }
 
-/// Directions **g** of the far ends over all blocks: **d** of a translation, `z x r/r_max` of a rotation.
+/// Directions **g** of the far ends over all blocks: **d** for a translation, `z x r/r_max` for a rotation.
 pub(crate) fn directions(model: &Model) -> Vec<Vector> {
     if model.drive.rotation.is_none() {
         return vec![model.drive.direction; model.lattice.n_blocks()];
@@ -54,7 +54,7 @@ pub(crate) fn directions(model: &Model) -> Vec<Vector> {
         .collect()
 }
 
-/// Stiffness of the drive spring of block `b` over `k_s`; 0 where there is none.
+/// Stiffness of the drive spring of block `b` over `k_s`; 0 if there is none.
 fn relative_stiffness(model: &Model, b: usize) -> f64 {
     match &model.slider().drive_springs {
         _ if !exists(model, b) => 0.0,
@@ -73,7 +73,7 @@ pub(crate) fn spring_force(stiffness: f64, path: f64, direction: Vector, displac
     times(stiffness, difference(times(path, direction), displacement))
 }
 
-/// The dead load `F_0,i` on block `b`: the common force times that of the block, if these differ.
+/// The dead load `F_0,i` on block `b`: the common force, times that of the block if these differ.
 pub(crate) fn dead_load(model: &Model, b: usize) -> Vector {
     let load = model.dead_load();
     let relative = match &load.field {

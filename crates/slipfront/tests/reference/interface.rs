@@ -14,7 +14,7 @@ fn normal_force(interface: &Interface, load: f64, rise: f64) -> f64 {
     }
 }
 
-/// Force along y on a block in contact that the change of its normal force is, `N - F_n`.
+/// Force along y on a block in contact from the change of its normal force, `N - F_n`.
 pub(crate) fn reaction(interface: &Interface, load: f64, rise: f64) -> f64 {
     normal_force(interface, load, rise) - load
 }
@@ -28,7 +28,7 @@ pub(crate) fn factor(interface: &Interface, load: f64, rise: f64) -> f64 {
     }
 }
 
-/// The update of a block that is held and slowed along x alone, by Moreau's time-stepping.
+/// The update of a block with friction along x alone, by Moreau's time-stepping.
 pub(crate) fn update(motion: &Motion, force: Vector, holds: f64, slows: f64) -> Update {
     let free = motion.accelerated(force);
     let most = motion.change_of_velocity(slows);

@@ -15,7 +15,7 @@ pub(crate) struct Spring {
     pub(crate) stiffness: f64,
 }
 
-/// Whether block `b` exists; all do without an outline.
+/// Whether block `b` exists; all blocks do without an outline.
 pub(crate) fn exists(model: &Model, b: usize) -> bool {
     let outline = &model.slider().outline;
     outline.as_ref().is_none_or(|outline| outline.exists[b])
@@ -31,7 +31,7 @@ fn modulus(model: &Model, b: usize) -> f64 {
     model.slider().stiffness.as_ref().map_or(1.0, |moduli| moduli[b])
 }
 
-/// Place of the middle of block `b`, in blocks.
+/// Position of the centre of block `b`, in blocks.
 pub(crate) fn place(model: &Model, b: usize) -> Vector {
     let nx = model.lattice.nx;
     [(b % nx) as f64 + 0.5, (b / nx) as f64 + 0.5]
@@ -52,7 +52,7 @@ fn beside(from: usize, step: i64, count: usize, edges: Edges) -> Option<usize> {
 /// k_ij = k 2 e_i e_j/(e_i + e_j)     k_1 = 3/4, d = 1 (straight)     k_2 = k_1/2, d = sqrt(2) (diagonal)
 /// ```
 ///
-/// and half of it for springs along a free edge, if the slider halves those.
+/// and half of this for springs along a free edge, if the slider halves these.
 pub(crate) fn springs(model: &Model, b: usize) -> Vec<Spring> {
     let lattice = &model.lattice;
     let (i, j) = (b % lattice.nx, b / lattice.nx);

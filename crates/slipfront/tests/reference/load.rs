@@ -6,7 +6,7 @@ use slipfront::surface::{Contact, Load};
 /// Normal forces, in units of `P l^2`: `F_n,i = p_i (sum_all p)/(sum_contact p)` on blocks in contact, 0 over
 /// a texture.
 ///
-/// With [`Load::Kept`] the blocks in contact bear `p_i` alone. Blocks that do not exist have no pressure.
+/// With [`Load::Kept`] the blocks in contact bear only `p_i`. Missing blocks have no pressure.
 pub(crate) fn normal_forces(surface: &Surface, contact: &Contact, exists: &[bool]) -> Vec<f64> {
     let n = surface.textured.len();
     let pressure = |b: usize| match &contact.pressure {
@@ -25,7 +25,7 @@ pub(crate) fn normal_forces(surface: &Surface, contact: &Contact, exists: &[bool
     (0..n).map(force).collect()
 }
 
-/// Strength of friction of one block without age and speed, in units of `P mu_s l^2`.
+/// Strength of friction of one block at age 0 and speed 0, in units of `P mu_s l^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Threshold {
     /// Part `mu_i F_n,i` from the coefficient.
@@ -35,7 +35,7 @@ pub(crate) struct Threshold {
 }
 
 impl Threshold {
-    /// The threshold `mu_i F_n,i + tau_a l^2`; nothing over a texture, where there is no load.
+    /// The threshold `mu_i F_n,i + tau_a l^2`; 0 over a texture, where there is no load.
     pub(crate) fn new(
         coefficient: f64,
         contact: &Contact,

@@ -9,7 +9,7 @@ use super::{Reference, drive};
 /// Powers at an instant.
 #[derive(Clone, Copy, Debug, Default)]
 struct Powers {
-    /// Force of the drive springs along their direction, `sum F_s . g`, which works along the path X.
+    /// Force of the drive springs along their direction, `sum F_s . g`, which does work along the path X.
     pull: f64,
     friction: f64,
     damping: f64,
@@ -43,13 +43,13 @@ impl Reference<'_> {
         (0..self.blocks.len()).map(of_block).sum()
     }
 
-    /// Number of blocks that exist, N.
+    /// Number of existing blocks, N.
     fn n_blocks(&self) -> f64 {
         self.blocks.iter().filter(|block| block.exists).count() as f64
     }
 
-    /// mu* and the component to the left of the drive (Eq. 9): of a translation `sum (F_s + F_0) . d/N`, of a
-    /// rotation `sum F_s . (z x r)/sum r`, the torque over the sum of radii.
+    /// mu* and the component to the left of the drive (Eq. 9): for a translation `sum (F_s + F_0) . d/N`, for
+    /// a rotation `sum F_s . (z x r)/sum r`, the torque over the sum of radii.
     pub(crate) fn mu_star(&self) -> [f64; 2] {
         let over = match self.model.drive.rotation {
             None => self.n_blocks(),
@@ -60,7 +60,7 @@ impl Reference<'_> {
         [along / over, across / over]
     }
 
-    /// Number of blocks that slide, and of those in contact that do.
+    /// Number of sliding blocks, and number of sliding blocks in contact.
     pub(crate) fn sliding(&self) -> [usize; 2] {
         let slides = |b: &usize| self.slides[*b];
         let all = (0..self.blocks.len()).filter(slides);
@@ -68,8 +68,8 @@ impl Reference<'_> {
         [all.count(), in_contact.count()]
     }
 
-    /// N*, in % of all blocks that exist (Eq. 11a); of an upright sheet, those in contact in % of the facing
-    /// ones.
+    /// N*, in % of all existing blocks (Eq. 11a); for an upright sheet, sliding blocks in contact in % of the
+    /// facing blocks.
     pub(crate) fn n_star(&self) -> f64 {
         let [sliding, slipping] = self.sliding();
         match self.interface() {
@@ -127,7 +127,7 @@ impl Reference<'_> {
         })
     }
 
-    /// Energy of the springs in contacts, `k_t (u - a)^2/2`, after those that yield now have lost theirs.
+    /// Energy of the contact springs, `k_t (u - a)^2/2`, after those that yield now have lost theirs.
     pub(crate) fn contact_energy(&self) -> f64 {
         let Friction::ContactSprings(law) = self.model.friction else {
             return 0.0;
@@ -159,7 +159,7 @@ impl Reference<'_> {
         })
     }
 
-    /// Powers at t_n. Energy that springs in contacts take is stored, and lost when they break.
+    /// Powers at t_n. Energy of contact springs is stored, and lost when they break.
     fn powers(&self) -> Powers {
         let is_stored = matches!(self.model.friction, Friction::ContactSprings(_));
         let friction = |b: usize| -dot(self.force_friction[b], self.velocity_now(b));

@@ -1,4 +1,4 @@
-//! The model of `docs/model.md`, to be read beside the paper: one thread, plain loops, one function per
+//! The model of `docs/model.md`, to be read next to the paper: one thread, plain loops, one function per
 //! equation, every option.
 //!
 //! Lattices, surfaces and parameters come from the library; every force, threshold, friction and sum is
@@ -43,30 +43,30 @@ struct Block {
     kinetic: Threshold,
 }
 
-/// Memory of a law of friction about a block.
+/// Memory of a law of friction for a block.
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    /// Time at which the block has stopped.
+    /// Time at which the block last stopped.
     stopped_at: f64,
-    /// Slip of the block since it was whole.
+    /// Slip of the block since it last had its full strength.
     slip: f64,
-    /// Time at which the block has moved last.
+    /// Time at which the block last moved.
     moved_at: f64,
     /// State of the contact.
     theta: f64,
-    /// Displacement at which the spring of the contact has no force.
+    /// Displacement at which the contact spring has no force.
     anchor: Vector,
-    /// Number of times that this spring has broken; of one after which the block slides, 1 while it does.
+    /// Number of times that this spring has broken; if the block slides after a break, 1 while it does.
     breaks: u64,
 }
 
-/// The slider at t_n. Friction and sliding are those of the update that starts there.
+/// The slider at t_n, with friction and sliding from the update that starts there.
 pub(crate) struct Reference<'a> {
     model: &'a Model,
     contact: &'a Contact,
     dt: f64,
     step: u64,
-    /// Steps in which the drive has moved, and their number a step before.
+    /// Number of steps in which the drive has moved, and the same a step before.
     pub(crate) drive_steps: u64,
     drive_steps_before: u64,
     blocks: Vec<Block>,
@@ -79,7 +79,7 @@ pub(crate) struct Reference<'a> {
     pub(crate) velocity: Vec<Vector>,
     /// Sheets above the lattice.
     sheets: Vec<sheets::Blocks>,
-    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface; of a stack
+    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface; in a stack
     /// the forces of the sheet above.
     pub(crate) force_drive: Vec<Vector>,
     /// Forces `F_v` of the dampers.
@@ -88,7 +88,8 @@ pub(crate) struct Reference<'a> {
     pub(crate) force_lattice: Vec<Vector>,
     /// Friction `F_f`.
     pub(crate) force_friction: Vec<Vector>,
-    /// Energy lost now with the spring of each block, and against the friction of those that slide on.
+    /// Energy lost at present with the spring of each block, and against the friction of blocks that slide
+    /// on.
     lost: Vec<[f64; 2]>,
     pub(crate) slides: Vec<bool>,
     /// Times t_n of the first slip of each block in contact; NaN before.
@@ -122,7 +123,8 @@ impl<'a> Reference<'a> {
             Friction::RateAndState(law) => law.theta_0,
             Friction::Coulomb(_) | Friction::ContactSprings(_) => 0.0,
         };
-        // Springs hold the dead load of blocks at their sites; that of a stack acts on its highest sheet.
+        // Springs hold the dead load with the blocks at their sites; the load of a stack acts on its highest
+        // sheet.
         let anchor = |b: usize| match model.friction {
             Friction::ContactSprings(law) if model.sheets().is_empty() => {
                 times(-1.0 / law.stiffness, drive::dead_load(model, b))
@@ -170,8 +172,8 @@ impl<'a> Reference<'a> {
         reference
     }
 
-    /// Puts blocks where a state and those of the sheets above have them; their velocities become those half
-    /// a step after t_n. The memory stays.
+    /// Sets the positions of blocks from a state and those of the sheets above, and the velocities half a
+    /// step after t_n. The memory stays the same.
     pub(crate) fn move_to(&mut self, state: &State, sheets: &[State]) {
         for (blocks, state) in self.sheets.iter_mut().zip(sheets) {
             blocks.move_to(state);
@@ -183,7 +185,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// t_n, a product and no sum.
+    /// Time t_n, as a product instead of a sum.
     fn time(&self) -> f64 {
         self.step as f64 * self.dt
     }
@@ -193,14 +195,14 @@ impl<'a> Reference<'a> {
         self.drive_steps as f64 * self.dt
     }
 
-    /// Whether the drive moves from t_n to t_n+1: a held one only where no block in contact slides.
+    /// Whether the drive moves from t_n to t_n+1: a held drive only if no block in contact slides.
     pub(crate) fn drive_moves(&self) -> bool {
         let slips = |b: usize| self.blocks[b].in_contact && self.slides[b];
         !self.model.drive.is_held() || !(0..self.blocks.len()).any(slips)
     }
 
-    /// From t_n to t_n+1, in which the drive moves or stands: the displacements (Eq. 8), the memory of
-    /// contacts, and all that belongs to the new instant.
+    /// Advances from t_n to t_n+1; the drive moves or stands still. Computes the displacements (Eq. 8), the
+    /// memory of contacts, and everything at the new instant.
     pub(crate) fn step(&mut self, drive_moves: bool) {
         self.step += 1;
         self.drive_steps_before = self.drive_steps;
@@ -220,8 +222,8 @@ impl<'a> Reference<'a> {
         self.evaluate();
     }
 
-    /// Finds forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and the
-    /// measures.
+    /// Computes forces at t_n (Eqs. 2, 3), friction (Eq. 4), velocities half a step later (Eqs. 5 to 8), and
+    /// the measures.
     fn evaluate(&mut self) {
         for b in 0..self.blocks.len() {
             self.force_drive[b] = sum(self.pull_on(None, b), self.reaction(b));
@@ -253,7 +255,7 @@ impl<'a> Reference<'a> {
         springs::damper_force(b, &self.blocks[b].springs, u, v, time, epsilon)
     }
 
-    /// The update of block `b` (Eqs. 4 to 8) by the law of friction, which remembers it.
+    /// The update of block `b` (Eqs. 4 to 8) by the law of friction, and of the memory of the law.
     fn friction(&mut self, b: usize) -> Update {
         let (block, memory, now) = (&self.blocks[b], self.memory[b], self.time());
         let force = sum(self.force_drive[b], self.force_lattice[b]);
@@ -335,7 +337,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// The part of a velocity that friction knows: all of it, or along an interface.
+    /// The part of a velocity that friction acts on: all of it, or the part along an interface.
     fn slip_velocity(&self, velocity: Vector) -> Vector {
         match self.interface() {
             Some(_) => [velocity[0], 0.0],
@@ -343,12 +345,12 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Normal force `F_n,i` of the load in units of `P mu_s l^2`, those of all other forces.
+    /// Normal force `F_n,i` of the load in units of `P mu_s l^2`, the unit of all other forces.
     fn load(&self, b: usize) -> f64 {
         self.blocks[b].normal_force / self.contact.mu_static_mean
     }
 
-    /// Force along y by which the normal force differs from the load.
+    /// Force along y: the difference of the normal force from the load.
     fn reaction(&self, b: usize) -> Vector {
         match self.interface() {
             Some(interface) if self.blocks[b].in_contact => [
@@ -359,7 +361,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Static threshold of block `b` at this coefficient.
+    /// Static threshold of block `b` for this coefficient.
     fn static_threshold(&self, b: usize, coefficient: f64) -> Threshold {
         let (block, adhesion) = (&self.blocks[b], self.contact.adhesion.of_static);
         Threshold::new(

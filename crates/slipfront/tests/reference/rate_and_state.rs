@@ -5,7 +5,7 @@ use slipfront::RateAndState;
 use super::step::{Motion, Update};
 use super::vector::{Vector, length, times, unit};
 
-/// `asinh(e^y)`, also where the exponential would overflow.
+/// Function `asinh(e^y)`, also where the exponential would overflow.
 fn asinh_of_exp(y: f64) -> f64 {
     if y > 100.0 {
         y + std::f64::consts::LN_2
@@ -20,8 +20,8 @@ pub(crate) fn coefficient(law: &RateAndState, speed: f64, theta: f64) -> f64 {
     law.a * asinh_of_exp((speed / (2.0 * law.v_0)).ln() + state)
 }
 
-/// The update against the velocity without friction, whose speed solves
-/// `v + dt F_n mu(v, theta)/(m c_+) = |v_free|`; by bisection, since its left side rises with v from 0.
+/// The update, from the velocity without friction. Its speed solves `v + dt F_n mu(v, theta)/(m c_+) =
+/// |v_free|`, by bisection, since the left side rises with v from 0.
 pub(crate) fn update(
     law: &RateAndState,
     motion: &Motion,

@@ -1,4 +1,4 @@
-//! A stack of sheets: lattices above the one in friction, joined to it block by block. Sheet 0 is the lowest
+//! A stack of sheets: lattices above the one in friction, coupled to it block by block. Sheet 0 is the lowest
 //! one above the lattice.
 
 use slipfront::{Sheet, State};
@@ -29,7 +29,7 @@ impl Blocks {
         }
     }
 
-    /// Puts blocks where a state has them.
+    /// Sets the positions and velocities of blocks from a state.
     pub(super) fn move_to(&mut self, state: &State) {
         for b in 0..self.displacement.len() {
             self.displacement[b] = state.displacement.at(b);
@@ -37,7 +37,7 @@ impl Blocks {
         }
     }
 
-    /// From t_n to t_n+1 (Eq. 8).
+    /// Advances from t_n to t_n+1 (Eq. 8).
     pub(super) fn step(&mut self, dt: f64) {
         for (u, v) in self.displacement.iter_mut().zip(&self.velocity) {
             *u = sum(*u, times(dt, *v));
@@ -52,15 +52,14 @@ impl Reference<'_> {
         sheet.map_or(self.displacement[b], |sheet| self.sheets[sheet].displacement[b])
     }
 
-    /// Velocity half a step after t_n of block `b` of the blocks that the drive pulls: those of the highest
-    /// sheet.
+    /// Velocity half a step after t_n of block `b` of the driven blocks: those of the highest sheet.
     pub(super) fn pulled_velocity(&self, b: usize) -> Vector {
         self.sheets
             .last()
             .map_or(self.velocity[b], |highest| highest.velocity[b])
     }
 
-    /// Displacement of block `b` of the blocks that the drive pulls.
+    /// Displacement of block `b` of the driven blocks.
     pub(super) fn pulled_displacement(&self, b: usize) -> Vector {
         self.displacement_in(self.sheets.len().checked_sub(1), b)
     }
@@ -73,7 +72,8 @@ impl Reference<'_> {
         sum(spring, block.dead_load)
     }
 
-    /// Force from above on block `b` of a sheet, or of the lattice: `g (u_k+1 - u_k)`, or that of the drive.
+    /// Force from above on block `b` of a sheet, or of the lattice: `g (u_k+1 - u_k)`, or the force of the
+    /// drive.
     pub(super) fn pull_on(&self, sheet: Option<usize>, b: usize) -> Vector {
         let above = sheet.map_or(0, |sheet| sheet + 1);
         match self.sheets.get(above) {
@@ -88,7 +88,7 @@ impl Reference<'_> {
         }
     }
 
-    /// Finds the velocities of all sheets half a step after t_n, from forces at t_n.
+    /// Computes the velocities of all sheets half a step after t_n, from forces at t_n.
     pub(super) fn accelerate_sheets(&mut self) {
         for number in 0..self.sheets.len() {
             let velocities = (0..self.blocks.len()).map(|b| self.accelerated(number, b));
@@ -96,8 +96,8 @@ impl Reference<'_> {
         }
     }
 
-    /// Velocity of block `b` of a sheet half a step after t_n: of the springs to its neighbours, as thick as
-    /// the sheet, of the pull from above, and of that on the block below.
+    /// Velocity of block `b` of a sheet half a step after t_n, from the springs to its neighbours, in
+    /// proportion to the thickness of the sheet, the pull from above, and the pull on the block below.
     fn accelerated(&self, number: usize, b: usize) -> Vector {
         let blocks = &self.sheets[number];
         let springs = &self.blocks[b].springs;
@@ -113,8 +113,8 @@ impl Reference<'_> {
         motion.accelerated(sum(times(blocks.sheet.thickness, elastic), from_sheets))
     }
 
-    /// Sum over the blocks of all sheets of the square of a speed times the mass: at t_n, or the mean of the
-    /// squares of the half steps around it.
+    /// Sum over the blocks of all sheets of the mass times the square of the speed: at t_n, or the mean of
+    /// the squares of the half steps around it.
     pub(super) fn sheets_m_v_squared(&self, at_half_steps: bool) -> f64 {
         let square = |v: Vector| dot(v, v);
         let of_block = |blocks: &Blocks, b: usize| {

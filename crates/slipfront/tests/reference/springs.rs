@@ -1,15 +1,15 @@
-//! Forces between blocks: springs (Eq. 3) and the dampers beside them.
+//! Forces between blocks: springs (Eq. 3) and the dampers in parallel with them.
 
 use super::lattice::Spring;
 use super::vector::{Vector, difference, dot, length, sum, times, unit};
 
-/// Vector **r** = **d** + eps **e** along a spring whose ends have moved apart by **e** = u_j - u_i, in
+/// Vector **r** = **d** + eps **e** along a spring with ends that have moved apart by **e** = u_j - u_i, in
 /// blocks.
 fn current(spring: &Spring, apart: Vector, epsilon: f64) -> Vector {
     sum(spring.rest, times(epsilon, apart))
 }
 
-/// Extension over the strain of the load, `(r - d)/eps = (2 d.e + eps e^2)/(r + d)`, without a difference of
+/// Extension over the strain of the load, `(r - d)/eps = (2 d.e + eps e^2)/(r + d)`, without differences of
 /// nearly equal lengths.
 fn extension(spring: &Spring, apart: Vector, epsilon: f64) -> f64 {
     let (r, d) = (length(current(spring, apart, epsilon)), length(spring.rest));

@@ -2,7 +2,7 @@
 
 use super::vector::{Vector, sum, times};
 
-/// Motion of a block at t_n, and the parameters by which its velocity changes.
+/// Motion of a block at t_n, and the parameters that determine the change of its velocity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     /// Velocity half a step before t_n.

@@ -18,7 +18,7 @@ pub struct Ageing {
 
 impl Ageing {
     /// Needs of ageing: the threshold at the present age, whether age counts, and the time at which the block
-    /// stopped, which is remembered.
+    /// stopped, which is stored.
     pub(super) const NEEDS: Needs = Needs {
         is_fused: false,
         columns: 1,
@@ -37,8 +37,8 @@ impl Ageing {
         self.beta * libm::log1p(age / self.time)
     }
 
-    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from that of age
-    /// 0. Adhesion does not age: the law is one of the coefficient.
+    /// Static threshold `mu_s(t) F_n + tau_a l^2` of a block that has been stuck for `age`, from the
+    /// threshold at age 0. Adhesion does not age: the law applies to the coefficient.
     ///
     /// The operations have this order in every kernel: `x = age/tau`, `g = beta log1p(x)`,
     /// `m = max(S - tau_a l^2, 0)`, `S + g m`.
@@ -47,18 +47,17 @@ impl Ageing {
         young + self.growth(age) * (young - adhesion).max(0.0)
     }
 
-    /// Pull at which a block slips that has been stuck since the pull was 0, if the pull rises at `rate` and
-    /// the threshold is above kinetic friction.
+    /// Pull at which a block slips if it has been stuck since the pull was 0, the pull rises at `rate`, and
+    /// the threshold exceeds kinetic friction.
     pub(super) fn first_slip_pull(&self, young: f64, adhesion: f64, rate: f64) -> f64 {
-        // The threshold grows more slowly than the pull, from a pull at which it is higher: each round comes
-        // nearer.
+        // The threshold grows more slowly than the pull, so that each round comes nearer to the fixed point.
         let aged = |pull: f64| self.static_limit(young, adhesion, pull / rate);
         (0..MAX_ROUNDS).fold(young, |pull, _| aged(pull))
     }
 }
 
-/// Rounds after which a fixed point that is approached by at least a factor of 2 in each is found to the last
-/// bit.
+/// Number of rounds of the fixed-point iteration: if each at least halves the error, the result is exact to
+/// the last bit.
 const MAX_ROUNDS: usize = 60;
 
 /// Static thresholds of the blocks of a band at their present ages.
@@ -67,9 +66,9 @@ pub(super) struct Aged {
     law: Ageing,
     adhesion: f64,
     pub(super) static_limit: Vec<f64>,
-    /// Blocks whose thresholds are raised by their ages.
+    /// Blocks with thresholds that are raised by their ages.
     is_old: Vec<bool>,
-    /// Time t* at which a block that is stuck has stopped: the memory of the law.
+    /// Time t* at which a stuck block has stopped: the memory of the law.
     pub(super) stopped_at: Vec<f64>,
 }
 
@@ -84,8 +83,8 @@ impl Aged {
         }
     }
 
-    /// Finds the static thresholds of the blocks that are stuck and whose force exceeds the threshold of age
-    /// 0: only there does age matter.
+    /// Finds the static thresholds of stuck blocks with a force that exceeds the threshold at age 0: only
+    /// there does age matter.
     #[inline(always)]
     pub(super) fn update(
         &mut self,
@@ -111,15 +110,15 @@ impl Aged {
             is_old[k] = (vx[k] == 0.0) & (vy[k] == 0.0) & (dot(force, force) > young[k] * young[k]);
             static_limit[k] = young[k];
         }
-        // They are few, and have their logarithms one by one.
+        // There are few of them, and their logarithms are computed one by one.
         for k in (0..n).filter(|&k| is_old[k]) {
             let age = time_star - self.stopped_at[blocks.start + k];
             static_limit[k] = self.law.static_limit(young[k], self.adhesion, age);
         }
     }
 
-    /// Notes the blocks that stop now. A step that is evaluated again from the same velocities notes the same
-    /// blocks.
+    /// Stores the time for blocks that stop now. A step that is evaluated again from the same velocities
+    /// finds the same blocks.
     #[inline(always)]
     pub(super) fn note_stops(
         &mut self,

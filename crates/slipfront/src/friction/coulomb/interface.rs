@@ -1,4 +1,4 @@
-//! Friction of a sheet that stands upright on its substrate: x is the direction of slip, y the normal of the
+//! Friction of a sheet that is upright on its substrate: x is the direction of slip, y the normal of the
 //! interface.
 
 use std::ops::Range;
@@ -10,16 +10,16 @@ use crate::friction::needs::Needs;
 use crate::surface::Surface;
 use crate::vector_field::VectorField;
 
-/// An interface under the edge of an upright sheet. Friction acts on a block along x alone; along y the block
-/// moves freely, or stands on a foundation, whose springs hold it up against its load:
+/// An interface under the edge of an upright sheet. Friction acts on a block along x alone. Along y the block
+/// moves freely, or rests on a foundation with springs that hold it up against its load:
 ///
 /// ```text
 /// N_i = max(0, F_n,i - K u_y,i)
 /// ```
 ///
-/// The normal force `N_i` takes the place of `F_n,i` in both thresholds, and the difference `N_i - F_n,i`
-/// acts on the block along y: at rest the foundation bears the load, and a block that has risen by
-/// `F_n,i/K` has lost contact.
+/// The normal force `N_i` replaces `F_n,i` in both thresholds, and the difference `N_i - F_n,i` acts on the
+/// block along y: at rest the foundation bears the load, and a block that has risen by `F_n,i/K` has lost
+/// contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interface {
     /// Stiffness `K` of the foundation under a block in contact, in units of `E h`; 0 for blocks that move
@@ -51,7 +51,8 @@ impl Interface {
         -if held < load { held } else { load }
     }
 
-    /// Change of the normal force on block `b` of a surface that has risen by `rise`; 0 over a texture.
+    /// Change of the normal force on block `b` of a surface if the block has risen by `rise`; 0 over a
+    /// texture.
     #[inline(always)]
     pub(crate) fn reaction_on(&self, surface: &Surface, b: usize, rise: f64) -> f64 {
         if surface.textured[b] {
@@ -79,14 +80,14 @@ impl Interface {
         }
     }
 
-    /// Normal force over the `load` on a block that has risen by `rise`, `N/F_n`; 1 without load.
+    /// Ratio `N/F_n` of the normal force to the `load` for a block that has risen by `rise`; 1 without load.
     #[inline(always)]
     pub(crate) fn share(&self, load: f64, rise: f64) -> f64 {
         let inverse = if load > 0.0 { 1.0 / load } else { 0.0 };
         1.0 + self.reaction(load, rise) * inverse
     }
 
-    /// Energy of the foundation under a block and of its load, over that at rest: the work against
+    /// Energy of the foundation under a block and of its load, relative to rest: the work against
     /// [`reaction`](Self::reaction).
     ///
     /// ```
@@ -108,9 +109,9 @@ impl Interface {
 #[derive(Debug)]
 pub(super) struct InterfaceContact {
     interface: Interface,
-    /// Velocities along x, with zeros along y: those of slip.
+    /// Velocities of slip: along x, with zeros along y.
     slip_velocity: VectorField,
-    /// Both thresholds at the present normal forces.
+    /// Static and kinetic thresholds at the present normal forces.
     limits: [Vec<f64>; 2],
 }
 
@@ -131,7 +132,7 @@ impl InterfaceContact {
         &self.slip_velocity
     }
 
-    /// Thresholds of some blocks at their present normal forces, from those under their loads.
+    /// Thresholds of some blocks at their present normal forces, from the thresholds under their loads.
     #[inline(always)]
     pub(super) fn under_normal_force<'a>(
         &'a mut self,
@@ -153,7 +154,7 @@ impl InterfaceContact {
     }
 }
 
-/// Moreau's time-stepping as by [`Projection`](super::reading::Projection), along x alone.
+/// Moreau's time-stepping as in [`Projection`](super::reading::Projection), along x alone.
 pub(super) struct AlongX;
 
 impl LawReading for AlongX {

@@ -70,15 +70,15 @@ impl Coulomb {
             .and(self.interface.map(|_| Interface::NEEDS))
     }
 
-    /// Kinetic friction in steady sliding at `speed`, from the kinetic friction `at_rest`, of which a part is
+    /// Kinetic friction in steady sliding at `speed`, from the kinetic friction `at_rest`, which includes
     /// `adhesion`.
     pub(super) fn steady_force(&self, at_rest: f64, adhesion: f64, speed: f64) -> f64 {
         self.weakening
             .map_or(at_rest, |law| law.kinetic_force(at_rest, adhesion, speed))
     }
 
-    /// Pull of drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold
-    /// slips.
+    /// Pull of drive springs of stiffness `k` at which a block with this threshold slips; the pull rises as
+    /// `k V t`.
     pub(super) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         let adhesion = surface.adhesion().of_static;
         self.ageing.map_or(threshold, |law| {
@@ -87,15 +87,15 @@ impl Coulomb {
     }
 }
 
-/// Coulomb's law of the blocks of a band, with thresholds of the present step where they differ from those of
-/// the surface.
+/// Coulomb's law for the blocks of a band, with the thresholds of the present step where they differ from
+/// those of the surface.
 #[derive(Debug)]
 pub(crate) struct CoulombContact {
     law: FrictionLaw,
     weakened: Option<Weakened>,
     aged: Option<Aged>,
     slipped: Option<Slipped>,
-    /// In a box, since few sliders have one.
+    /// Boxed, since few sliders have one.
     interface: Option<Box<InterfaceContact>>,
 }
 
@@ -114,7 +114,7 @@ impl CoulombContact {
         }
     }
 
-    /// The columns that a checkpoint keeps.
+    /// Columns that a checkpoint keeps.
     pub(super) fn columns(&self) -> Vec<&[f64]> {
         let of_age = self.aged.iter().map(|aged| &aged.stopped_at[..]);
         of_age
@@ -122,14 +122,14 @@ impl CoulombContact {
             .collect()
     }
 
-    /// The columns that a checkpoint keeps, to be filled.
+    /// Columns that a checkpoint keeps, to be filled.
     pub(super) fn columns_mut(&mut self) -> Vec<&mut [f64]> {
         let of_age = self.aged.iter_mut().map(|aged| &mut aged.stopped_at[..]);
         let of_slip = self.slipped.iter_mut().flat_map(Slipped::columns_mut);
         of_age.chain(of_slip).collect()
     }
 
-    /// Remembers how far some blocks have slipped in the step that ends now.
+    /// Adds the slip of some blocks in the step that ends now to the memory of the law.
     #[inline(always)]
     pub(super) fn add_slip(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
         if let Some(slipped) = &mut self.slipped {
@@ -141,8 +141,8 @@ impl CoulombContact {
         }
     }
 
-    /// Finds friction, the next velocities and the blocks that slide, among some blocks. `limits`: static
-    /// thresholds of age 0 and kinetic thresholds at rest.
+    /// Finds friction, the next velocities and the blocks that slide, for some of the blocks. `limits`:
+    /// static thresholds at age 0 and kinetic thresholds at rest.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // As many as the law needs, each once.
     pub(super) fn apply(

@@ -15,7 +15,7 @@ use crate::vector_field::{add, dot, length};
 pub enum FrictionLaw {
     /// Implicit Coulomb friction with memory (Moreau's time-stepping). The default.
     Projection,
-    /// Explicit friction against the velocity; a block sticks when it turns round. For comparison.
+    /// Explicit friction against the velocity; a block sticks when its velocity reverses. For comparison.
     Reversal,
     /// Eq. 4 as printed: no memory, and the sign of D1. For comparison.
     Literal,
@@ -72,8 +72,8 @@ impl LawReading for Projection {
         let stays = is_zero(block.velocity) & (dot(force, force) <= block.static_limit * block.static_limit);
         let free = integrator.accelerate(block.velocity, force);
         let speed = length(free);
-        // The fraction of the free velocity that friction removes. It is NaN if both are zero, and `slides`
-        // is false then.
+        // Fraction of the free velocity that friction removes. It is NaN if both are zero, and `slides` is
+        // false then.
         let removed_fraction = integrator.force_to_velocity * block.kinetic_force / speed;
         let remaining = 1.0 - removed_fraction;
         let slides = !stays & (remaining > 0.0);

@@ -6,26 +6,26 @@ use crate::forces::part;
 use crate::friction::needs::Needs;
 use crate::vector_field::{VectorField, length};
 
-/// Linear slip weakening: after a slip `s` since it was last whole, a block bears
+/// Linear slip weakening: after a slip `s` since it last had its full strength, a block bears
 ///
 /// ```text
 /// f(s) = K + (S - K) max(0, 1 - s/D_c)
 /// ```
 ///
-/// sliding or about to, with its whole static and kinetic thresholds `S` and `K`. Where `K >= S` nothing
-/// falls.
+/// while it slides or is about to, with its full static and kinetic thresholds `S` and `K`. Where `K >= S`
+/// strength does not fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipWeakening {
     /// Slip `D_c` over which strength falls, in units of `P mu_s l^2/(E h)`.
     pub length: f64,
-    /// Time t* after which a block that is stuck is whole again; no block heals if there is none.
+    /// Time t* after which a stuck block has its full strength again; if there is none, no block heals.
     pub healing_time: Option<f64>,
 }
 
 impl SlipWeakening {
     /// Needs of slip weakening: the slip, both thresholds at present, and with healing the time of the last
-    /// motion and the share lost before it healed. The fused kernel keeps the fall of strength in place of
-    /// the static threshold.
+    /// motion and the share lost before it healed. The fused kernel keeps the fall of strength instead of the
+    /// static threshold.
     pub(super) fn needs(&self) -> Needs {
         let columns = if self.healing_time.is_some() { 3 } else { 1 };
         Needs {
@@ -35,7 +35,7 @@ impl SlipWeakening {
         }
     }
 
-    /// Share of the fall of strength that a slip has left, `max(0, 1 - s/D_c)`.
+    /// Share of the fall of strength that is left after a slip, `max(0, 1 - s/D_c)`.
     ///
     /// ```
     /// let law = slipfront::SlipWeakening { length: 0.5, healing_time: None };
@@ -46,7 +46,7 @@ impl SlipWeakening {
         (1.0 - slip * (1.0 / self.length)).max(0.0)
     }
 
-    /// Share that a slip has taken of the most that weakening can take, `(S - K) D_c/2`:
+    /// Share of the largest weakening energy, `(S - K) D_c/2`, that has been lost after a slip:
     ///
     /// ```text
     /// 1 - max(0, 1 - s/D_c)^2
@@ -62,7 +62,7 @@ impl SlipWeakening {
         1.0 - left * left
     }
 
-    /// Energy that weakening has taken of a block whose strength can fall by `drop = max(S - K, 0)`, the
+    /// Energy that weakening has dissipated in a block with a fall of strength of `drop = max(S - K, 0)`, the
     /// integral of `f - K` over its slip:
     ///
     /// ```text
@@ -72,7 +72,7 @@ impl SlipWeakening {
         0.5 * drop * self.length * (lost_before + self.share_lost(slip))
     }
 
-    /// Whether a block that is stuck and has moved last at `moved_at` is whole again at `time_star`.
+    /// Whether a stuck block that last moved at `moved_at` has its full strength again at `time_star`.
     #[inline(always)]
     pub(crate) fn heals(&self, moved_at: f64, time_star: f64) -> bool {
         self.healing_time
@@ -80,7 +80,7 @@ impl SlipWeakening {
     }
 }
 
-/// Thresholds of the blocks of a band at their present slip, with the slip that the law remembers.
+/// Thresholds of the blocks of a band at their present slip, with the slip, which is the memory of the law.
 #[derive(Debug)]
 pub(super) struct Slipped {
     law: SlipWeakening,
@@ -104,7 +104,7 @@ impl Slipped {
         }
     }
 
-    /// The columns that a checkpoint keeps.
+    /// Columns that a checkpoint keeps.
     pub(super) fn columns(&self) -> impl Iterator<Item = &[f64]> {
         [&self.slip]
             .into_iter()
@@ -112,7 +112,7 @@ impl Slipped {
             .map(Vec::as_slice)
     }
 
-    /// The columns that a checkpoint keeps, to be filled.
+    /// Columns that a checkpoint keeps, to be filled.
     pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
         let healing = self.healing.iter_mut().flatten();
         [&mut self.slip].into_iter().chain(healing).map(Vec::as_mut_slice)
@@ -128,8 +128,8 @@ impl Slipped {
         }
     }
 
-    /// Finds the thresholds at the present slip from the whole ones. A step that is evaluated again finds the
-    /// same thresholds.
+    /// Finds the thresholds at the present slip from those at full strength. A step that is evaluated again
+    /// finds the same thresholds.
     #[inline(always)]
     pub(super) fn update(
         &mut self,

@@ -1,4 +1,4 @@
-//! Coulomb's law at some blocks.
+//! Coulomb's law for some of the blocks.
 
 use std::ops::Range;
 

@@ -40,7 +40,7 @@ impl Weakening {
     }
 
     /// Kinetic friction `mu_k(v) F_n + tau_ak l^2` at `speed`, from the kinetic friction `at_rest`. Adhesion
-    /// does not weaken: the law is one of the coefficient.
+    /// does not weaken: the law applies to the coefficient.
     ///
     /// The operations have this order in every kernel: `x = v/(v_c + v)`, `s = (1 - ratio) x`,
     /// `m = max(K - tau_ak l^2, 0)`, `K - s m`.
@@ -67,7 +67,7 @@ impl Weakened {
         }
     }
 
-    /// Finds kinetic friction at the velocities half a step before.
+    /// Finds kinetic friction from the velocities half a step before.
     #[inline(always)]
     pub(super) fn update(&mut self, blocks: &Range<usize>, at_rest: &[f64], velocity: &VectorField) {
         let (n, [vx, vy]) = (blocks.len(), part(velocity, blocks));

@@ -1,4 +1,4 @@
-//! Friction that follows speed and the state of the contact.
+//! Friction that depends on speed and on the state of the contact.
 
 mod slide;
 
@@ -14,9 +14,9 @@ use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, length};
 
-/// Rate and state with Dieterich's law of the state: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`,
-/// `dtheta/dt = 1 - V theta/D_c`; coefficients over `mu_s`. The logarithm of the speed is regularised at V =
-/// 0,
+/// Rate-and-state friction with Dieterich's law for the state:
+/// `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients over `mu_s`.
+/// The logarithm of the speed is regularised at V = 0:
 ///
 /// ```text
 /// mu = a asinh(V/(2 V_0) exp((mu_0 + b ln(V_0 theta/D_c))/a))
@@ -27,7 +27,7 @@ pub struct RateAndState {
     pub a: f64,
     /// Evolution effect.
     pub b: f64,
-    /// Slip over which the state follows a change of speed, in units of `P mu_s l^2/(E h)`.
+    /// Slip over which the state adapts to a change of speed, in units of `P mu_s l^2/(E h)`.
     pub d_c: f64,
     /// Reference speed, in units of `P mu_s/sqrt(E rho)`.
     pub v_0: f64,
@@ -60,7 +60,7 @@ impl RateAndState {
         ..Needs::NONE
     };
 
-    /// Part of [`log_factor`](Self::log_factor) that is equal for all blocks.
+    /// Part of [`log_factor`](Self::log_factor) that all blocks share.
     fn log_factors(&self) -> LogFactors {
         let at_one = (self.mu_0 + self.b * ln(self.v_0 / self.d_c)) / self.a - ln(2.0 * self.v_0);
         [at_one, self.b / self.a]
@@ -116,11 +116,11 @@ impl RateAndState {
         theta * decay + dt * mean_decay
     }
 
-    /// Takes the states of some blocks forward by `dt` at constant speed: [`evolve`](Self::evolve) for
-    /// several blocks at once.
+    /// Advances the states of some blocks by `dt` at constant speed: [`evolve`](Self::evolve) for several
+    /// blocks at once.
     #[inline(always)]
     fn evolve_all<const BLOCKS: usize>(&self, theta: &mut [f64; BLOCKS], speed: &[f64; BLOCKS], dt: f64) {
-        // Slip over a step is nearly always short, which takes no exponential.
+        // Slip over a step is nearly always short, and then needs no exponential.
         let per_speed = dt / self.d_c;
         if (0..BLOCKS).fold(true, |all, k| all & (speed[k] * per_speed < SMALL_DECAY)) {
             for k in 0..BLOCKS {
@@ -135,8 +135,8 @@ impl RateAndState {
         }
     }
 
-    /// The speeds after a step and the friction of some blocks, whose speeds would be `free` without friction
-    /// and were `before`:
+    /// Speeds after a step and friction of some blocks, with the speeds `free` without friction and `before`
+    /// the step:
     ///
     /// ```text
     /// v + g F_n mu(v, theta) = free
@@ -182,10 +182,10 @@ impl RateAndState {
     }
 }
 
-/// Blocks whose speeds are found together, so that the processor works on some while it waits for others.
+/// Number of blocks computed together, so that the processor works on some while it waits for others.
 const AT_ONCE: usize = 32;
 
-/// The state of all contacts, which is the memory of the law.
+/// The state of all contacts: the memory of the law.
 #[derive(Debug)]
 pub(crate) struct StateContact {
     law: RateAndState,
@@ -207,7 +207,7 @@ impl StateContact {
         }
     }
 
-    /// Takes the states of some blocks forward over a step, at the speeds in its middle.
+    /// Advances the states of some blocks by a step, at the speeds in its middle.
     #[inline(always)]
     pub(super) fn evolve(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
         for first in blocks.clone().step_by(AT_ONCE) {
@@ -257,7 +257,7 @@ impl StateContact {
     ) {
         let n = blocks.len();
         let (zeros, ones) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
-        // Where there is no block the values are those of one that nothing holds.
+        // Places without a block have the values of a block without friction.
         let (mut velocity, mut free, mut before) = ([zeros; 2], ones, ones);
         let (mut theta, mut normal_force, mut g) = (ones, zeros, zeros);
         let ([vx, vy], [dx, dy]) = (part(&state.velocity, blocks), part(&forces.drive, blocks));
@@ -292,7 +292,7 @@ impl StateContact {
         }
     }
 
-    /// Adds the states of those of some blocks that are in contact. The sums have room for the terms.
+    /// Adds the states of those of the given blocks that are in contact. The sums have room for the terms.
     #[inline(always)]
     pub(super) fn add_states(
         &self,
@@ -325,8 +325,8 @@ mod tests {
         slip_speed: 1e-3,
     };
 
-    /// Speeds, speeds before, states and loads of blocks that creep, slide, begin to, stop, float, or are no
-    /// block.
+    /// Speeds, speeds before, states and loads of blocks that creep, slide, begin to slide, stop, or have no
+    /// load, and of places without a block.
     const BLOCKS: [[f64; 4]; 12] = [
         [0.03, 0.03, 16.7, 1.0],
         [0.03, 0.029, 16.0, 1.0],
@@ -345,7 +345,7 @@ mod tests {
     /// Change of speed per force.
     const G: f64 = 0.1;
 
-    /// The speeds without friction that leave these speeds.
+    /// Speeds without friction that lead to these speeds.
     fn free_speeds(law: &RateAndState) -> [f64; 12] {
         BLOCKS.map(|[speed, _, theta, load]| {
             let friction = if speed > 0.0 {
@@ -357,7 +357,7 @@ mod tests {
         })
     }
 
-    /// A young contact of little direct effect, whose `e^-L` is 1e29: friction can only slow a block down.
+    /// A young contact with a small direct effect and `e^-L` = 1e29: friction can only slow a block down.
     #[test]
     fn a_block_whose_friction_has_nearly_vanished_is_not_accelerated() {
         let law = RateAndState {
@@ -376,9 +376,9 @@ mod tests {
         );
     }
 
-    /// At the speed that is found, friction is that of the law, and both together take the block from its
-    /// free speed. A speed is as exact as `w`, of some hundreds; and friction and free speed cancel where the
-    /// law is steep.
+    /// At the computed speed, friction follows the law, and friction and speed balance the free speed. A
+    /// speed is as exact as `w`, which is some hundreds, and friction and free speed cancel where the law is
+    /// steep.
     #[test]
     fn speed_and_friction_fulfil_the_law() {
         for a in [0.01, 0.1, 1e-3] {
@@ -395,7 +395,7 @@ mod tests {
             for (k, [exact, _, theta, load]) in BLOCKS.into_iter().enumerate() {
                 let (speed, friction) = (found.speed[k], found.friction[k]);
                 let rounding = 4.0 * f64::EPSILON * free[k];
-                // The more exact of two ways is taken to find the speed.
+                // Of two ways to compute the speed the more exact one counts.
                 let of_exponentials = exp(-RateAndState::log_factor(law.log_factors(), theta));
                 let of_difference = free[k] + G * load * a;
                 let cancelled = 4.0 * f64::EPSILON * of_exponentials.min(of_difference);
@@ -415,7 +415,7 @@ mod tests {
         }
     }
 
-    /// Bits of a block do not depend on those beside it.
+    /// Bits of a block do not depend on the blocks next to it.
     #[test]
     fn blocks_have_the_same_bits_alone() {
         let (free, factors) = (free_speeds(&LAW), LAW.log_factors());

@@ -1,24 +1,24 @@
-//! Speeds of blocks whose friction grows with the inverse hyperbolic sine of the speed.
+//! Speeds of blocks with friction that grows as the inverse hyperbolic sine of the speed.
 
 use crate::elementary::{exp, ln};
 
-/// Bound on logarithms and arguments: above it `asinh x = ln(2 x)` to the last bit for the logarithm of x,
-/// and `sinh` has one exponential for the argument.
+/// Bound on logarithms and arguments. Above it `asinh x = ln(2 x)` to the last bit, with x given by its
+/// logarithm, and one exponential is enough for `sinh` of the argument.
 pub(super) const LARGE: f64 = 20.0;
 
-/// Limit on the steps of an iteration, which no solution reaches: far from the root each step takes two units
-/// off the unknown, which begins less than 16 above it or 7 below for any `a` of 1e-8 and more, and comes no
-/// farther beyond it than 22; the last few steps triple the digits.
+/// Limit on the number of iterations, which no solution reaches. Far from the root each step changes the
+/// unknown by two units; it begins less than 16 above the root or 7 below it for any `a` of 1e-8 and more,
+/// and overshoots by at most 22. The last few steps triple the number of exact digits.
 const MAX_STEPS: usize = 40;
 
-/// Size of a step after which the error, which is below the third power of the step, is beyond the last
+/// Size of the last step: the error after it is below the third power of the step, and so beyond the last
 /// digit.
 const LAST_STEP: f64 = 1e-5;
 
-/// The speed before is a good guess of the next if it is more than this share of the speed without friction.
+/// Share of the speed without friction above which the speed before is a good initial guess.
 const SLOW: f64 = 1e-3;
 
-/// Least speed of which there is a logarithm; blocks that would be slower do not move.
+/// Least speed with a logarithm; blocks that would be slower do not move.
 const MIN_SPEED: f64 = 1e-300;
 
 /// Least logarithm of the factor of V, below which there is no friction.
@@ -33,22 +33,22 @@ pub(super) struct Sliding<const BLOCKS: usize> {
     pub(super) friction: [f64; BLOCKS],
 }
 
-/// Speeds after a step and magnitudes of friction of some blocks under `mu = a asinh(V e^L)`, whose speeds
-/// would be `free` without friction and were `before`:
+/// Speeds after a step and magnitudes of friction of some blocks under `mu = a asinh(V e^L)`, with the speeds
+/// `free` without friction and `before` the step:
 ///
 /// ```text
 /// v + g F_n a asinh(v e^L) = free
 /// ```
 ///
-/// With `w = mu/a` as the unknown `v = sinh(w) e^-L`, and the equation is
+/// With the unknown `w = mu/a`, `v = sinh(w) e^-L`, and the equation is
 ///
 /// ```text
 /// h(w) = (e^(w - L) - e^-(w + L))/2 + g F_n a w - free = 0
 /// ```
 ///
-/// It is solved by Halley's method, from the speed before, or, if this was much less, from the speed without
-/// friction. After a [`LAST_STEP`] a block stays where it is: it has the same bits whatever blocks are beside
-/// it.
+/// Halley's method solves it, beginning at the speed before, or, if this was much less, at the speed without
+/// friction. A block is not changed any more after a [`LAST_STEP`], so that its bits do not depend on the
+/// blocks computed with it.
 #[inline(always)]
 pub(super) fn slide<const BLOCKS: usize>(
     a: f64,
@@ -58,8 +58,8 @@ pub(super) fn slide<const BLOCKS: usize>(
     g: &[f64; BLOCKS],
 ) -> Sliding<BLOCKS> {
     let zeros = [0.0; BLOCKS];
-    // Nothing holds a block over a texture, and nothing moves one that would not move without friction:
-    // others take their place.
+    // A block over a texture has no friction, and a block that would not move without friction stays at rest:
+    // dummy values replace both in the iteration.
     let is_held = |k: usize| (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
     let mut equations = Equations {
         target: zeros,
@@ -89,8 +89,9 @@ pub(super) fn slide<const BLOCKS: usize>(
         let w = roots.w[k].max(0.0);
         let friction = normal_force[k] * a * w;
         let [sinh, cosh] = sinh_and_cosh(roots.rising[k], roots.falling[k]);
-        // Rounding leaves an error of cosh(w) e^-L, in units of the last place, in the one, and of these in
-        // the other: where friction has nearly vanished sinh is the difference of two large numbers.
+        // Of two formulas for the speed, takes the one with the smaller rounding error, in units of the last
+        // place: cosh(w) e^-L for `sinh`, target + per_unit for `left`. Where friction has nearly vanished,
+        // sinh is the difference of two large numbers.
         let left = (equations.target[k] - equations.per_unit[k] * w).max(0.0);
         let is_left = cosh > equations.target[k] + equations.per_unit[k];
         let speed = if is_left { left } else { sinh };
@@ -122,8 +123,8 @@ struct Roots<const BLOCKS: usize> {
 }
 
 impl<const BLOCKS: usize> Roots<BLOCKS> {
-    /// Initial guesses of the roots: those that belong to the speeds `guess` or to the speeds without
-    /// friction, and none beyond the friction that stops a block.
+    /// Initial guesses of the roots, from the speeds `guess` or from the speeds without friction, and at most
+    /// the friction that stops a block.
     #[inline(always)]
     fn near(equations: &Equations<BLOCKS>, guess: &[f64; BLOCKS]) -> Self {
         let Equations {
@@ -140,7 +141,7 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
             w[k] = log_factor[k] + ln(rising[k]);
             may_fall |= w[k] <= LARGE;
         }
-        // What few blocks need stands behind a condition on all; the others do not change by it.
+        // Work that only few blocks need is done only if one of them needs it; it does not change the others.
         if may_fall {
             for k in 0..BLOCKS {
                 let guess = 0.5 * rising[k];
@@ -151,7 +152,7 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
                 w[k] = if falls { sum } else { w[k] };
             }
         }
-        // No friction is more than what stops a block.
+        // Friction is at most the force that stops a block.
         let is_beyond = |k: usize, w: f64| per_unit[k] * w > target[k];
         if (0..BLOCKS).fold(false, |any, k| any | is_beyond(k, w[k])) {
             for k in 0..BLOCKS {
@@ -170,8 +171,8 @@ impl<const BLOCKS: usize> Roots<BLOCKS> {
         }
     }
 
-    /// Takes a step of Halley's method towards each root that is not found yet; returns whether there was
-    /// such a root.
+    /// Takes a step of Halley's method towards each root that is not final yet; returns whether there was
+    /// any.
     #[inline(always)]
     fn improve(&mut self, equations: &Equations<BLOCKS>) -> bool {
         let Equations {

@@ -1,4 +1,4 @@
-//! Arrays that begin on a cache line, so that no vector of eight numbers extends over two.
+//! Arrays that begin on a cache line, so that no vector of eight numbers crosses a boundary between lines.
 
 use std::ops::{Deref, DerefMut};
 
@@ -28,7 +28,7 @@ impl Aligned {
 }
 
 /// Cache lines to fetch ahead of their use. On a lattice larger than the cache the sweep would otherwise wait
-/// for memory: it reads more arrays than processors fetch ahead by themselves.
+/// for memory: it reads more arrays than processors prefetch by themselves.
 #[derive(Clone, Copy)]
 pub(super) struct CacheLines(*const i8);
 

@@ -1,4 +1,4 @@
-//! The arrays of a band of tiles, and the sweep that takes the band through a step.
+//! The arrays of a band of tiles, and the sweep that advances the band by a step.
 
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -64,14 +64,14 @@ pub(super) struct TileTask {
     /// Whether all vectors are swept and few are touched, so that from now on they can be swept one by one,
     /// or not at all.
     pub(super) settles: bool,
-    /// Whether the tile's springs to the next row are needed, by the tile itself or by one to the north.
+    /// Whether the tile's springs to the next row are needed, by the tile itself or by a tile to the north.
     pub(super) needs_springs: bool,
 }
 
-/// Consecutive tiles with the arrays by which one thread takes them through a step.
+/// Consecutive tiles, with the arrays that one thread uses to advance them by a step.
 ///
-/// Indices of the arrays count from the first element of the front halo; those of arrays without halos from
-/// the first element of the band.
+/// Indices of arrays with halos count from the first element of the front halo, other indices from the first
+/// element of the band.
 #[derive(Debug)]
 pub(super) struct Band {
     /// Index of the first tile.
@@ -91,10 +91,10 @@ pub(super) struct Band {
     /// measurement.
     pub(super) extent: [f64; 4],
     pub(super) difference: [f64; 2],
-    /// Number of elements before and after the band whose displacements it keeps, see [`halo`].
+    /// Number of elements before and after the band with displacements that the band keeps, see [`halo`].
     pub(super) halo: usize,
-    // Of equal blocks, two arrays of two numbers and two thresholds are all that a step takes through memory
-    // for each. What else it needs is a bit, or lives in the scratch arrays, which stay in the cache.
+    // If all blocks are equal, a step moves only two vectors and two thresholds per block through memory. All
+    // other data are bits, or are in the scratch arrays, which stay in the cache.
     /// Displacements at t_n, with halos.
     pub(super) displacement: Vectors,
     /// Velocities at t_n + dt/2.
@@ -105,7 +105,7 @@ pub(super) struct Band {
     kinetic_impulses: Aligned,
     /// The step of the first slip in contact, or [`NEVER`].
     pub(super) first_slip: Vec<u32>,
-    // A byte for each vector says at once whether all eight elements have a spring, or none moves.
+    // One byte per vector shows at once whether all eight elements have a spring, or whether none moves.
     /// Masks of the elements that have a spring to the east, north, north-east and north-west; with the front
     /// halo.
     pub(super) masks: [Vec<u8>; 4],
@@ -115,12 +115,12 @@ pub(super) struct Band {
     in_contact: Vec<u8>,
     /// Mask of the elements that move, ghosts included.
     pub(super) moving: Vec<u8>,
-    // It repeats what `first_slip` says, such that the 32 bytes of a vector there are touched only when a
+    // Repeats information of `first_slip`, so that the 32 bytes of a vector there are accessed only when a
     // block slips for the first time.
     /// Mask of the blocks in contact that have ever slid.
     pub(super) slipped: Vec<u8>,
-    // Two numbers by which a settled tile needs no look at its resting vectors: when each must be swept, and
-    // what it has given to the tile's sum of energies, which is replaced then.
+    // These two arrays make it unnecessary to look at the resting vectors of a settled tile. They say when
+    // each vector must be swept, and its share of the tile's sum of energies, which is replaced then.
     /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled
     /// tiles.
     pub(super) active_from_step: Vec<u64>,
@@ -128,25 +128,25 @@ pub(super) struct Band {
     pub(super) lattice_energy: Vec<i64>,
     /// Springs, drive springs and masses of a heterogeneous slider.
     pub(super) variations: Option<Variations>,
-    /// Thresholds of a law of friction under which they change.
+    /// Thresholds under a law of friction that changes them.
     pub(super) thresholds: Option<Thresholds>,
     /// The interface of an upright sheet, along which friction acts.
     pub(super) interface: Option<Interface>,
-    /// The sheets above, which friction does not reach.
+    /// The sheets above the lowest, which are without friction.
     pub(super) upper: Vec<UpperSheet>,
     /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone,
-    /// takes the arrays without it.
+    /// uses the arrays without it.
     scratch: Mutex<Scratch>,
-    /// Elements from a row to the next.
+    /// Number of elements from one row to the next.
     pub(super) stride: usize,
 }
 
-/// Number of elements before and after a band of which it keeps the displacements.
+/// Number of elements before and after a band with displacements that the band keeps.
 pub(super) fn halo(layout: &Layout) -> usize {
     whole_vectors(layout.stride + 1 + LANES)
 }
 
-/// Masks of the springs of each element that exist, along the four bonds: for the `halo` of elements before
+/// Masks of the existing springs of each element along the four bonds: for the `halo` of elements before
 /// `first`, and for `len` elements from there on.
 fn spring_masks(
     layout: &Layout,
@@ -235,7 +235,7 @@ impl Band {
                 let drop = (static_limit - model.surface.kinetic_force(b)).max(0.0);
                 thresholds.set_drop(k, force_to_velocity * drop / model.slider.mass(b));
                 if drop > 0.0 && thresholds.follow_slip() {
-                    // Strength at the present slip is the only threshold.
+                    // The strength at the present slip is the only threshold.
                     band.static_limit_squares[k] = 0.0;
                 }
             }
@@ -265,7 +265,7 @@ impl Band {
         }
     }
 
-    /// Locks the memory for intermediate results while fields are read.
+    /// Locks the arrays of intermediate results while fields are read.
     pub(super) fn lock_scratch(&self) -> MutexGuard<'_, Scratch> {
         self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -274,15 +274,15 @@ impl Band {
         self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The elements before the band and after it whose displacements it keeps. Its last vector may extend
-    /// beyond the last row.
+    /// The elements before and after the band with displacements that the band keeps. The last vector may
+    /// extend beyond the last row.
     pub(super) fn halos(&self, layout: &Layout) -> [Range<isize>; 2] {
         let (first, halo) = (self.first as isize, self.halo as isize);
         let end = first + self.len.min(layout.len() - self.first) as isize;
         [first - halo..first, end..first + self.len as isize + halo]
     }
 
-    /// Index of an element, which may be one of a halo, in the displacements.
+    /// Index in the displacements of an element, which may belong to a halo.
     pub(super) fn halo_index(&self, element: isize) -> usize {
         (element - self.first as isize + self.halo as isize) as usize
     }
@@ -333,7 +333,7 @@ impl Band {
         }
     }
 
-    /// Displacements, with halos, and velocities of a sheet, the lowest being number 0.
+    /// Displacements, with halos, and velocities of a sheet; the lowest has number 0.
     #[inline(always)]
     pub(super) fn of_sheet(&self, number: usize) -> [&Vectors; 2] {
         match number.checked_sub(1) {
@@ -349,7 +349,7 @@ impl Band {
         }
     }
 
-    /// Displacements, with halos, and velocities of a sheet to be written, the lowest being number 0.
+    /// Displacements, with halos, and velocities of a sheet, to be written; the lowest has number 0.
     #[inline(always)]
     pub(super) fn of_sheet_mut(&mut self, number: usize) -> [&mut Vectors; 2] {
         match number.checked_sub(1) {
@@ -383,25 +383,25 @@ impl Band {
         quanta: &Quanta,
         energies: bool,
     ) {
-        // Springs lead to elements a row and a block ahead, which must have moved before.
+        // Springs join elements with elements up to a row and a block ahead, which must have moved before.
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
             self.advance_tile(simd, &step, quanta, t);
         }
-        // Taken out, so that the band and its scratch arrays can be changed side by side.
+        // Moved out, so that the band and its scratch arrays can be changed at the same time.
         let mut scratch = std::mem::take(self.scratch());
         let mut upper = std::mem::take(&mut self.upper);
         self.begin_upper(simd, geometry, &step, ahead, &mut upper);
         if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
-            // They are the springs of another band, or of the other end of this one, as well: computed twice,
-            // they need no thread to wait for another.
+            // The springs below the band also belong to another band, or to the other end of this one.
+            // Computing them twice avoids that a thread waits for another.
             let from = self.below(self.halo);
             self.upward(simd, geometry, &self.displacement, &mut scratch, from, self.halo);
         }
         for t in 0..n_tiles {
-            // No earlier than springs need it, so that the tile is still in the cache when its own turn
-            // comes. Until then its velocity is that of the step before: friction replaces it last.
+            // As late as springs allow, so that the tile is still in the cache at its own turn. Until then
+            // its velocity is that of the step before: friction replaces it last.
             if t + ahead < n_tiles {
                 self.advance_tile(simd, &step, quanta, t + ahead);
             }
@@ -423,8 +423,8 @@ impl Band {
                     simd,
                     geometry,
                     (&step, quanta),
-                    // Once it is settled, the energy of a tile changes by differences of single vectors,
-                    // which need the energy of each.
+                    // The energy of a settled tile is updated by differences of single vectors, which
+                    // requires the energy of each.
                     energies || task.settles,
                     t,
                     (&mut scratch, &upper),
@@ -434,8 +434,8 @@ impl Band {
                 self.settle(simd, &step, t, &scratch);
             }
             if task.was_skipped != 0 {
-                // The step of largest stress was the last that was skipped, or the first, which the sweep
-                // before has measured: at the present one the block may slide already.
+                // The stress was largest at the last skipped step, or at the first, which the previous sweep
+                // has measured. At the present step the block may slide already.
                 let before = self.resting_stress_square(t, task.was_skipped, &step.before());
                 let stress_square = &mut self.tiles[t].sums.stress_square;
                 *stress_square = stress_square.max(before);
@@ -446,9 +446,9 @@ impl Band {
         self.add_up();
     }
 
-    /// Adds up the sums over the tiles; tiles that were skipped keep theirs.
+    /// Adds up the sums over the tiles; skipped tiles keep their sums.
     fn add_up(&mut self) {
-        // From all tiles at every step, and not by differences as within a tile: the largest stress may have
+        // From all tiles at every step, not by differences as within a tile: the largest stress may have
         // fallen.
         (self.sums, self.next_active_step) = (Sums::default(), u64::MAX);
         for tile in &self.tiles {
@@ -459,7 +459,7 @@ impl Band {
         self.add_upper();
     }
 
-    /// The first of the elements whose springs to the next row are needed below element `k`.
+    /// First element below element `k` with springs to the next row that element `k` needs.
     #[inline(always)]
     pub(super) fn below(&self, k: usize) -> usize {
         k - whole_vectors(self.stride + 1)
@@ -471,8 +471,8 @@ impl Band {
         (self.stride + MIRROR).div_ceil(TILE)
     }
 
-    /// Moves the blocks of a tile (Eq. 8), `u += dt v`, if the tile moves. A function of its own, compiled
-    /// once for all formulas of springs.
+    /// Moves the blocks of a tile (Eq. 8), `u += dt v`, if the tile moves. A separate function, compiled once
+    /// for all spring formulas.
     #[inline(never)]
     fn advance_tile<S: Simd>(&mut self, simd: S, step: &Step, quanta: &Quanta, t: usize) {
         simd.vectorize(
@@ -501,8 +501,8 @@ impl Band {
         );
     }
 
-    /// Forces of the springs to the next row of the elements `from..to` of a sheet with such displacements,
-    /// into the ring buffer. A function of its own, compiled once for all that call it.
+    /// Forces of the springs to the next row of the elements `from..to` of a sheet with the given
+    /// displacements, into the ring buffer. A separate function, compiled once for all callers.
     #[inline(never)]
     pub(super) fn upward<S: Simd, G: Geometry>(
         &self,
@@ -552,7 +552,7 @@ impl Band {
                 chunks_mut(north_west_f, own, n),
             ];
             upward_springs(simd, geometry, here, there, (masks, factors), force);
-            // What extends over the end is read a row later, by when the mirror is up to date.
+            // Values beyond the end are read a row later, when the mirror is up to date.
             if own < MIRROR {
                 let ring = scratch.ring();
                 for force in &mut scratch.upward {
@@ -588,7 +588,7 @@ impl Band {
         self.tiles[t].sums.lattice_energy = lattice_energy;
     }
 
-    /// Eqs. 2 and 4-7 in a tile whose lattice forces are known, with its energies if they are needed.
+    /// Eqs. 2 and 4-7 in a tile with known lattice forces, and its energies if they are needed.
     #[inline(always)]
     fn friction_with<S: Simd, G: Geometry, const HAS_ABOVE: bool>(
         &mut self,
@@ -604,7 +604,7 @@ impl Band {
             return;
         }
         match (G::BLOCKS_DIFFER, energies) {
-            // With all energies: compiled once more without them, it would save little.
+            // All energies are computed: a version without them would save little.
             (true, _) => self.friction_of_tile::<S, true, true, HAS_ABOVE>(simd, step, quanta, t, arrays),
             (false, true) => {
                 self.friction_of_tile::<S, true, false, HAS_ABOVE>(simd, step, quanta, t, arrays);
@@ -615,8 +615,8 @@ impl Band {
         }
     }
 
-    /// Eqs. 2 and 4-7 in a tile whose lattice forces are known. A function of its own, compiled once for all
-    /// formulas of springs.
+    /// Eqs. 2 and 4-7 in a tile with known lattice forces. A separate function, compiled once for all spring
+    /// formulas.
     #[inline(never)]
     fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
         &mut self,
@@ -630,7 +630,7 @@ impl Band {
             #[inline(always)]
             || {
                 let ahead = self.tiles_ahead();
-                // Tiles that are skipped lie in between, so that what is read next does not follow in memory.
+                // Skipped tiles lie between, so that the next data to be read do not follow in memory.
                 let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
                 let elements = self.elements(t);
                 let (first, n) = (self.halo + elements.start, elements.len());
@@ -648,15 +648,15 @@ impl Band {
                     tile.sums = tile.sums.below_others();
                 }
                 tile.moving = tile.sums.sliding > 0;
-                // What is known of its single vectors was so before this sweep.
+                // Values known for its single vectors are from before this sweep.
                 tile.settled = false;
                 tile.active_from_step = 0;
             },
         );
     }
 
-    /// Eq. 3 in a tile of a sheet with such displacements. A function of its own, compiled once for all that
-    /// call it.
+    /// Eq. 3 in a tile of a sheet with the given displacements. A separate function, compiled once for all
+    /// callers.
     #[inline(never)]
     pub(super) fn lattice_forces<S: Simd, G: Geometry>(
         &self,
@@ -683,7 +683,7 @@ impl Band {
     ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
-        // The eight elements before may be of a tile that is skipped, and has left no springs.
+        // The eight elements before may belong to a skipped tile, which has stored no springs.
         let mut west = self.east_springs(simd, geometry, displacement, start - LANES);
         for (first, end, own, behind) in scratch.ring_segments(self.stride, start, self.halo + elements.end) {
             let n = end - first;
@@ -728,8 +728,8 @@ impl Band {
         sum
     }
 
-    /// Energy of the springs of a vector of a sheet with such displacements and relative thickness, as in
-    /// [`Sums`].
+    /// Energy of the springs of a vector of a sheet with the given displacements and relative thickness, as
+    /// in [`Sums`].
     #[inline(always)]
     pub(super) fn lattice_energy<S: Simd, G: Geometry>(
         &self,
@@ -744,7 +744,8 @@ impl Band {
         let own = here % scratch.ring();
         let upward = |k: usize| load_vec2(simd, chunks(&scratch.upward[k], own, LANES), 0);
         let east = self.east_springs(simd, geometry, displacement, here);
-        // Every block has the energy of the four springs that begin at it, so that each is counted once.
+        // Each block accounts for the energy of the four springs that begin at it, so that each spring is
+        // counted once.
         let springs = [east, upward(0), upward(1), upward(2)];
         let blocks = (self.blocks[v], thickness);
         vector_energy(
@@ -757,7 +758,7 @@ impl Band {
         )
     }
 
-    /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, whose lattice forces are at
+    /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, with their lattice forces at
     /// `place` in the scratch array. `next`: the elements that need friction next, and those that move next;
     /// `across`: velocities along y for the thresholds, if they are not those of the elements.
     #[inline(always)]
@@ -785,8 +786,8 @@ impl Band {
         if let Some(variations) = self.variations.as_ref().filter(|_| DIFFER) {
             variation = variations.of(elements.clone());
         }
-        // Here and not in a pass of its own: the velocities are about to be read anyway, and blocks that are
-        // skipped do not slip.
+        // Here, not in a separate pass: the velocities are about to be read anyway, and skipped blocks do not
+        // slip.
         if let Some(thresholds) = &mut self.thresholds {
             let [vx, vy] = chunks(&self.velocity, elements.start, n);
             let velocity = [vx, across.unwrap_or(vy)];
@@ -826,7 +827,7 @@ impl Band {
     }
 
     /// Springs to the east of the eight elements from `first` on, counted from the front halo, of a sheet
-    /// with such displacements.
+    /// with the given displacements.
     #[inline(always)]
     fn east_springs<S: Simd, G: Geometry>(
         &self,
@@ -844,7 +845,7 @@ impl Band {
     }
 
     /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo;
-    /// empty where all springs are alike.
+    /// empty where all springs are equal.
     #[inline(always)]
     pub(super) fn spring_factors<G: Geometry>(&self, bond: usize, first: usize, n: usize) -> Chunks<'_> {
         match &self.variations {
@@ -853,7 +854,7 @@ impl Band {
         }
     }
 
-    /// Number of steps for which vector `v` at rest can be skipped; its lattice forces are at `place` in the
+    /// Number of steps for which vector `v` at rest can be skipped, with its lattice forces at `place` in the
     /// scratch array.
     #[inline(always)]
     pub(super) fn steps_until_slip<S: Simd>(
@@ -865,8 +866,8 @@ impl Band {
         place: usize,
     ) -> u64 {
         let k = v * LANES;
-        // At rest, friction that falls with speed is that of no speed, `kinetic_impulses`; what has fallen
-        // with slip stays so.
+        // At rest, friction that falls with speed has its value at speed zero, `kinetic_impulses`; strength
+        // that has fallen with slip stays constant.
         let strengths = self
             .thresholds
             .as_ref()
@@ -891,8 +892,8 @@ impl Band {
         steps_until_slip(simd, &step, &blocks)
     }
 
-    /// Measures displacements and their differences along springs, in the tiles in or next to which anything
-    /// has moved since the latest measurement.
+    /// Measures displacements and their differences along springs, in tiles in which or next to which
+    /// anything has moved since the latest measurement.
     #[inline(always)]
     pub(super) fn measure_displacements<S: Simd>(&mut self, simd: S) {
         (self.extent, self.difference) = ([f64::NEG_INFINITY; 4], [0.0; 2]);
@@ -911,7 +912,7 @@ impl Band {
         }
     }
 
-    /// Enlarges the extent and the differences of the band to those of a tile of a sheet.
+    /// Extends the bounds of the band on extent and differences to include a tile of a sheet.
     fn include_measured(&mut self, (extent, difference): ([f64; 4], [f64; 2])) {
         for (most, value) in self.extent.iter_mut().zip(extent) {
             *most = most.max(value);
@@ -929,7 +930,8 @@ impl Band {
         tile.displacements_are_old = false;
     }
 
-    /// [`TileState::extent`] and [`TileState::difference`] of tile `t` of a sheet with such displacements.
+    /// [`TileState::extent`] and [`TileState::difference`] of tile `t` of a sheet with the given
+    /// displacements.
     #[inline(always)]
     fn measured<S: Simd>(&self, simd: S, displacement: &Vectors, t: usize) -> ([f64; 4], [f64; 2]) {
         let none = splat(simd, f64::NEG_INFINITY);
@@ -945,7 +947,8 @@ impl Band {
             extent[3] = extent[3].max(down);
             for (present, there) in self.springs_of(v) {
                 let there = load_vec2(simd, chunks(displacement, there, LANES), 0);
-                // Of blocks alone: what is stored beyond the last row may have neighbours that are not.
+                // For blocks only: elements stored beyond the last row may have neighbours that are no
+                // blocks.
                 let [x, y] = zero_missing(simd, present & self.blocks[v], subtract(there, u));
                 difference[0] = difference[0].max(x.abs());
                 difference[1] = difference[1].max(y.abs());
@@ -958,7 +961,7 @@ impl Band {
         )
     }
 
-    /// Springs of vector `v` to the east, north, north-east and north-west: masks of those that exist, and
+    /// Springs of vector `v` to the east, north, north-east and north-west: masks of the existing ones, and
     /// the positions of their other ends.
     #[inline(always)]
     pub(super) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
@@ -975,10 +978,11 @@ impl Band {
         ]
     }
 
-    /// Largest `tau_c^2` of the blocks in contact of those vectors of a tile in which nothing moves.
+    /// Largest `tau_c^2` of the blocks in contact in those of the given vectors of a tile in which nothing
+    /// moves.
     pub(super) fn resting_stress_square(&self, t: usize, vectors: u32, step: &Step) -> f64 {
-        // Block by block: a vector is asked once after a rest of many steps. The contact of a block that is
-        // stuck bears all of its drive force, so that its springs need not be known.
+        // Block by block, since this is called for a vector only once after many steps of rest. The contact
+        // of a stuck block bears the whole drive force, so that its spring forces are not needed.
         let mut most = 0.0_f64;
         for (bit, v) in self.vectors(t).enumerate() {
             if vectors >> bit & 1 == 0 {
@@ -1001,7 +1005,7 @@ impl Band {
     }
 }
 
-/// Moves some elements of a band, whose displacements have a halo (Eq. 8), `u += dt v`.
+/// Moves some elements of a band (Eq. 8), `u += dt v`. Its displacements have a halo.
 #[inline(always)]
 pub(super) fn move_blocks<S: Simd>(
     simd: S,

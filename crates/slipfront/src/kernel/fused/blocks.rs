@@ -1,7 +1,7 @@
-//! Consecutive elements through one step, eight at a time: springs (Eq. 3), then drive, friction and damping
-//! (Eqs. 2, 4-7).
+//! One step of consecutive elements, eight at a time: springs (Eq. 3), then drive, friction and damping (Eqs.
+//! 2, 4-7).
 //!
-//! Each of these is a loop of its own: processors overlap more iterations of short loops than of a long one.
+//! Each of these is a separate loop: processors overlap more iterations of short loops than of a long one.
 
 use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 
@@ -72,8 +72,8 @@ pub(super) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x
     or_else(simd, present, a, [splat(simd, 0.0); 2])
 }
 
-/// Takes `other` in the lanes where a bit of `present` is 0. Few vectors have such bits, so that without
-/// AVX-512 the test is cheaper than the mask.
+/// Takes `other` in the lanes where a bit of `present` is 0. Such bits are rare, so that without AVX-512
+/// testing for them is cheaper than masking.
 #[inline(always)]
 pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
@@ -95,7 +95,7 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
     (masks, factors): ([&[u8]; 3], [Chunks; 3]),
     force: Upward<ChunksMut>,
 ) {
-    // All slices get one length here, so that the loop below needs no check of bounds.
+    // Gives all slices one length, so that the loop below needs no bounds checks.
     let [[nx, ny], [nex, ney], [nwx, nwy]] = force;
     let n = nx.len();
     let (ny, nex, ney) = (&mut ny[..n], &mut nex[..n], &mut ney[..n]);
@@ -134,8 +134,8 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
 /// diagonal ones, so that the trajectory of a rotated or mirrored problem is the rotated or mirrored
 /// trajectory, with the same bits.
 ///
-/// `west`: forces of the springs to the east of the eight elements before these; becomes those of the last
-/// eight elements.
+/// `west`: forces of the springs to the east of the eight elements before these; replaced by those of the
+/// last eight elements.
 #[inline(always)]
 pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     simd: S,
@@ -153,8 +153,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     let (south, south_west, south_east) = (first_n(south, n), first_n(south_west, n), first_n(south_east, n));
     let has_east = &arrays.has_east[..n];
     let to_east = &arrays.to_east[..if G::BLOCKS_DIFFER { n } else { 0 }];
-    // The spring to the west of a block is that to the east of its neighbour: the last of the eight before
-    // and the first seven of these, which are in registers.
+    // The spring to the west of a block is the spring to the east of its neighbour: from the last of the
+    // eight elements before and the first seven of these, which are in registers.
     let mut before = *west;
     for c in 0..n {
         let u = load_vec2(simd, here, c);
@@ -179,7 +179,7 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry>(
     *west = before;
 }
 
-/// Squares of the forces of eight blocks' springs to the east, north, north-east and north-west, over the
+/// Squared forces of the springs of eight blocks to the east, north, north-east and north-west, over the
 /// factors of springs that may differ.
 #[inline(always)]
 fn squares_over_factors<S: Simd, G: Geometry>(
@@ -197,7 +197,7 @@ fn squares_over_factors<S: Simd, G: Geometry>(
     if !G::BLOCKS_DIFFER {
         return squares;
     }
-    // A missing spring has no force, and no factor.
+    // A missing spring has force 0 and factor 0.
     let least = splat(simd, f64::MIN_POSITIVE);
     let over = |k: usize| squares[k] / load(simd, &factors[k][chunk]).max(least);
     [over(0), over(1), over(2), over(3)]
@@ -248,7 +248,7 @@ pub(super) fn displacement_sums<S: Simd, const DIFFER: bool>(
 ) -> ([i64; 2], i64) {
     let [x, y] = quanta.displacement;
     let centres = [splat(simd, x.centre()), splat(simd, y.centre())];
-    // What is no block stands at the centre of the window, and adds nothing.
+    // Elements that are no blocks are set to the centre of the window, and add nothing.
     let u = or_else(simd, blocks, u, centres);
     let differences = subtract(u, centres);
     let mut squares = square(differences);
@@ -297,30 +297,30 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) slipped: &'a mut [u8],
     /// The step at which each block in contact first slid.
     pub(super) first_slip: &'a mut [[u32; LANES]],
-    /// Drive forces `F_s`, or those of the sheet above, found by [`free_motion`].
+    /// Drive forces `F_s`, or those of the sheet above, computed by [`free_motion`].
     pub(super) drive: [ChunksMut<'a>; 2],
-    /// Velocities that the blocks would have without friction, found by [`free_motion`].
+    /// Velocities that the blocks would have without friction, computed by [`free_motion`].
     pub(super) free: [ChunksMut<'a>; 2],
-    /// Magnitude of the velocity without friction, found by [`free_motion`].
+    /// Magnitude of the velocity without friction, computed by [`free_motion`].
     pub(super) free_speed: ChunksMut<'a>,
-    /// Memory of later tiles, fetched ahead.
+    /// Memory of later tiles, to be fetched ahead.
     pub(super) prefetched: [CacheLines; 6],
     /// Drive springs and masses of a heterogeneous slider.
     pub(super) variation: Variation<'a>,
 }
 
-/// Eight blocks that do not rest, in a step whose next velocities are known.
+/// Eight blocks that do not rest, in a step with known next velocities.
 pub(super) struct Moved<S: Simd> {
     /// Mask of the elements that are blocks.
     pub(super) blocks: u8,
     pub(super) displacement: Vec2x8<S>,
     /// Velocities at `t - dt/2`.
     pub(super) before: Vec2x8<S>,
-    /// Velocities at `t + dt/2`, 0 of elements that are no blocks.
+    /// Velocities at `t + dt/2`, 0 for elements that are no blocks.
     pub(super) after: Vec2x8<S>,
     /// Minus the friction force.
     pub(super) against: Vec2x8<S>,
-    /// Contact stress (Eq. 10), with any sign; 0 where nothing is in contact.
+    /// Contact stress (Eq. 10), with any sign; 0 where there is no contact.
     pub(super) stress: Vec2x8<S>,
 }
 
@@ -336,10 +336,10 @@ pub(super) struct Sums<I, M, N = u32> {
     /// Four times `sum m v^2` at t_n, with v the mean of the half steps:
     /// `sum m (v(t - dt/2) + v(t + dt/2))^2`.
     pub(super) motion_square: I,
-    /// Twice the power that friction takes at t_n, `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
+    /// Twice the power dissipated by friction at t_n, `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
     pub(super) friction_work: I,
-    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. The sum is found vector by
-    /// vector, not in lanes.
+    /// Energy of the springs times `2 k_1`, at steps at which energies are needed. Summed by vectors, not in
+    /// lanes.
     pub(super) lattice_energy: I,
     /// Sum for the kinetic energy, `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are
     /// needed.
@@ -356,8 +356,8 @@ pub(super) struct Sums<I, M, N = u32> {
     pub(super) slipping: N,
 }
 
-/// Numbers that [`integers`] adds for the sums of every step, and the centres of the displacements, for each
-/// of eight lanes.
+/// Constants that [`integers`] adds for the sums of every step, and the centres of the displacements, for
+/// each of eight lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Shifts<S: Simd> {
     pub(super) centres: Vec2x8<S>,
@@ -477,7 +477,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
             against,
             stress,
         } = moved;
-        // Ghosts have velocities too, and count with their blocks alone.
+        // Ghosts have velocities too, but only their blocks count.
         let both = zero_missing(simd, blocks, add(before, after));
         let displacement = or_else(simd, blocks, displacement, shifts.centres);
         let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
@@ -503,8 +503,8 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     /// Adds the zeros that `vectors` vectors at rest contribute to the sums over moving blocks.
     #[inline(always)]
     fn add_zeros<const ENERGY: bool>(&mut self, simd: S, quanta: &Quanta, vectors: i64) {
-        // A term is the bits of a shift plus a multiple, and [`totals`](Self::totals) takes away the shift of
-        // every vector, also of those that are skipped here.
+        // A term is the bits of a shift plus a multiple, and [`totals`](Self::totals) subtracts the shift of
+        // every vector, including those that are skipped here.
         let zeros =
             |quantum: FixedPoint| i64x8::splat(simd, vectors.wrapping_mul(quantum.shift().to_bits() as i64));
         self.velocity[0] += zeros(quanta.velocity);
@@ -549,7 +549,8 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 }
 
 impl Sums<i64, f64> {
-    /// Leaves out the sums over the drive springs, which pull the highest sheet, for one below others.
+    /// Leaves out the sums over the drive springs, for a sheet below others: the drive springs pull the
+    /// highest sheet.
     pub(super) fn below_others(self) -> Self {
         Self {
             displacement: [0; 2],
@@ -578,7 +579,7 @@ impl Sums<i128, f64, u64> {
         self.slipping += part.slipping.into();
     }
 
-    /// Adds the sums of all ranks, and lowers `step` to the soonest that a rank names.
+    /// Adds the sums of all ranks, and lowers `step` to the earliest step of any rank.
     pub(super) fn over_ranks(&mut self, step: &mut u64, communicator: &dyn Communicator) {
         let [ux, uy] = &mut self.displacement;
         let [vx, vy] = &mut self.velocity;
@@ -593,7 +594,7 @@ impl Sums<i128, f64, u64> {
             &mut self.velocity_squares,
             &mut self.displacement_square,
         ];
-        // All in one message, since ranks wait for each other at every one.
+        // All in one message, since ranks wait for each other at every message.
         let mut words = [[0; 2]; 10];
         for (words, sum) in words.iter_mut().zip(&sums) {
             *words = split(**sum);
@@ -604,8 +605,8 @@ impl Sums<i128, f64, u64> {
             **sum = join(words);
         }
         [self.sliding, self.slipping] = words[9].map(|count| count as u64);
-        // The soonest step is the largest of the negative ones, and goes along with the other maxima.
-        // Steps beyond 2^53 are none of a run.
+        // The earliest step is minus the maximum of the negated steps, so that it is found with the other
+        // maxima. No run has steps beyond 2^53.
         let mut largest = [self.stress_square, self.speed_square, -(*step as f64)];
         communicator.largest(&mut largest);
         [self.stress_square, self.speed_square, _] = largest;
@@ -626,7 +627,7 @@ pub(super) fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors
     lane_sum(lanes).wrapping_sub(added)
 }
 
-/// Whether all of eight blocks stand still and stick.
+/// Whether all eight blocks stand still and stick.
 #[inline(always)]
 fn rest<S: Simd>(
     simd: S,
@@ -635,9 +636,9 @@ fn rest<S: Simd>(
     force: Vec2x8<S>,
     static_limit_squares: &[f64; LANES],
 ) -> bool {
-    // Squares spare the root of a magnitude, and where all eight are stuck the test spares the root and the
-    // division of what follows.
-    // Ghosts have the velocity of their blocks, and do not count as moving.
+    // Comparing squares avoids the square root of a magnitude. Where all eight blocks are stuck, this test
+    // also avoids the root and the division below. Ghosts have the velocity of their blocks, and do not count
+    // as moving.
     moving == 0
         && bits(
             simd,
@@ -645,7 +646,7 @@ fn rest<S: Simd>(
         ) == u8::MAX
 }
 
-/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for
+/// First part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for
 /// vectors that do not [`rest`].
 #[inline(always)]
 fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOADS: bool>(
@@ -696,8 +697,8 @@ fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOA
 }
 
 /// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks
-/// at a time, and all sums that observers need at every step. Under other sheets the pull of the next one has
-/// the place of the drive, and sums over the drive springs are left out.
+/// at a time, and all sums that observers need at every step. Below other sheets, the pull of the next sheet
+/// replaces the drive, and sums over the drive springs are left out.
 #[inline(always)]
 pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
     simd: S,
@@ -749,13 +750,15 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
             if ENERGY && !HAS_ABOVE {
                 sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
             }
-            // Velocities, power and motion are zero: their sums get all these zeros at the end, at once.
+            // Velocities, power and motion are zero: all these zeros are added to their sums at once at the
+            // end.
             resting += 1;
             continue;
         }
         let free = load_vec2(simd, free_velocity, c);
-        // Friction against the free velocity takes this share of it. From 1 on it stops the block instead of
-        // turning it around; of no block it is infinite, and of 0/0 NaN, which compares as no motion.
+        // Friction removes this share of the free velocity. From 1 on it stops the block instead of reversing
+        // it. The share is infinite for elements that are no blocks, and NaN from 0/0, which compares as no
+        // motion.
         let removed_fraction = load(simd, &kinetic_impulses[c]) / load(simd, &free_speed[c]);
         let sticks = is_zero(simd, before) & square(force).simd_le(load(simd, &static_limit_squares[c]));
         let remaining = splat(simd, 1.0) - removed_fraction;
@@ -793,7 +796,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
     sums.add_zeros::<ENERGY>(simd, quanta, resting);
 }
 
-/// Numbers of eight blocks, times the weight of each block for a heterogeneous slider.
+/// Values of eight blocks, times the weight of each block for a heterogeneous slider.
 #[inline(always)]
 pub(super) fn weighted<S: Simd, const DIFFER: bool>(
     simd: S,
@@ -812,7 +815,7 @@ pub(super) fn weighted<S: Simd, const DIFFER: bool>(
 #[inline(always)]
 pub(super) fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [u32; LANES], number: u32) {
     let new = slips & !*slipped;
-    // Seldom true: at most once per block in a run.
+    // Rarely true: at most once per block in a run.
     if new != 0 {
         *slipped |= new;
         for (lane, step) in first_slip.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Columns of a checkpoint, taken from the arrays of a band and written to them.
+//! Columns of a checkpoint, read from and written to the arrays of a band.
 
 use std::ops::Range;
 
@@ -9,8 +9,7 @@ use crate::checkpoint::BlockColumn;
 use crate::device::NEVER;
 
 impl Band {
-    /// Takes over the values of a column of a checkpoint from block `first` on, as far as these blocks belong
-    /// to the band.
+    /// Sets the values of a column of a checkpoint from block `first` on, for the blocks of the band.
     pub(super) fn set_column(
         &mut self,
         layout: &Layout,
@@ -29,7 +28,8 @@ impl Band {
                 BlockColumn::VelocityY => self.velocity.y[own].copy_from_slice(values),
                 BlockColumn::FirstSlip => {
                     for (step, time_star) in self.first_slip[own].iter_mut().zip(values) {
-                        // Whole but for the rounding of the product in the checkpoint and of this quotient.
+                        // An integer, except for the rounding of the product in the checkpoint and of this
+                        // quotient.
                         let number = (time_star / dt_star).round();
                         *step = if number.is_nan() { NEVER } else { number as u32 };
                     }
@@ -38,8 +38,7 @@ impl Band {
         }
     }
 
-    /// Writes to `values` a column of a checkpoint from block `first` on, as far as these blocks belong to
-    /// the band.
+    /// Writes to `values` a column of a checkpoint from block `first` on, for the blocks of the band.
     pub(super) fn read_column(
         &self,
         layout: &Layout,
@@ -69,8 +68,7 @@ impl Band {
         }
     }
 
-    /// Takes over a column of the memory of the law of friction from block `first` on, as far as these blocks
-    /// belong to the band.
+    /// Sets a column of the memory of the law of friction from block `first` on, for the blocks of the band.
     pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
         for [of_values, own] in self.common(layout, first, values.len()) {
             let memory = self
@@ -83,8 +81,8 @@ impl Band {
         }
     }
 
-    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, as far
-    /// as these blocks belong to the band.
+    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, for the
+    /// blocks of the band.
     pub(super) fn read_memory(
         &self,
         layout: &Layout,
@@ -104,8 +102,8 @@ impl Band {
         }
     }
 
-    /// Takes over a column of the sheets above, of each displacement and velocity along x and y, from block
-    /// `first` on, as far as these blocks belong to the band.
+    /// Sets a column of the sheets above from block `first` on, for the blocks of the band. Each sheet has
+    /// columns for displacement and velocity along x and y.
     pub(super) fn set_upper_column(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
         let halo = self.halo;
         for [of_values, own] in self.common(layout, first, values.len()) {
@@ -153,7 +151,7 @@ impl Band {
         })
     }
 
-    /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the
+    /// Continues from a checkpoint after all columns are set, as if every tile had just been swept: the
     /// largest contact stress of a checkpoint includes the skipped tiles.
     pub(super) fn resume(&mut self) {
         for task in &mut self.tasks {

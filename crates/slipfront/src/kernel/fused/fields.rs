@@ -1,6 +1,6 @@
-//! Forces and fields that a sweep does not keep, found again from displacements and velocities, by the exact
-//! spring law whatever formula the sweep used: the forces on one block, and one field of all blocks, tile
-//! after tile, with the same bits.
+//! Forces and fields that a sweep does not keep, computed again from displacements and velocities with the
+//! exact spring law, whichever formula the sweep used: the forces on one block, and one field of all blocks,
+//! tile by tile, with the same bits.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
@@ -32,8 +32,8 @@ pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displac
     }
 }
 
-/// Block `b` under the given force of its drive spring or of the sheet above. `motion` gives displacement and
-/// velocity of a block.
+/// Block `b` under the given force of its drive spring or of the sheet above. `motion` returns displacement
+/// and velocity of a block.
 pub(super) fn block(
     model: &Model,
     b: usize,
@@ -62,7 +62,7 @@ pub(super) fn block(
     }
 }
 
-/// Eq. 3 for one block, its springs summed in the order of the sweep.
+/// Eq. 3 for one block, with springs summed in the order of the sweep.
 fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
     let (i, j) = model.lattice.column_row(b);
     let pair = |bond: &Bond| {
@@ -84,19 +84,20 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
     [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
 }
 
-/// Friction `F_f` of the projection law: kinetic friction against the velocity that the update left; for a
-/// stuck block minus the sum of the other forces.
+/// Friction `F_f` of the projection law: kinetic friction against the velocity after the update; for a stuck
+/// block minus the sum of the other forces.
 fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
     if velocity == [0.0, 0.0] {
         return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
     }
-    // The velocity after the step has the direction of that without friction, along which friction acts.
+    // The velocity after the step has the same direction as the velocity without friction, along which
+    // friction acts.
     let per_velocity = kinetic_force / length(velocity);
     [-per_velocity * velocity[0], -per_velocity * velocity[1]]
 }
 
-/// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row,
-/// the column of the first value, and the values.
+/// Reads `field` in every `stride`-th row, several blocks of a row at a time: `write` receives the row, the
+/// column of the first value, and the values.
 #[inline(always)]
 pub(super) fn read_rows<S: Simd, G: Geometry>(
     simd: S,
@@ -120,7 +121,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
             let displaced = band.halo + elements.start..band.halo + elements.end;
             match field {
                 Field::ContactStress | Field::Traction => {
-                    // Of tiles that follow one another, the springs in between are in the ring already.
+                    // For consecutive tiles, the springs in between are in the ring buffer already.
                     let from = band.below(displaced.start).max(springs_end);
                     springs_end = displaced.end;
                     let u = &band.displacement;
@@ -168,7 +169,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
     }
 }
 
-/// Hands over the blocks of tiles that move, some of a row at a time: the first, whether each slides, and
+/// Passes the blocks of moving tiles to `take`, some of a row at a time: the first, whether each slides, and
 /// their velocities.
 pub(super) fn read_sliding(model: &Model, layout: &Layout, bands: &[Band], take: TakeSliding) {
     let mut slides = [false; TILE];

@@ -1,11 +1,11 @@
-//! The fused kernel by itself, for tests of behaviour that no simulation shows, and as a device.
+//! The fused kernel on its own, for tests of behaviour that a simulation does not show, and as a device.
 
 use super::layout::VECTORS;
 use super::*;
 use crate::device::{Device, DeviceError, DeviceLattice, StepRecord};
 
-/// The fused kernel by itself, on one thread of one rank: tests choose the width of its vectors, and read its
-/// bounds and the steps up to which it rests.
+/// The fused kernel on its own, on one thread of one rank. Tests choose the width of its vectors, and read
+/// its bounds and the steps up to which it rests.
 #[derive(Debug)]
 pub struct FusedKernel {
     model: Model,
@@ -15,13 +15,13 @@ pub struct FusedKernel {
 }
 
 impl FusedKernel {
-    /// Number of vector widths that this processor has.
+    /// Number of vector widths that this processor supports.
     pub fn n_widths() -> usize {
         levels().len()
     }
 
-    /// Begins in a given state, or at rest. Vectors have the widest of all widths unless `width` names
-    /// another, counted from the narrowest on; tiles at rest are skipped if `skips` is set.
+    /// Begins in a given state, or at rest. Vectors have the largest width unless `width` selects another,
+    /// counted from the narrowest on; tiles at rest are skipped if `skips` is set.
     ///
     /// # Panics
     /// If there is no such width.
@@ -42,8 +42,8 @@ impl FusedKernel {
         &self.model
     }
 
-    /// Makes the next step, at first step 0, under a drive that moves in every step. Returns the sums over
-    /// all blocks, with the stored energies if `energies` is set.
+    /// Makes the next step, beginning with step 0, under a drive that moves in every step. Returns the sums
+    /// over all blocks, with the stored energies if `energies` is set.
     pub fn step(&mut self, energies: bool) -> Totals {
         let start = Clock::start(self.kernel.dt_star);
         let clock = self.latest.map_or(start, |latest| latest.next(true));
@@ -102,7 +102,8 @@ impl FusedKernel {
     }
 }
 
-/// A device that is the fused kernel on one thread: what other devices must agree with to the last bit.
+/// The fused kernel on one thread as a device: the reference with which other devices must agree to the last
+/// bit.
 #[derive(Clone, Copy, Debug)]
 pub struct FusedDevice;
 
@@ -119,7 +120,7 @@ impl Device for FusedDevice {
     }
 }
 
-/// Takes a lattice through some steps.
+/// Advances a lattice by some steps.
 fn run_on_fused(lattice: &mut DeviceLattice, steps: u32) {
     let model = &*Arc::clone(&lattice.model);
     let (dt_star, n) = (lattice.equations.dt_star, model.lattice.n_blocks());
@@ -171,7 +172,7 @@ fn run_on_fused(lattice: &mut DeviceLattice, steps: u32) {
     lattice.first_slips = times.into_iter().map(step).collect();
 }
 
-/// The columns of a checkpoint of this state.
+/// Columns of a checkpoint of this state.
 fn columns(state: &State, first_slips: &[u32], dt_star: f64) -> [(BlockColumn, Vec<f64>); 5] {
     let State {
         displacement: u,
@@ -193,7 +194,7 @@ fn columns(state: &State, first_slips: &[u32], dt_star: f64) -> [(BlockColumn, V
     ]
 }
 
-/// Every vector width that this processor has, narrow ones first.
+/// Every vector width that this processor supports, narrow ones first.
 fn levels() -> Vec<Level> {
     let widest = Level::new();
     #[cfg(target_arch = "x86_64")]

@@ -1,4 +1,4 @@
-//! Friction along x alone, of an upright sheet, whose blocks move freely along y or stand on a foundation.
+//! Friction along x alone, for an upright sheet with blocks that move freely along y or rest on a foundation.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ pub(super) struct Interface {
     load: Aligned,
     /// `1/F_n`, or 0 without load.
     inverse_load: Aligned,
-    /// Velocities along y as far as friction knows them: zeros.
+    /// Velocities along y as seen by friction: zeros.
     still: Aligned,
 }
 
@@ -67,7 +67,7 @@ impl Interface {
         }
     }
 
-    /// Zeros in place of the velocities of `n` elements of a tile along y.
+    /// Zeros in place of the velocities along y of `n` elements of a tile.
     pub(super) fn still(&self, n: usize) -> Chunks<'_> {
         self.still[..n].as_chunks().0
     }
@@ -75,7 +75,7 @@ impl Interface {
 
 impl InterfaceLoop<'_> {
     /// Change of the normal forces on eight blocks that have risen by `rise`, by the operations of
-    /// [`Law::reaction`], and the normal forces over those of the load.
+    /// [`Law::reaction`], and the ratio of the normal forces to those of the load.
     #[inline(always)]
     pub(super) fn reaction<S: Simd>(&self, simd: S, chunk: usize, rise: f64x8<S>) -> [f64x8<S>; 2] {
         let [foundation, bears, inverse] =
@@ -119,7 +119,7 @@ pub(super) fn friction_along_x<S: Simd>(
         );
         let free = or_zero_below(simd, SMALLEST_VELOCITY, free);
 
-        // As in `friction`, but by the components along x alone.
+        // As in `friction`, but with the x components alone.
         let removed_fraction = share * load(simd, &arrays.kinetic_impulses[c]) / free[0].abs();
         let limit_square = share * share * load(simd, &arrays.static_limit_squares[c]);
         let sticks = before[0].simd_eq(zero) & (force[0] * force[0]).simd_le(limit_square);

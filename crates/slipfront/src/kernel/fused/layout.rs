@@ -1,8 +1,8 @@
-//! Where the blocks of the lattice are stored in the arrays of the fused kernel.
+//! Positions of the blocks of the lattice in the arrays of the fused kernel.
 //!
 //! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1,
-//! e + stride and e + stride +- 1, whatever the row, and vectors of eight elements may contain the end of a
-//! row. Springs that do not exist at a free edge are masked. Along a periodic x axis every row has a ghost at
+//! e + stride and e + stride +- 1 in every row. Vectors of eight elements may contain the end of a row.
+//! Springs that do not exist at a free edge are masked. Along a periodic x axis every row has a ghost at
 //! either end, a copy of the block at its other end. Elements that are no blocks never move, because their
 //! threshold is infinite, and are excluded from all sums.
 
@@ -28,7 +28,7 @@ pub(super) struct Layout {
     /// The first row of the lattice that is stored here, and their number.
     first_row: usize,
     rows: usize,
-    /// Elements from a row to the next.
+    /// Number of elements from one row to the next.
     pub(super) stride: usize,
     /// Ghosts before the first block of a row.
     ghosts: usize,
@@ -103,8 +103,8 @@ impl Layout {
         [(first - 1, last), (last + 1, first)]
     }
 
-    /// The blocks among these elements, row after row: the row, the column of the first, and which of the
-    /// elements they are.
+    /// The blocks among these elements, row by row: the row, the column of the first block, and the elements
+    /// of the blocks.
     pub(super) fn rows_among(
         &self,
         elements: Range<usize>,
@@ -129,8 +129,7 @@ impl Layout {
         self.lattice.edges[1] == Edges::Periodic
     }
 
-    /// Whether other ranks hold the rows below the first and above the last of the stored rows, as neighbours
-    /// of these.
+    /// Whether other ranks hold neighbouring rows below the first and above the last of the stored rows.
     pub(super) fn has_neighbours(&self) -> [bool; 2] {
         if self.rows == self.lattice.ny {
             return [false; 2];
@@ -161,7 +160,7 @@ impl Layout {
         }
     }
 
-    /// Column and row of the lattice of the block at an element, or of the block that is copied there; none
+    /// Column and row of the lattice of the block at an element, or of the block that a ghost copies; none
     /// beyond a free edge or between the rows. The element may lie before the first or after the last row.
     pub(super) fn place(&self, element: isize) -> Option<[usize; 2]> {
         let (nx, ny) = (self.lattice.nx, self.lattice.ny as isize);
@@ -174,7 +173,7 @@ impl Layout {
         is_stored.then(|| [(column + nx - self.ghosts) % nx, j as usize])
     }
 
-    /// Springs of an element to the east, north, north-east and north-west: whether the lattice has them. The
+    /// Whether the lattice has the springs of an element to the east, north, north-east and north-west. The
     /// element may lie before the first or after the last row.
     pub(super) fn springs(&self, element: isize) -> [bool; 4] {
         let ghosts = self.ghosts as isize;
@@ -189,8 +188,8 @@ impl Layout {
         [east, north && is_stored, north && east, north && west]
     }
 
-    /// The elements from `from` to `to`, each piece with its first element. Elements before the first row or
-    /// after the last are left out, or taken from the other end if the axis is periodic.
+    /// Pieces of the elements from `from` to `to`, each with its first element. Elements before the first row
+    /// or after the last are left out, or taken from the other end if the axis is periodic.
     pub(super) fn pieces(
         &self,
         from: isize,
@@ -214,8 +213,8 @@ impl Layout {
         })
     }
 
-    /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or
-    /// neighbours of these elements: see [`mark_vectors`].
+    /// Marks the vectors that contain the elements from `first` to `last` or neighbours of these: see
+    /// [`mark_vectors`]. The elements may lie outside the rows.
     pub(super) fn mark_around(&self, first: isize, last: isize, masks: &[AtomicU32]) {
         let (n, stride) = (self.len() as isize, self.stride as isize);
         for row in [-stride, 0, stride] {
@@ -232,7 +231,7 @@ impl Layout {
 
 /// Sets the bits of the vectors that contain the elements of a piece: one mask per tile, one bit per vector.
 fn mark_vectors(masks: &[AtomicU32], piece: Range<usize>) {
-    // Several threads set bits. Most are set already, and reading is cheaper than writing.
+    // Several threads set bits. Most bits are set already, and reading is cheaper than writing.
     let set = |tile: usize, bits: u32| {
         if masks[tile].load(Ordering::Relaxed) & bits != bits {
             masks[tile].fetch_or(bits, Ordering::Relaxed);
@@ -271,7 +270,7 @@ mod tests {
         masks.into_iter().map(AtomicU32::into_inner).collect()
     }
 
-    /// The vectors found are compared with the neighbours that the lattice itself knows.
+    /// Compares the vectors with the neighbours in the lattice.
     #[test]
     fn neighbouring_vectors_hold_all_neighbouring_blocks() {
         use Edges::{Free, Periodic};
@@ -309,7 +308,8 @@ mod tests {
                         }
                     }
                     let marked: u32 = masks.iter().map(|mask| mask.count_ones()).sum();
-                    // Three rows of at most three vectors, twice with ghosts, and those that a wrap divides.
+                    // Three rows of at most three vectors, twice for ghosts, and vectors split at a periodic
+                    // edge.
                     assert!(
                         marked <= 24,
                         "{marked} vectors around {vector} of {nx}x{ny} {edges:?}"

@@ -1,16 +1,16 @@
 //! The fast kernel: the equations of [`general`](super::general) in one sweep over the blocks.
 //!
 //! Blocks are stored row after row in one array ([`layout`]), divided into tiles of 256 elements. A sweep
-//! takes tile after tile through a step ([`band`]): displacements, springs, friction and all sums, eight
-//! blocks at a time ([`blocks`]), each spring once. Spring forces come from a series where that is as exact
-//! as the square root ([`springs`]). A tile at rest with nothing moving around it is skipped until one of its
-//! blocks can slip ([`rest`]). Every thread sweeps a band of tiles.
+//! advances one tile after the other by a step ([`band`]): displacements, springs, friction and all sums,
+//! eight blocks at a time ([`blocks`]), each spring once. Spring forces are computed from a series where this
+//! is as exact as the square root ([`springs`]). A tile at rest with nothing moving around it is skipped
+//! until one of its blocks can slip ([`rest`]). Every thread sweeps a band of tiles.
 //!
 //! A step must read displacement, velocity and two thresholds of every block and write displacement and
-//! velocity: 80 bytes, which bounds the speed on a lattice larger than the cache (`examples/large_step.rs`).
+//! velocity: 80 bytes. This bounds the speed on a lattice larger than the cache (`examples/large_step.rs`).
 //! Spring forces pass through a ring buffer that stays in the cache.
 //!
-//! A rank holds some rows and the displacements of the rows beside them ([`neighbours`]). Sheets above the
+//! A rank holds some rows and the displacements of the neighbouring rows ([`neighbours`]). Sheets above the
 //! lowest one are swept tile by tile with it ([`sheets`]).
 //!
 //! The trajectory has the same bits for any number of ranks and threads and any SIMD width, whether vectors
@@ -78,7 +78,8 @@ use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 
-/// Steps between two measurements of displacements and their differences; in between they are bounded.
+/// Number of steps between two measurements of displacements and their differences; in between, bounds are
+/// used.
 const MEASUREMENT_INTERVAL: u64 = 16;
 
 /// Formula for spring forces in a sweep.
@@ -92,20 +93,20 @@ enum Springs {
     SquareRoot,
 }
 
-/// The state of the blocks of a rank and the way to step them.
+/// The state of the blocks of a rank and the data to step them.
 #[derive(Debug)]
 pub(crate) struct Fused {
     layout: Layout,
     dt_star: f64,
     bands: Vec<Band>,
-    /// Bands that need nothing of other ranks.
+    /// Bands that need no data from other ranks.
     inner: Range<usize>,
-    /// Threads that share out the bands.
+    /// Number of threads that share the bands.
     threads: usize,
     level: Level,
     /// Whether tiles at rest are skipped.
     skips: bool,
-    /// Mask for every tile of the vectors that have a moving block or a neighbour of one.
+    /// For every tile, the mask of the vectors that have a moving block or a neighbour of one.
     touched: Vec<AtomicU32>,
     /// The first step at which a block may slip, if nothing moves.
     active_from_step: u64,
@@ -126,10 +127,10 @@ pub(crate) struct Fused {
     /// The rows below and above the rows of this rank.
     neighbours: Neighbours,
     largest: LargestFactors,
-    /// Sum of the relative stiffness of all drive springs: the number of blocks where all are alike.
+    /// Sum of the relative stiffness of all drive springs: the number of blocks if all are equal.
     drive_springs: f64,
     blocks_differ: bool,
-    /// Number of columns of a checkpoint that the law of friction has.
+    /// Number of columns that the law of friction adds to a checkpoint.
     columns_of_law: usize,
 }
 
@@ -171,7 +172,7 @@ impl Fused {
             inner,
             threads,
             level: vectors::level(),
-            // Of a stack nothing rests, see `sheets`, nor does an upright sheet, which moves freely along y.
+            // Nothing rests in a stack, see `sheets`, nor in an upright sheet, which moves freely along y.
             skips: skips && model.sheets.is_empty() && model.friction.interface().is_none(),
             touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
             active_from_step: 0,
@@ -192,13 +193,13 @@ impl Fused {
             columns_of_law: model.friction.n_columns(),
             neighbours,
         };
-        // From then on ghosts and halos follow those that move: at rest they must be right once.
+        // Later, ghosts and halos are updated where blocks move; at rest they must be set once.
         kernel.copy_ghosts(true);
         kernel.fill_halos(0.0, true);
         kernel
     }
 
-    /// Bounds and the sum of velocities with which a run of a whole lattice begins, in a given state or at
+    /// Bounds and the sum of velocities at the start of a run of a whole lattice, in a given state or at
     /// rest.
     pub(crate) fn begun(model: &Model, dt_star: f64, state: Option<&State>) -> (MotionBounds, [f64; 2]) {
         let Some(state) = state else {
@@ -253,14 +254,14 @@ impl Fused {
         })
     }
 
-    /// Takes over a column of the blocks from `first` on.
+    /// Sets a column of the blocks from `first` on.
     pub(crate) fn set_column(&mut self, column: BlockColumn, first: usize, values: &[f64]) {
         for band in &mut self.bands {
             band.set_column(&self.layout, self.dt_star, column, first, values);
         }
     }
 
-    /// The kernel with what follows from the columns that it has taken over.
+    /// Completes the kernel with everything that follows from the columns set.
     pub(crate) fn resumed(mut self) -> Self {
         for band in &mut self.bands {
             band.resume();
@@ -270,9 +271,9 @@ impl Fused {
         self
     }
 
-    /// Chooses the formula for springs in a step by the bound on all strains; returns it, and whether sums
-    /// have other quanta than before. The function must be called at every step, swept or not, so that
-    /// skipping does not change the choice.
+    /// Chooses the formula for springs in a step from the bound on all strains; returns it, and whether sums
+    /// have other quanta than before. Must be called at every step, swept or not, so that skipping does not
+    /// change the choice.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> (Springs, bool) {
         let bounds = &mut self.motion_bounds;
         if step.number.is_multiple_of(MEASUREMENT_INTERVAL) {
@@ -294,8 +295,7 @@ impl Fused {
             (bounds.extent, bounds.difference) = ([right, left, up, down], [along_x, along_y]);
             bounds.growth = 0.0;
         }
-        // Between measurements both ends of a spring move by the highest speed at most, apart from each
-        // other.
+        // Between measurements the ends of a spring move apart by at most twice the highest speed.
         bounds.growth += 2.0 * step.move_dt * bounds.speed;
         let strain = self.motion_bounds.max_strain(model.epsilon);
         let springs = if strain <= self.strain_limits[0] {
@@ -308,8 +308,8 @@ impl Fused {
         (springs, self.motion_bounds.move_ranges())
     }
 
-    /// Makes the sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this
-    /// rank's are on their way.
+    /// Sweeps all bands to a step. Bands that need no data from other ranks are swept while the rows next to
+    /// those of this rank are being received.
     fn sweep(&mut self, model: &Model, step: Step, springs: Springs, renews_sums: bool, energies: bool) {
         let schedule = SweepConditions {
             number: step.number,
@@ -324,7 +324,7 @@ impl Fused {
         for_each_band(threads, &mut self.bands, &|band| {
             band.mark_touched(&layout, touched);
         });
-        // With the displacements that are to come: no band of the sweep then reads what another writes.
+        // Displacements after the coming move: no band of the sweep then reads what another writes.
         self.fill_halos(step.move_dt, false);
         self.write_own_rows(step.move_dt);
 
@@ -341,8 +341,8 @@ impl Fused {
                 energies,
             );
         };
-        // Bands at the ends of the rank wait for the rows of other ranks; what moves there is marked when it
-        // is known, which touches tiles of these bands alone.
+        // Bands at the ends of the rank wait for the rows of other ranks. Blocks that move there are marked
+        // when they are received, which affects tiles of these bands alone.
         let (first, others) = self.bands.split_at_mut(self.inner.start);
         let (inner, last) = others.split_at_mut(self.inner.len());
         self.neighbours
@@ -359,9 +359,9 @@ impl Fused {
         self.sum_bands(&quanta);
     }
 
-    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: for `all`
-    /// elements of this rank, or for those that move. Displacements beyond a free edge stay zero: no spring
-    /// leads there.
+    /// Sets the displacements beyond the ends of every band to their values after moving by `move_dt`: for
+    /// `all` elements of this rank, or for those that move. Displacements beyond a free edge stay zero: no
+    /// spring leads there.
     fn fill_halos(&mut self, move_dt: f64, all: bool) {
         if self.bands.len() == 1 && !self.layout.wraps_along_y() {
             return;
@@ -376,8 +376,7 @@ impl Fused {
         }
     }
 
-    /// Exchanges with other ranks the numbers that the first step needs, also the first step after a
-    /// checkpoint.
+    /// Exchanges with other ranks the values that the first step needs, also after a checkpoint.
     fn begin(&mut self, model: &Model) {
         self.has_begun = true;
         self.write_own_rows(0.0);
@@ -390,7 +389,7 @@ impl Fused {
         let mut speed = [self.motion_bounds.speed];
         communicator.largest(&mut speed);
         self.motion_bounds.speed = speed[0];
-        // The drive pulls the highest sheet of a stack, which begins at rest.
+        // The drive pulls the highest sheet of a stack, and the stack begins at rest.
         if speed[0] == 0.0 || self.n_sheets() > 1 {
             return;
         }
@@ -407,12 +406,12 @@ impl Fused {
         }
     }
 
-    /// Writes the displacements that the rows at the ends of this rank will have after moving by `move_dt`,
-    /// for the neighbouring ranks.
+    /// Writes the displacements of the first and the last row of this rank after moving by `move_dt`, for the
+    /// neighbouring ranks.
     fn write_own_rows(&mut self, move_dt: f64) {
         let (stride, len) = (self.layout.stride, self.layout.len());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
-            // None beyond a free edge; one sheet after the other.
+            // Nothing beyond a free edge; one sheet after the other.
             for k in 0..self.neighbours.own[end].len() {
                 let (band, at) = self.locate(first + k % stride);
                 self.neighbours.own[end][k] = self.bands[band].advanced(k / stride, at, move_dt);
@@ -427,7 +426,7 @@ impl Fused {
             let (other, at) = self.locate(element);
             let n = (LANES - at % LANES).min(elements.end - element);
             for sheet in 0..self.n_sheets() {
-                // What rests has been copied with its last move.
+                // Elements at rest were copied when they last moved.
                 if all || sheet > 0 || self.bands[other].moving[at / LANES] != 0 {
                     for offset in 0..n {
                         let u = self.bands[other].advanced(sheet, at + offset, move_dt);
@@ -453,8 +452,8 @@ impl Fused {
         (band, element - self.bands[band].first)
     }
 
-    /// Copies displacements and velocities to the ghosts from their blocks: from `all` blocks, or from those
-    /// that were swept.
+    /// Copies displacements and velocities from blocks to their ghosts: from `all` blocks, or from those that
+    /// were swept.
     fn copy_ghosts(&mut self, all: bool) {
         if !self.layout.has_ghosts() {
             return;
@@ -484,14 +483,14 @@ impl Fused {
         }
     }
 
-    /// Reads one of the columns of the sheets above, of the blocks from `first` on.
+    /// Reads one of the columns of the sheets above, for the blocks from `first` on.
     fn read_upper_column(&self, column: usize, first: usize, values: &mut [f64]) {
         for band in &self.bands {
             band.read_upper_column(&self.layout, column, first, values);
         }
     }
 
-    /// Adds up the sums over the bands after a sweep to the sums over the lattice.
+    /// Adds up the sums of all bands after a sweep to the sums over the lattice.
     fn sum_bands(&mut self, quanta: &Quanta) {
         let (mut sums, mut active_from_step) = (Sums::<i128, f64, u64>::default(), u64::MAX);
         for band in &self.bands {
@@ -508,7 +507,7 @@ impl Fused {
             self.totals.velocity_after,
             sums.velocity.map(|sum| quanta.velocity.value(sum)),
         );
-        // Sums are of differences from the centre of the window, so that a slider that has gone far keeps its
+        // Sums use differences from the centre of the window, so that a slider that has moved far loses no
         // digits.
         let displacement = |axis: usize| {
             let differences = quanta.weighted_displacement[axis].value(sums.displacement[axis]);
@@ -527,7 +526,7 @@ impl Fused {
         self.sums = Some((sums, *quanta));
     }
 
-    /// Energy of the springs between the sheets of a stack at the present step, at which the sweep has found
+    /// Energy of the springs between the sheets of a stack at the present step, if the sweep computed
     /// energies.
     fn energy_between_sheets(&self, quanta: &Quanta) -> f64 {
         if self.n_sheets() == 1 {
@@ -567,7 +566,7 @@ impl Engine for Fused {
         );
         let mut step = Step::new(model, clock);
         if self.swept_step.is_none() {
-            // At the start displacements are those of t_0 already.
+            // At the start, displacements already belong to t_0.
             step.move_dt = 0.0;
         }
         if !self.has_begun {
@@ -575,7 +574,7 @@ impl Engine for Fused {
         }
         let (springs, windows_moved) = self.choose_springs(model, &step);
         // Skipped tiles keep their sums and the energy of their springs. After a change of quanta or formula
-        // they must be found anew, to have the same bits.
+        // both must be computed again, to have the same bits.
         let springs_changed = windows_moved || self.springs != Some(springs);
         if !self.skips || springs_changed || number >= self.active_from_step {
             self.sweep(model, step, springs, springs_changed, energies);
@@ -629,7 +628,7 @@ impl Engine for Fused {
             }
             return;
         }
-        // Each band counts in bins of its own, of which threads share none.
+        // Each band counts in bins of its own, so that threads share none.
         let of_band = |band: &Band| {
             let mut counts = vec![0; bins.count];
             band.count_in_contact(layout, bins, sliding, &mut counts);
@@ -736,21 +735,22 @@ impl Engine for Fused {
     }
 }
 
-/// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but
-/// each finds the springs of the row before it once more.
+/// Least number of tiles in a band if there are several: with more bands threads share the work more evenly,
+/// but each band computes the springs of the row before it once more.
 const MIN_BAND_TILES: usize = 1024;
 
-/// The tiles of every band, and the bands that need nothing of other ranks.
+/// The tiles of every band, and the bands that need no data from other ranks.
 fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>) {
     let n_tiles = layout.n_tiles();
-    // What lies within a halo of the rows of other ranks; the last tile may be short.
+    // Tiles within a halo of the rows of other ranks; the last tile may be short.
     let end = band::halo(layout).div_ceil(TILE) + 1;
     let [first, last] = layout.has_neighbours().map(|has| if has { end } else { 0 });
     let (inner, has_inner) = match n_tiles.checked_sub(first + last) {
         Some(1..) => (first..n_tiles - last, true),
         _ => (0..n_tiles, false),
     };
-    // More bands than threads, as far as they stay large: a thread that comes late leaves work to the others.
+    // More bands than threads, as long as they stay large: the other threads do the work of a thread that
+    // comes late.
     let most = if threads == 1 { 1 } else { 4 * threads };
     let n = (inner.len() / MIN_BAND_TILES)
         .clamp(threads, most)
@@ -783,7 +783,7 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
     }
 }
 
-/// Takes a band through a step with the vector instructions of `level`.
+/// Advances a band by a step with the vector instructions of `level`.
 fn sweep(
     level: Level,
     band: &mut Band,
@@ -811,7 +811,8 @@ fn sweep(
         (Springs::ShortSeries, true) => {
             dispatch!(level, simd => band.sweep(simd, Differing(short), step, quanta, energies));
         }
-        // One sweep less to compile counts for more than what the longer series would save at larger strains.
+        // Compiling one sweep less is worth more than the time that the longer series would save at larger
+        // strains.
         (Springs::LongSeries | Springs::SquareRoot, true) => {
             dispatch!(level, simd => band.sweep(simd, Differing(root), step, quanta, energies));
         }

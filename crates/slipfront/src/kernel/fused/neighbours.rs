@@ -1,4 +1,4 @@
-//! The rows beside those of a rank, which other ranks hold.
+//! The rows next to those of a rank, which other ranks hold.
 
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::layout::Layout;
 use crate::communicator::Communicator;
 
-/// Displacements of the row below the first of this rank and of the row above the last, ghosts included, one
-/// sheet after the other; none beyond a free edge.
+/// Displacements of the row below the first row of this rank and of the row above the last, ghosts included,
+/// one sheet after the other; none beyond a free edge.
 pub(super) struct Neighbours {
     pub(super) communicator: Arc<dyn Communicator>,
     /// The first and the last row of this rank, which are sent to the ranks below and above.
@@ -16,8 +16,8 @@ pub(super) struct Neighbours {
     rows: [Vec<[f64; 2]>; 2],
     /// Rows of the ranks below and above before the latest exchange.
     before: [Vec<[f64; 2]>; 2],
-    /// Elements of the lowest sheet in the rows beside this rank that have moved in the latest exchange,
-    /// counted from the first of this rank.
+    /// Elements of the lowest sheet in the neighbouring rows that have moved in the latest exchange, counted
+    /// from the first element of this rank.
     pub(super) moved: Vec<isize>,
 }
 
@@ -37,14 +37,14 @@ impl Neighbours {
         }
     }
 
-    /// Whether no other rank holds rows of the lattice.
+    /// Whether this rank holds the whole lattice.
     pub(super) fn is_alone(&self) -> bool {
         self.communicator.size() == 1
     }
 
     /// Sends the rows in `own` to the neighbours and receives theirs, while `meanwhile` runs.
     pub(super) fn exchange(&mut self, layout: &Layout, meanwhile: &mut dyn FnMut()) {
-        // The exchange before the latest gives its memory to this one.
+        // Reuses the memory of the exchange before the latest.
         std::mem::swap(&mut self.rows, &mut self.before);
         let [below, above] = &mut self.rows;
         self.communicator.exchange(
@@ -56,8 +56,8 @@ impl Neighbours {
         let firsts = [-(layout.stride as isize), layout.len() as isize];
         for (first, (row, before)) in firsts.into_iter().zip(self.rows.iter().zip(&self.before)) {
             for (element, (u, before)) in (first..).zip(row.iter().zip(before).take(layout.stride)) {
-                // Compared with the exchange before, and not with what the other rank says of itself: nothing
-                // more has to be sent.
+                // Compared with the previous exchange, so that the other rank need not send which elements
+                // moved.
                 if u != before {
                     self.moved.push(element);
                 }
@@ -73,7 +73,7 @@ impl Neighbours {
             ..0 => (below, stride.checked_add_signed(element)?),
             _ => (above, (element as usize).checked_sub(layout.len())?),
         };
-        // Beyond the row lies the next sheet.
+        // The next sheet follows after the row.
         (k < stride).then(|| row.get(sheet * stride + k))?.copied()
     }
 }

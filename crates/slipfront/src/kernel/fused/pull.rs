@@ -5,14 +5,14 @@ use fearless_simd::{Simd, f64x8};
 use super::step::Step;
 use super::vector::{Chunks, Vec2x8, add, load_vec2, scale, splat, subtract};
 
-/// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with the dead load, on blocks that are alike.
+/// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with the dead load, on equal blocks.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
     add(pull_of_springs(simd, step, u), dead_load(simd, step))
 }
 
-/// Force of the drive springs (Eq. 2), `F_s = k_s,i (V t - u)`, with the dead load, on blocks that differ:
-/// given their springs over others, and their loads unless these are alike.
+/// Force of the drive springs (Eq. 2), `F_s = k_s,i (V t - u)`, with the dead load, on blocks that differ,
+/// given the relative stiffness of their drive springs, and their loads unless these are equal.
 #[inline(always)]
 pub(super) fn pull_of_differing<S: Simd>(
     simd: S,
@@ -40,7 +40,7 @@ fn dead_load<S: Simd>(simd: S, step: Step) -> Vec2x8<S> {
     step.dead_load.map(|force| splat(simd, force))
 }
 
-/// Blocks of the sheet above some blocks; none where the drive springs pull these.
+/// Blocks of the sheet above some blocks; none where the drive springs pull these blocks.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Above<'a> {
     /// Stiffness `g` of the springs to them.
@@ -61,8 +61,8 @@ impl Above<'_> {
     }
 }
 
-/// Force from above on eight blocks at displacement `u`: of the springs to the sheet there,
-/// `g (u_k+1 - u_k)`, or of the drive springs (Eq. 2), with the dead load.
+/// Force from above on eight blocks at displacement `u`: from the springs to the sheet there,
+/// `g (u_k+1 - u_k)`, or from the drive springs (Eq. 2), with the dead load.
 #[inline(always)]
 pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
     simd: S,
@@ -83,7 +83,7 @@ pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
     }
 }
 
-/// Force of springs of the given stiffness from blocks to those above them.
+/// Force of springs of the given stiffness between blocks and those above them.
 #[inline(always)]
 pub(super) fn coupling_force<S: Simd>(
     simd: S,

@@ -1,4 +1,4 @@
-//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on the terms, and these
+//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on the terms. These follow
 //! from the extent of displacements and the highest speed, which every rank and thread knows.
 
 use super::step::Step;
@@ -53,11 +53,11 @@ impl Quanta {
             displacement_square: FixedPoint::new(MARGIN * drive_spring * (x * x + y * y)),
             velocity: FixedPoint::new(drive_spring * speed),
             motion_square: FixedPoint::new(MARGIN * (mass * thickness) * 4.0 * speed * speed),
-            // Friction stops a block at most.
+            // Friction is at most the force that stops a block.
             friction_work: FixedPoint::new(
                 MARGIN * mass * step.integrator.velocity_to_force * 2.0 * speed * speed,
             ),
-            // Two straight springs, and two diagonal ones of k_2/k_1 their force that count k_1/k_2 times.
+            // Two straight springs, and two diagonal ones, with force factor k_2/k_1 and weight k_1/k_2.
             lattice_energy: FixedPoint::new(
                 MARGIN
                     * (modulus * thickness)
@@ -65,13 +65,13 @@ impl Quanta {
                     * spring_force
                     * spring_force,
             ),
-            // All blocks of a window, of whatever sheet, are at most its length apart.
+            // All blocks of a window, in any sheet, are at most its length apart.
             between_sheets: FixedPoint::new(MARGIN * coupling * 4.0 * (x * x + y * y)),
         }
     }
 }
 
-/// A bound on all speeds half a step after `step`: speeds change at most as without friction.
+/// A bound on all speeds half a step after `step`: speeds change by no more than without friction.
 fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> f64 {
     let mut force = 0.0;
     for axis in 0..2 {
@@ -83,7 +83,7 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         let dead_load = largest.load * step.dead_load[axis].abs();
         force += largest.modulus * 4.0 * largest.springs.along() * bounds.spring_difference(axis)
             + largest.inverse_thickness * (largest.drive_spring * (step.k_drive * stretch) + dead_load);
-        // Not so of one sheet, whose bits may not change where displacements are no numbers.
+        // Not for one sheet, so that its bits do not change where displacements are NaN.
         if largest.coupling > 0.0 {
             force += largest.couplings_over_thickness * (high - low);
         }

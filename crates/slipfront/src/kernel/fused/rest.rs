@@ -1,8 +1,8 @@
-//! How long blocks at rest will stay at rest.
+//! Time for which blocks at rest will stay at rest.
 //!
-//! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone,
-//! linearly: `F(t) = F + k_s V t`, with the dead load in F. It slips when `|F(t)|` passes its
-//! threshold `T = max(mu_s, mu_k) F_n` (D12):
+//! While a block and its neighbours are stuck, only the force of its drive spring grows, linearly:
+//! `F(t) = F + k_s V t`, with the dead load in F. The block slips when `|F(t)|` exceeds its threshold
+//! `T = max(mu_s, mu_k) F_n` (D12):
 //!
 //! ```text
 //! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2
@@ -15,7 +15,7 @@ use super::pull::pull_of_differing;
 use super::step::Step;
 use super::vector::{Vec2x8, add, dot, lane_max, scale, splat, square};
 
-/// Eight blocks in and around which nothing moves.
+/// Eight blocks with nothing moving in or around them.
 pub(super) struct RestingVector<S: Simd> {
     pub(super) displacement: Vec2x8<S>,
     /// Lattice forces `F_c`.
@@ -30,15 +30,15 @@ pub(super) struct RestingVector<S: Simd> {
 
 /// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
 ///
-/// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other
-/// grows. So the contact stress of a skipped block is always largest at the first or at the last skipped
+/// For a drive at an angle it is zero if one component of the drive force on a block shrinks while the other
+/// grows. Thus the contact stress of a skipped block is always largest at the first or at the last skipped
 /// step.
 #[inline(always)]
 pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
-    // The growth is that until the speed of the drive changes next; who calls this looks no further.
+    // The growth is valid until the speed of the drive changes next; callers look no further ahead.
     let [bx, by] = step.force_growth;
     let growth_square = bx * bx + by * by;
-    // Without a moving drive nothing changes until a neighbour moves, which touches the vector.
+    // While the drive stands still nothing changes until a neighbour moves, which touches the vector.
     if growth_square == 0.0 {
         return u64::MAX;
     }
@@ -51,7 +51,7 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     let force = add(drive, blocks.lattice);
     let velocity_to_force = mass * splat(simd, step.integrator.velocity_to_force);
     let kinetic_force = blocks.kinetic_impulse * velocity_to_force;
-    // Where kinetic friction is the larger of the two, it holds the block beyond its static threshold.
+    // Where kinetic friction exceeds the static threshold, it holds the block beyond this threshold.
     let threshold_square = blocks.static_limit_square.max(kinetic_force * kinetic_force);
     let a = dot(force, growth);
     let room = threshold_square - square(force);
@@ -66,8 +66,8 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     // A block without drive spring waits for its neighbours.
     let waits = drive_spring.simd_eq(zero) & room.simd_gt(zero);
     let time = waits.select(splat(simd, f64::INFINITY), time);
-    // Forces have rounding errors of some units of their last place: the result is shortened by the time in
-    // which the load grows by that, and by two steps for the rounding of the root and of the division.
+    // Forces have rounding errors of some units in the last place. The result is shortened by the time in
+    // which the load grows by this error, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
     let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
     let noise = waits.select(zero, splat(simd, noise) / drive_spring);

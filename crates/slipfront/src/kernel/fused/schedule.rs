@@ -1,5 +1,5 @@
-//! The schedule of a sweep: the work on every tile of a band, which is none if nothing moves in it or around
-//! it and none of its blocks may slip.
+//! The schedule of a sweep: the work on every tile of a band. There is none if nothing moves in or around the
+//! tile and none of its blocks may slip.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -7,14 +7,16 @@ use super::band::{Band, TileTask};
 use super::layout::{Layout, TILE, VECTORS};
 use super::vector::LANES;
 
-/// Largest number of vectors of a tile that are swept one by one: more cost more than the whole tile.
+/// Largest number of vectors of a tile that are swept one by one: sweeping more of them costs more than
+/// sweeping the whole tile.
 const MAX_SPARSE_VECTORS: u32 = 14;
 
-/// Largest number of touched vectors of a tile after whose sweep its vectors are swept one by one.
+/// Largest number of touched vectors in a tile for which the tile settles: after this sweep its vectors are
+/// swept one by one.
 const MAX_SETTLING_VECTORS: u32 = 9;
 
-/// Number of moving vectors in a tile above which all around it are marked, instead of those around each
-/// vector.
+/// Number of moving vectors in a tile above which everything around the tile is marked, not the surroundings
+/// of each vector.
 const MAX_MARKED_VECTORS: usize = 10;
 
 /// Conditions common to all tiles in a sweep.
@@ -24,7 +26,7 @@ pub(super) struct SweepConditions {
     pub(super) number: u64,
     /// Whether tiles at rest are skipped.
     pub(super) skips: bool,
-    /// Whether the sums that skipped tiles keep are of no more use.
+    /// Whether the sums that skipped tiles keep have become invalid.
     pub(super) renews_sums: bool,
     /// Whether there was no sweep before.
     pub(super) is_first: bool,
@@ -33,14 +35,14 @@ pub(super) struct SweepConditions {
 }
 
 impl Band {
-    /// Marks all vectors that contain a moving element or a neighbour of one: for every tile of the rank one
-    /// bit per vector.
+    /// Marks all vectors that contain a moving element or a neighbour of one: one bit per vector for every
+    /// tile of the rank.
     pub(super) fn mark_touched(&self, layout: &Layout, touched: &[AtomicU32]) {
         let mark = |from: usize, to: usize| {
             layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
         };
-        // Bands mark tiles of each other at the same time. That only sets bits, in any order, and no band
-        // reads them before all have marked.
+        // Bands mark tiles of each other at the same time. They only set bits, in any order, and no band
+        // reads them before all have finished marking.
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
             let moving = self.vectors(t).filter(|&v| self.moving[v] != 0);
             if moving.clone().count() > MAX_MARKED_VECTORS {
@@ -68,8 +70,8 @@ impl Band {
                 touched: touched[self.first_tile + t].swap(0, Ordering::Relaxed) & all,
                 ..TileTask::default()
             };
-            // Differences along springs change on both sides of a block that moves, also in a tile in which
-            // all rest.
+            // Differences along springs change on both sides of a moving block, also in a tile in which all
+            // blocks rest.
             if task.touched != 0 {
                 self.tiles[t].displacements_are_old = true;
             }
@@ -78,15 +80,15 @@ impl Band {
                 if tile.active_from_step <= sweep.number {
                     task.active |= self.vectors_that_may_slip(t, sweep.number);
                 }
-                // Of no vector at all, too: then the tile is skipped.
+                // True also if no vector is active: then the tile is skipped.
                 task.sparse = task.active.count_ones() <= MAX_SPARSE_VECTORS;
             }
             if !task.sparse {
                 task.active = all;
                 task.settles = sweep.skips && task.touched.count_ones() <= MAX_SETTLING_VECTORS;
             }
-            // What was skipped at the step before has its stress there looked at. If the whole sweep was left
-            // out then, all was.
+            // The stress of vectors skipped at the step before is checked for that step. If that whole sweep
+            // was skipped, all vectors were.
             task.was_skipped = match (sweep.is_first, sweep.is_next) {
                 (true, _) => 0,
                 (_, true) => task.active & !before,
@@ -95,14 +97,14 @@ impl Band {
             self.tasks[t] = task;
         }
         // After all tasks are known: a whole tile also needs the springs that lead up to it, from tiles
-        // before it that may be skipped themselves. A sparse one computes all of its springs alone.
+        // before it that may be skipped. A sparse tile computes all of its springs itself.
         for t in 0..self.tiles.len() {
             if self.tasks[t].sparse {
                 continue;
             }
             self.tasks[t].needs_springs = true;
             let elements = self.elements(t);
-            // Springs from before the band are found in any case.
+            // Springs from before the band are computed in any case.
             if let Some(last) = elements.end.checked_sub(self.stride) {
                 let first = elements.start.saturating_sub(self.stride + 1);
                 for below in &mut self.tasks[first / TILE..=last / TILE] {

@@ -4,9 +4,9 @@ use super::aligned::{Aligned, Vectors};
 use super::layout::TILE;
 use super::vector::LANES;
 
-// A spring to the next row acts on the block at its lower end now, and on the one at its upper end a row
-// later. It is computed once, and waits in between in a ring buffer, the only intermediate result that is
-// longer than a tile. Element k and what its springs join, and where these springs are:
+// A spring to the next row acts on the block at its lower end now, and on the block at its upper end a row
+// later. It is computed once and kept in a ring buffer until then, the only intermediate result that is
+// longer than a tile. For element k, its neighbours and the places of their springs are:
 //
 //   k-stride-1  k-stride  k-stride+1 ............ k ............ k+stride-1  k+stride  k+stride+1
 //   springs from these to k, computed             its own,       the row above, which has moved
@@ -15,11 +15,11 @@ use super::vector::LANES;
 //   | 0 .. 15 .......... behind ................. own ......................... | 0 .. 15 |
 //                        read from here on        written, then read              mirror of the beginning
 //
-// Element k has the place k modulo the length of the ring. That is a row and a block, a tile, and a vector
-// for what is rounded to whole vectors: a tile writes over nothing that it reads. Own places are whole
-// vectors, so that none of them wraps around. Those behind begin anywhere, and may extend over the end: the
+// Element k has the place k modulo the length of the ring. This length is a row and a block, a tile, and a
+// vector for rounding to whole vectors, so that a tile overwrites nothing that it reads. Own places are whole
+// vectors, so that none of them wraps around. Places behind begin anywhere, and may extend over the end: the
 // mirror repeats the beginning there.
-/// Intermediate results on the way through the tiles, which are not needed later.
+/// Intermediate results of a sweep over the tiles, which are not needed later.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     /// Forces of the latest springs to the next row: a ring buffer over the elements.
@@ -34,17 +34,17 @@ pub(super) struct Scratch {
     pub(super) free_speed: Aligned,
 }
 
-/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its
+/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over the
 /// end.
 pub(super) const MIRROR: usize = 2 * LANES;
 
-/// Number of elements in as many whole vectors as hold `elements`.
+/// Number of elements in the fewest whole vectors that hold `elements`.
 pub(super) fn whole_vectors(elements: usize) -> usize {
     elements.next_multiple_of(LANES)
 }
 
 impl Scratch {
-    /// Room for the springs of a tile in rows of so many elements.
+    /// Room for the springs of a tile, with `stride` elements per row.
     pub(super) fn of_springs(stride: usize) -> Self {
         let ring = whole_vectors(stride + 1 + TILE + LANES) + MIRROR;
         Self {

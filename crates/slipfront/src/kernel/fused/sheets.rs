@@ -1,13 +1,14 @@
 //! The motion of the sheets above the lowest one.
 //!
-//! A sheet is stored as the lowest one is, with its blocks at the same elements, and goes through the same
-//! loops for its springs; in place of friction it has the [pull](pull_from_above) of the sheets above and
-//! below. Its tile is taken through a step together with that of the lowest one, while both are in the cache.
+//! A sheet is stored in the same way as the lowest one, with its blocks at the same elements, and its springs
+//! are computed by the same loops. In place of friction it has the [pull](pull_from_above) of the sheets
+//! above and below. Its tile is advanced together with the tile of the lowest sheet, while both are in the
+//! cache.
 //!
-//! No vector of a stack is left out of a sweep, whatever the kernel is asked for. While nothing moves around
-//! a stuck block of a single sheet, the drive alone tells when it slips; in a stack the drive moves the
-//! highest sheet in every step, and that one the force on every block below. Under a drive that stands the
-//! sheets above swing on.
+//! No vector of a stack is left out of a sweep, even if skipping is enabled. In a single sheet, a stuck block
+//! with nothing moving around it is loaded by the drive alone, so that the step at which it slips is known.
+//! In a stack the drive moves the highest sheet in every step, and this sheet changes the force on every
+//! block below. While the drive stands still, the sheets above keep oscillating.
 
 use std::ops::Range;
 
@@ -27,8 +28,8 @@ use crate::friction::SMALLEST_VELOCITY;
 use crate::sheets::Sheet;
 
 impl Band {
-    /// Moves the first tiles of the sheets above, and finds the springs of the row before them; after that
-    /// [`upper_tiles`](Self::upper_tiles) takes tile after tile.
+    /// Moves the first tiles of the sheets above, and computes the springs of the row before them; then
+    /// [`upper_tiles`](Self::upper_tiles) advances one tile after the other.
     #[inline(always)]
     pub(super) fn begin_upper<S: Simd, G: Geometry>(
         &self,
@@ -55,8 +56,8 @@ impl Band {
         }
     }
 
-    /// Takes tile `t` of the sheets above through a step, and moves the tile `ahead` of it. A function of its
-    /// own, so that it is no part of the sweep of a single sheet.
+    /// Advances tile `t` of the sheets above by a step, and moves the tile `ahead` of it. A separate
+    /// function, so that it is not part of the sweep of a single sheet.
     #[inline(never)]
     pub(super) fn upper_tiles<S: Simd, G: Geometry>(
         &self,
@@ -134,7 +135,7 @@ impl Band {
         }
     }
 
-    /// Velocities of tile `t` of a sheet, whose springs are known, half a step later, and sums over them.
+    /// Velocities half a step later of tile `t` of a sheet with known spring forces, and sums over them.
     #[inline(never)]
     fn accelerate<S: Simd, const ENERGY: bool, const HAS_ABOVE: bool>(
         &self,
@@ -175,7 +176,7 @@ impl Band {
         );
     }
 
-    /// Memory of the tile that moves next but one, of which nothing is in the cache yet.
+    /// Memory of the tile after the next to be moved, which is not in the cache yet.
     #[inline(always)]
     fn prefetched(
         &self,
@@ -192,7 +193,7 @@ impl Band {
         ]
     }
 
-    /// Adds the sums of the sheets above to those of the lowest one, which the drive does not pull.
+    /// Adds the sums of the sheets above to those of the lowest sheet, which the drive does not pull.
     pub(super) fn add_upper(&mut self) {
         for one in &self.upper {
             self.sums.include(&one.sums);
@@ -213,13 +214,13 @@ struct FreeLoop<'a> {
     blocks: &'a [u8],
     /// Velocities at `t - dt/2`, then at `t + dt/2`.
     velocity: [ChunksMut<'a>; 2],
-    /// Memory of later tiles, fetched ahead.
+    /// Memory of later tiles, to be fetched ahead.
     prefetched: [CacheLines; 4],
 }
 
 /// Eqs. 5-7 without friction, `h m u'' = h F_c + g_above (u_above - u) - g (u - u_below) - h m Omega u'`, in
-/// the order of the general kernel; returns the sums over the blocks, and that of the energies `g (u -
-/// u_below)^2` if energies are needed.
+/// the order of the general kernel. Returns the sums over the blocks, and the sum of the energies
+/// `g (u - u_below)^2` if energies are needed.
 #[inline(always)]
 fn accelerate<S: Simd, const ENERGY: bool, const HAS_ABOVE: bool>(
     simd: S,
@@ -227,7 +228,7 @@ fn accelerate<S: Simd, const ENERGY: bool, const HAS_ABOVE: bool>(
     quanta: &Quanta,
     arrays: FreeLoop,
 ) -> (Sums<i64, f64>, i64) {
-    // All slices get one length here, so that the loop below needs no check of bounds.
+    // Gives all slices one length, so that the loop below needs no bounds checks.
     let [vx, vy] = arrays.velocity;
     let n = vx.len();
     let vy = &mut vy[..n];

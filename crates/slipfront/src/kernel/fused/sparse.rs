@@ -1,9 +1,9 @@
-//! Tiles in which little moves: vectors of eight blocks are swept alone, with the same bits as in a sweep of
-//! the whole tile.
+//! Tiles in which few blocks move: vectors of eight blocks are swept one by one, with the same bits as in a
+//! sweep of the whole tile.
 //!
 //! A vector is swept if one of its blocks or a neighbour of one moves, or if one of its blocks may slip. It
-//! computes all eight springs of its blocks itself. Sums over the tile are integers, so that they can be kept
-//! up to date by differences.
+//! computes all eight springs of its blocks itself. Sums over the tile are integers, so that they can be
+//! updated by differences.
 
 use fearless_simd::{Simd, SimdBase};
 
@@ -26,7 +26,7 @@ const NORTH_EAST: usize = 2;
 const NORTH_WEST: usize = 3;
 
 impl Band {
-    /// The vectors of a settled tile whose blocks may slip at step `number`.
+    /// The vectors of a settled tile with blocks that may slip at step `number`.
     pub(super) fn vectors_that_may_slip(&self, t: usize, number: u64) -> u32 {
         let steps = self.active_from_step[self.vectors(t)].iter();
         steps
@@ -49,8 +49,8 @@ impl Band {
             let after = [before[0] + dt * velocity[0], before[1] + dt * velocity[1]];
             after[0].store_array(&mut x[0]);
             after[1].store_array(&mut y[0]);
-            // The old integers leave the sums and the new ones enter: exact, and without a look at the blocks
-            // at rest.
+            // The old integers are subtracted from the sums and the new ones added: exact, and without
+            // reading blocks at rest.
             let blocks = self.blocks[v];
             let [(old, old_square), (new, new_square)] = match &self.variations {
                 Some(variations) => {
@@ -81,8 +81,8 @@ impl Band {
         t: usize,
         scratch: &mut Scratch,
     ) {
-        // With energies at every step, whether they are needed or not: at any of them a vector may come to
-        // rest, and keeps its part of the sum from then on.
+        // With energies at every step, needed or not: a vector may come to rest at any step, and keeps its
+        // part of the sum from then on.
         let mut lattice_energy = self.tiles[t].sums.lattice_energy;
         for (place, v) in self.active_vectors(t).enumerate() {
             let energy = self.vector_forces(simd, geometry, quanta, v, (scratch, place * LANES));
@@ -106,9 +106,9 @@ impl Band {
         })
     }
 
-    /// Drive, friction and damping (Eqs. 2 and 4-7) in the active vectors of a settled tile, whose lattice
-    /// forces follow each other in the scratch array. A function of its own, compiled once for all formulas
-    /// of springs.
+    /// Drive, friction and damping (Eqs. 2 and 4-7) in the active vectors of a settled tile, with their
+    /// lattice forces in sequence in the scratch array. A separate function, compiled once for all spring
+    /// formulas.
     #[inline(never)]
     fn friction_of_vectors<S: Simd, const DIFFER: bool>(
         &mut self,
@@ -135,8 +135,9 @@ impl Band {
                 }
                 let soonest = self.soonest_active_step(t);
                 let tile = &mut self.tiles[t];
-                // Skipped vectors rest, and add nothing to sums over velocities; their displacements are in
-                // the sums that the moves have changed. Their stress is looked at when they are swept again.
+                // Skipped vectors rest, and add nothing to sums over velocities; the sums already contain
+                // their displacements, since only moves change these sums. Their stress is checked when they
+                // are swept again.
                 tile.sums = Sums {
                     displacement: tile.sums.displacement,
                     displacement_square: tile.sums.displacement_square,
@@ -148,8 +149,8 @@ impl Band {
         );
     }
 
-    /// Finds the numbers by which vectors of a tile can be swept alone, after a sweep of the whole tile with
-    /// its energies. A function of its own, compiled once for all formulas of springs.
+    /// Finds the values for sweeping the vectors of a tile one by one, after a sweep of the whole tile with
+    /// its energies. A separate function, compiled once for all spring formulas.
     #[inline(never)]
     pub(super) fn settle<S: Simd>(&mut self, simd: S, step: &Step, t: usize, scratch: &Scratch) {
         simd.vectorize(
@@ -167,7 +168,8 @@ impl Band {
         );
     }
 
-    /// The first step after this one at which a block of vector `v` may slip, or 0 unless it rests.
+    /// The first step after this one at which a block of vector `v` may slip, or 0 if the vector does not
+    /// rest.
     #[inline(always)]
     fn first_active_step<S: Simd>(
         &self,
@@ -182,7 +184,7 @@ impl Band {
             return 0;
         }
         let steps = self.steps_until_slip(simd, *step, v, scratch, place);
-        // Beyond a change of speed nothing is known.
+        // Valid only up to the next change of speed.
         step.number.saturating_add(steps.max(1)).min(step.next_change)
     }
 
@@ -197,8 +199,8 @@ impl Band {
         load_vec2(simd, chunks(&self.displacement, first, LANES), 0)
     }
 
-    /// Force of the springs along `bond` of the eight elements from `first` on, whose other ends begin at
-    /// `there`.
+    /// Force of the springs along `bond` of the eight elements from `first` on, with their other ends from
+    /// `there` on.
     #[inline(always)]
     fn springs_between<S: Simd, G: Geometry>(
         &self,
@@ -235,8 +237,8 @@ impl Band {
         ]
     }
 
-    /// Lattice forces (Eq. 3) on eight blocks, to a place in the scratch array; returns the energy of their
-    /// springs.
+    /// Computes the lattice forces (Eq. 3) on eight blocks, into a place in the scratch array; returns the
+    /// energy of their springs.
     #[inline(always)]
     fn vector_forces<S: Simd, G: Geometry>(
         &self,
@@ -251,7 +253,7 @@ impl Band {
         let below = here - self.stride;
         let [east, north, north_east, north_west] = &self.masks;
         // The springs from below and from the west belong to other vectors, at places that are no whole
-        // vectors. They are computed again here, since neighbours that are skipped have left none.
+        // vectors. They are computed again here, since skipped neighbours have stored none.
         let (west, south) = (bits_from(east, here - 1), bits_from(north, below));
         let (south_west, south_east) = (bits_from(north_east, below - 1), bits_from(north_west, below + 1));
         let west = self.springs_between(simd, geometry, EAST, (west, here), here - 1);

@@ -1,5 +1,5 @@
-//! The force of a stretched spring (Eq. 3), eight at a time: by the square root, or by a series that is as
-//! exact.
+//! The force of a stretched spring (Eq. 3), for eight springs at a time: by the square root, or by a series
+//! that is equally exact.
 
 use fearless_simd::{Simd, SimdFloat, f64x8};
 
@@ -8,7 +8,7 @@ use crate::lattice::{Bond, SpringStiffness};
 
 /// Formula for the force of a spring.
 pub(super) trait Geometry: Copy {
-    /// Whether springs, masses or anything else differs from block to block.
+    /// Whether springs, masses or any other property differs from block to block.
     const BLOCKS_DIFFER: bool = false;
 
     /// Stiffness of the springs.
@@ -19,7 +19,7 @@ pub(super) trait Geometry: Copy {
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
-/// A formula for springs of a heterogeneous slider. Its forces are those of a spring of factor 1.
+/// A formula for springs of a heterogeneous slider. It gives the forces of springs of factor 1.
 #[derive(Clone, Copy)]
 pub(super) struct Differing<G>(pub(super) G);
 
@@ -58,8 +58,8 @@ impl Geometry for SquareRoot {
             splat(simd, bond.rest[1]) + epsilon * e[1],
         ];
         let length = square(r).sqrt();
-        // The extension r - d is small against both lengths: as (r^2 - d^2)/(r + d), with the squares
-        // multiplied out, it keeps its digits.
+        // The extension r - d is small compared with both lengths. Written as (r^2 - d^2)/(r + d), with the
+        // squares multiplied out, it loses no digits.
         let along = splat(simd, bond.rest[0]) * e[0] + splat(simd, bond.rest[1]) * e[1];
         let stretch = splat(simd, 2.0) * along + epsilon * square(e);
         let tension = splat(simd, self.stiffness.of(bond)) * stretch
@@ -68,7 +68,7 @@ impl Geometry for SquareRoot {
     }
 }
 
-/// The formula with a series without square root or division, exact to rounding at small strain.
+/// The formula with a series, without square root or division, exact to rounding at small strain.
 ///
 /// With the stretch `s = (r^2 - d^2)/eps = 2 d.e + eps e^2` and `z = eps s/d^2`, so that `r = d sqrt(1 + z)`:
 ///
@@ -85,7 +85,7 @@ pub(super) struct Series<const DEGREE: usize> {
     pub(super) stiffness: SpringStiffness,
 }
 
-/// The numbers of the series, for a processor that computes them by itself.
+/// Constants of the series, for a device that evaluates it itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeriesNumbers {
     /// Coefficients of the long series for straight and for diagonal springs; the short series has the first
@@ -96,7 +96,7 @@ pub(crate) struct SeriesNumbers {
 }
 
 impl SeriesNumbers {
-    /// The numbers for springs of this stiffness.
+    /// Constants for springs of this stiffness.
     pub(crate) fn new(epsilon: f64, stiffness: SpringStiffness) -> Self {
         let long = Series::<7> { epsilon, stiffness };
         Self {
@@ -243,7 +243,7 @@ mod tests {
         series_is_exact::<7>();
     }
 
-    /// The error bound of [`Series`] is kept, and at most ten times too large.
+    /// The error bound of [`Series`] holds, and is at most ten times too large.
     #[test]
     fn the_truncation_error_is_bounded() {
         for degree in [3, 7] {

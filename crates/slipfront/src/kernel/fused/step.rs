@@ -1,10 +1,10 @@
-//! Numbers of a step of the fused kernel that are common to all blocks.
+//! Values of a step of the fused kernel that are common to all blocks.
 
 use crate::clock::Clock;
 use crate::friction::Integrator;
 use crate::model::Model;
 
-/// Numbers common to all blocks in a step.
+/// Values common to all blocks in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     /// Number of the step, n.
@@ -19,12 +19,12 @@ pub(super) struct Step {
     pub(super) drive_position: [f64; 2],
     /// Displacement of the driven ends of the drive springs at the step before.
     position_before: [f64; 2],
-    /// The first step at which the drive may change its speed next.
+    /// The first step at which the speed of the drive may change next.
     pub(super) next_change: u64,
-    /// Growth per time of the force of a drive spring on a block at rest, `k_s V`; a drive that is held loads
-    /// more slowly.
+    /// Growth per time of the force of a drive spring on a block at rest, `k_s V`; a held drive loads more
+    /// slowly.
     pub(super) force_growth: [f64; 2],
-    /// Dead load on a block, unless it has a relative one.
+    /// Dead load on a block, to be multiplied by its relative load if it has one.
     pub(super) dead_load: [f64; 2],
     pub(super) integrator: Integrator,
 }
@@ -33,7 +33,7 @@ impl Step {
     pub(super) fn new(model: &Model, clock: &Clock) -> Self {
         let (drive, dt_star) = (&model.drive, clock.dt_star);
         let (time_star, before) = (clock.drive_time_star(), clock.drive_time_before());
-        // The drive moves in every step at most.
+        // The drive moves at most once per step.
         let steps_until = |t: f64| (t / dt_star).round() as u64 - clock.drive_steps;
         Self {
             number: clock.step,
@@ -67,8 +67,8 @@ impl Step {
         }
     }
 
-    /// Force of the drive spring on a block at displacement `u` (Eq. 2), with the dead load, given both over
-    /// those of other blocks.
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), with the dead load, given the
+    /// relative drive spring and the relative load of the block.
     pub(super) fn drive_force(&self, u: [f64; 2], [drive_spring, load]: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|axis| {
             let spring = self.k_drive * (self.drive_position[axis] - u[axis]);

@@ -1,4 +1,4 @@
-//! Thresholds that change within a run, by the options of Coulomb's law.
+//! Thresholds that change during a run, by the options of Coulomb's law.
 
 use std::ops::Range;
 
@@ -27,15 +27,15 @@ enum ChangingLaw {
     Slip(Slipped),
 }
 
-/// Slip of the elements, as far as the law remembers it.
+/// Slip of the elements, with the memory of the law.
 #[derive(Debug)]
 struct Slipped {
     law: SlipWeakening,
     /// Kinetic impulses of the strength that falls with slip.
     drops: Aligned,
     slip: Aligned,
-    /// t* of the last motion of an element, and the shares that it has lost before it healed; present only
-    /// with healing.
+    /// t* of the last motion of an element, and the shares that it lost before it healed; present only with
+    /// healing.
     healing: Option<[Aligned; 2]>,
 }
 
@@ -68,8 +68,8 @@ impl Thresholds {
         matches!(self.law, ChangingLaw::Slip(_))
     }
 
-    /// Sets the largest fall of friction of an element from the threshold at which it first slips, as an
-    /// impulse.
+    /// Sets the largest fall of friction of an element, as an impulse, from the threshold at which the
+    /// element first slips.
     pub(super) fn set_drop(&mut self, k: usize, impulse: f64) {
         if let ChangingLaw::Slip(slipped) = &mut self.law {
             slipped.drops[k] = impulse;
@@ -86,8 +86,8 @@ impl Thresholds {
     }
 
     /// Finds the kinetic impulses of some elements, which have moved at these velocities in the step that
-    /// ends now, from the impulses of slow sliding without slip. Where friction follows speed, the inverse
-    /// masses of the blocks count.
+    /// ends now, from the impulses of slow sliding without slip. If friction depends on speed, the inverse
+    /// masses of the blocks are used.
     #[inline(always)]
     pub(super) fn update<S: Simd>(
         &mut self,
@@ -131,8 +131,8 @@ impl Thresholds {
         }
     }
 
-    /// Number of an element in a column of a checkpoint at t*; the element moves or is stuck. An element that
-    /// has healed since it was last swept has the numbers that its next sweep finds.
+    /// Value of an element in a column of a checkpoint at t*; the element moves or is stuck. For an element
+    /// that has healed since it was last swept, this is the value that its next sweep will find.
     pub(super) fn memory(&self, column: usize, k: usize, is_moving: bool, time_star: f64) -> f64 {
         let ChangingLaw::Slip(Slipped {
             law, slip, healing, ..
@@ -144,8 +144,8 @@ impl Thresholds {
         let Some([moved_at, lost_before]) = healing else {
             return slip;
         };
-        // Blocks at rest are not swept, and heal without being asked: what their next sweep will find is
-        // found here.
+        // Blocks at rest are not swept, so that their healing is not recorded. This finds in advance the
+        // result of their next sweep.
         let heals = !is_moving && law.heals(moved_at[k], time_star);
         match column {
             0 if heals => 0.0,
@@ -193,8 +193,8 @@ impl Slipped {
                 moved.store_array(&mut moved_at[c]);
                 let heals = is_stuck & (now - moved).simd_ge(healing_time);
                 let left = (one - load(simd, &slip[c]) * per_length).max(zero);
-                // Strength falls linearly with slip, so that the work that is left goes with the square of
-                // the fall that is left.
+                // Strength falls linearly with slip, so that the work that is left is proportional to the
+                // square of the fall that is left.
                 let lost = heals.select(one - left * left, zero);
                 (load(simd, &lost_before[c]) + lost).store_array(&mut lost_before[c]);
                 heals.select(zero, load(simd, &slip[c])).store_array(&mut slip[c]);
@@ -210,7 +210,7 @@ impl Slipped {
 
 /// Kinetic impulses at these velocities, from the impulses of slow sliding: the operations of
 /// [`Weakening::kinetic_force`]. `adhesive` is the impulse of adhesion on a block of mass 1. Elements that
-/// are no blocks have infinite impulses, which become NaN and hold them as well.
+/// are no blocks have infinite impulses, which become NaN and also keep them at rest.
 #[inline(always)]
 fn weaken<S: Simd>(
     simd: S,

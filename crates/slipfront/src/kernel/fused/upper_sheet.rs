@@ -23,7 +23,7 @@ pub(super) struct UpperSheet {
 }
 
 impl UpperSheet {
-    /// A sheet at rest with so many elements in a row, in a band, and in a halo.
+    /// A sheet at rest with the given numbers of elements per row, in a band, and in a halo.
     pub(super) fn new(sheet: Sheet, stride: usize, len: usize, halo: usize) -> Self {
         Self {
             sheet,
@@ -35,7 +35,7 @@ impl UpperSheet {
         }
     }
 
-    /// Blocks of the sheet over those of the one below at some elements, counted from the front halo.
+    /// Blocks of the sheet above those of the sheet below, at some elements, counted from the front halo.
     #[inline(always)]
     pub(super) fn above(&self, first: usize, n: usize) -> Above<'_> {
         Above {
@@ -44,8 +44,7 @@ impl UpperSheet {
         }
     }
 
-    /// Force on a block at displacement `below` from that of the sheet over it, at index `k` of the
-    /// displacements.
+    /// Force of the sheet on a block below it at displacement `below`; `k`: index of the displacements.
     pub(super) fn pull_on(&self, k: usize, below: [f64; 2]) -> [f64; 2] {
         let above = self.displacement.at(k);
         [0, 1].map(|axis| self.sheet.coupling * (above[axis] - below[axis]))

@@ -1,4 +1,4 @@
-//! Tiles of an upright sheet, along whose interface friction acts.
+//! Tiles of an upright sheet, with friction along its interface.
 
 use fearless_simd::Simd;
 
@@ -11,8 +11,8 @@ use super::step::Step;
 use super::vector::LANES;
 
 impl Band {
-    /// Eqs. 2 and 4-7 along the interface under a tile whose lattice forces are known. A function of its own,
-    /// compiled once for all formulas of springs.
+    /// Eqs. 2 and 4-7 along the interface under a tile with known lattice forces. A separate function,
+    /// compiled once for all spring formulas.
     #[inline(never)]
     pub(super) fn interface_of_tile<S: Simd>(
         &mut self,
@@ -27,7 +27,7 @@ impl Band {
             || {
                 let elements = self.elements(t);
                 let mut sums = Sums::zero(simd);
-                // Taken out while the other arrays of the band are changed.
+                // Moved out while the other arrays of the band are changed.
                 let interface = self.interface.take();
                 let mut moves = false;
                 if let Some(interface) = &interface {
@@ -49,7 +49,8 @@ impl Band {
         );
     }
 
-    /// Mask of the elements of vector `v` that slide: those that move, or at an interface move along x.
+    /// Mask of the elements of vector `v` that slide: those that move, or at an interface those that move
+    /// along x.
     pub(super) fn sliding(&self, v: usize) -> u8 {
         if self.interface.is_none() {
             return self.moving[v];

@@ -1,8 +1,8 @@
 //! Heterogeneous sliders: springs, drive springs, masses and dead loads that differ from block to block.
 //!
-//! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of
-//! slider ([`Geometry`]). An outline needs nothing of it, either: blocks outside are elements that are no
-//! blocks, and their springs are masked.
+//! None of this is stored or computed if all blocks are equal: the sweep is compiled for both kinds of slider
+//! ([`Geometry`]). An outline does not need it either: places outside are elements that are no blocks, and
+//! their springs are masked.
 //!
 //! [`Geometry`]: super::springs::Geometry
 
@@ -17,7 +17,7 @@ use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::sheets::Sheet;
 
-/// Numbers of the elements of a band.
+/// Properties of the elements of a band.
 #[derive(Debug)]
 pub(super) struct Variations {
     /// Stiffness of the springs to the east, north, north-east and north-west over the stiffness of their
@@ -26,19 +26,19 @@ pub(super) struct Variations {
     /// Stiffness of the drive springs over `k_s`.
     pub(super) drive_springs: Aligned,
     pub(super) mass: Aligned,
-    // Beside the mass, in place of a division for every block in every step.
+    // Stored in addition to the mass, to avoid a division for every block in every step.
     pub(super) inverse_mass: Aligned,
-    /// Dead load over that of [`Step`](super::step::Step), where it differs.
+    /// Dead load relative to that of [`Step`](super::step::Step), if it differs from block to block.
     pub(super) loads: Option<Aligned>,
 }
 
-/// [`Variations`] of some elements, in vectors of eight; empty where all blocks are alike.
+/// [`Variations`] of some elements, in vectors of eight; empty if all blocks are equal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Variation<'a> {
     pub(super) drive_springs: Chunks<'a>,
     pub(super) mass: Chunks<'a>,
     pub(super) inverse_mass: Chunks<'a>,
-    /// Empty where all blocks have one load.
+    /// Empty if all blocks have the same load.
     pub(super) loads: Chunks<'a>,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Variation<'a> {
 /// Whether the blocks of a model need [`Variations`].
 pub(crate) fn blocks_differ(model: &Model, largest: &LargestFactors) -> bool {
     let slider = &model.slider;
-    // Drive springs of 1 on every block that exists are those of a plain slider.
+    // Drive springs of 1 on every existing block are those of a plain slider.
     let drive_springs_differ = slider
         .drive_springs
         .as_ref()
@@ -80,25 +80,25 @@ pub(crate) struct LargestFactors {
     pub(super) drive_spring: f64,
     pub(super) mass: f64,
     pub(super) inverse_mass: f64,
-    /// Largest dead load over that of [`Step`](super::step::Step).
+    /// Largest dead load relative to that of [`Step`](super::step::Step).
     pub(super) load: f64,
     /// Springs between the blocks of a sheet of relative thickness 1.
     pub(super) springs: SpringStiffness,
-    /// Largest relative thickness of a sheet of a stack; 1 of a single sheet.
+    /// Largest relative thickness of a sheet of a stack; 1 for a single sheet.
     pub(super) thickness: f64,
     /// Largest inverse of a relative thickness.
     pub(super) inverse_thickness: f64,
-    /// Largest stiffness of the springs between two sheets; 0 of a single sheet.
+    /// Largest stiffness of the springs between two sheets; 0 for a single sheet.
     pub(super) coupling: f64,
     /// Largest stiffness of the springs of a block to the sheets above and below, over the thickness of its
-    /// own.
+    /// own sheet.
     pub(super) couplings_over_thickness: f64,
     /// Stiffness of the foundation under an interface; 0 without one.
     pub(super) foundation: f64,
 }
 
 impl LargestFactors {
-    /// Largest factors of all blocks of this rank and of the others, which call this together.
+    /// Largest factors of all blocks of all ranks, which must call this together.
     pub(crate) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
         let slider = &model.slider;
         let largest = |differs: bool, value: &dyn Fn(usize) -> f64| {
@@ -122,7 +122,7 @@ impl LargestFactors {
         let of_sheets = |value: &dyn Fn(&Sheet) -> f64, lowest: f64| {
             model.sheets.iter().map(value).fold(lowest, f64::max)
         };
-        // Of each pair of sheets the springs pull both: on a sheet are at most two such sets.
+        // The springs between two sheets pull on both: at most two such sets act on a sheet.
         let coupling = of_sheets(&|sheet| sheet.coupling, 0.0);
         let inverse_thickness = of_sheets(&|sheet| 1.0 / sheet.thickness, 1.0);
         Self {
@@ -145,7 +145,7 @@ impl LargestFactors {
 }
 
 impl Variations {
-    /// Variations of the elements from `first` on; for springs also of a `halo` of elements before.
+    /// Variations of the elements from `first` on; the springs also of a `halo` of elements before.
     pub(super) fn new(
         layout: &Layout,
         model: &Model,
@@ -201,16 +201,16 @@ impl Variations {
     }
 }
 
-/// Springs of an element to the east, north, north-east and north-west: whether they exist.
+/// Whether the springs of an element to the east, north, north-east and north-west exist.
 pub(super) fn present(moduli: &Moduli, model: &Model, layout: &Layout, element: isize) -> [bool; 4] {
     match &model.slider.outline {
         None => layout.springs(element),
-        // A spring to a place without a block has no stiffness.
+        // A spring to a place without a block has stiffness 0.
         Some(_) => springs(moduli, layout, element).map(|factor| factor > 0.0),
     }
 }
 
-/// Stiffness of the springs of an element over the stiffness of their bonds; 0 for springs that do not exist.
+/// Stiffness of the springs of an element over the stiffness of their bonds; 0 for missing springs.
 fn springs(moduli: &Moduli, layout: &Layout, element: isize) -> [f64; 4] {
     let mut springs = [0.0; 4];
     if let Some(place) = layout.place(element) {

@@ -5,7 +5,7 @@
 
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f64x8, i64x8, mask64x8};
 
-/// Blocks in a vector, on every processor.
+/// Number of blocks in a vector, on every processor.
 pub(super) const LANES: usize = 8;
 
 /// A plane vector, `[x, y]`, for each of eight blocks.
@@ -36,8 +36,8 @@ pub(super) fn mask<S: Simd>(simd: S, bits: u8) -> mask64x8<S> {
     mask64x8::from_bitmask(simd, u64::from(bits))
 }
 
-/// One bit per lane. Where a vector is two registers, their masks are narrowed to one: compilers make a
-/// longer way of joining the bits of both.
+/// One bit per lane. Where a vector is two registers, their masks are narrowed to one: compilers need more
+/// instructions to join the bits of both.
 #[inline(always)]
 pub(super) fn bits<S: Simd>(simd: S, mask: mask64x8<S>) -> u8 {
     if <S::f64s as SimdBase<S>>::LEN == LANES / 2 {

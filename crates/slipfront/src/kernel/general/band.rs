@@ -1,4 +1,4 @@
-//! Some rows of the blocks of a rank, which one thread takes through a step.
+//! Some rows of the blocks of a rank, which one thread advances by a step.
 
 use std::ops::Range;
 
@@ -20,12 +20,12 @@ use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-// So many that what one pass has found for them is still in the cache when the next asks for it.
-/// Blocks of a part, unless a row has more.
+// So few that the results of one pass are still in the cache when the next pass needs them.
+/// Number of blocks of a part, unless a row has more.
 const PART: usize = 512;
 
-/// Blocks of each part but the last. A part has whole rows, so that no neighbour in the row of a block lies
-/// in a later part.
+/// Number of blocks of each part but the last. A part has whole rows, so that no neighbour in the row of a
+/// block lies in a later part.
 fn part_len(model: &Model) -> usize {
     let nx = model.lattice.nx;
     (PART / nx).max(1) * nx
@@ -37,7 +37,7 @@ fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
     (0..n).step_by(len).map(move |first| first..n.min(first + len))
 }
 
-/// Sums over blocks that every step finds, as [`Summed`] names them.
+/// Sums over blocks that every step computes; [`Summed`] names them.
 pub(super) type BandSums = [RunningSum; 12];
 
 /// One value for each of the [`BandSums`]. The first three are sums over the drive springs.
@@ -83,7 +83,7 @@ impl<T> From<[T; 12]> for Summed<T> {
     }
 }
 
-/// Dampers beside the springs between blocks.
+/// Dampers in parallel with the springs between blocks.
 #[derive(Debug)]
 struct Dampers {
     force: VectorField,
@@ -98,9 +98,9 @@ pub(super) struct Band {
     /// Displacements at t_n, velocities half a step later.
     pub(super) state: State,
     pub(super) forces: Forces,
-    /// The sheets above, which friction does not reach.
+    /// The sheets above the lowest, which are without friction.
     pub(super) sheets: Vec<UpperSheet>,
-    /// Static thresholds `mu_s F_n`, as the law of friction has changed them since a block last slipped.
+    /// Static thresholds `mu_s F_n`, changed by the law of friction since a block last slipped.
     static_limit: Vec<f64>,
     /// Kinetic friction `mu_k F_n`.
     kinetic_force: Vec<f64>,
@@ -116,7 +116,7 @@ pub(super) struct Band {
     pub(super) energy_sums: [RunningSum; 4],
     /// Energies of the springs between blocks of each sheet along each bond, one number per row.
     pub(super) row_energies: Vec<[Vec<f64>; 4]>,
-    /// Number of blocks that slide, and of those among them that are in contact.
+    /// Number of sliding blocks, and of sliding blocks in contact.
     pub(super) counts: [i64; 2],
     scratch: WeightedScratch,
     pub(super) first_slip: Vec<f64>,
@@ -174,22 +174,22 @@ impl Band {
         }
     }
 
-    /// Columns of a checkpoint beside those of every block, see [`Model::n_memory_columns`].
+    /// Columns of a checkpoint in addition to those of every block, see [`Model::n_memory_columns`].
     pub(super) fn memory(&self) -> Vec<&[f64]> {
         let mut columns = self.contact.columns();
         columns.extend(self.sheets.iter().flat_map(UpperSheet::columns));
         columns
     }
 
-    /// Columns of a checkpoint beside those of every block, to be filled.
+    /// Columns of a checkpoint in addition to those of every block, to be filled.
     pub(super) fn memory_mut(&mut self) -> Vec<&mut [f64]> {
         let mut columns = self.contact.columns_mut();
         columns.extend(self.sheets.iter_mut().flat_map(UpperSheet::columns_mut));
         columns
     }
 
-    /// Finds the values that follow from the memory of the law of friction, after a checkpoint has restored
-    /// it.
+    /// Computes the values that follow from the memory of the law of friction, after a checkpoint has
+    /// restored it.
     pub(super) fn resume(&mut self, model: &Model) {
         self.contact.resume(&model.surface, &mut self.static_limit);
     }
@@ -198,7 +198,7 @@ impl Band {
     #[inline(always)]
     pub(super) fn begin_step(&mut self, model: &Model, moves: bool) {
         for blocks in parts(model) {
-            // The first instant is seen as it was given.
+            // The first instant is evaluated in the given state.
             if moves {
                 self.move_blocks(model, &blocks);
             }
@@ -225,7 +225,7 @@ impl Band {
         }
     }
 
-    /// Takes over the motion of the row below and of the row above in all sheets, see
+    /// Sets the motion of the row below and of the row above in all sheets, see
     /// [`read_ends`](Self::read_ends).
     pub(super) fn set_beside(&mut self, ends: [&[f64]; 2]) {
         let n_sheets = self.sheets.len() + 1;
@@ -238,7 +238,7 @@ impl Band {
         }
     }
 
-    /// Finds the forces on the blocks and their next velocities, unless these are known, and adds up the
+    /// Computes the forces on the blocks and their next velocities, unless these are known, and adds up the
     /// `sums` over them.
     #[inline(always)]
     pub(super) fn evaluate(&mut self, model: &Model, clock: &Clock, is_known: bool, sums: BandSums) {
@@ -247,8 +247,8 @@ impl Band {
             self.counts = [0; 2];
         }
         for blocks in parts(model) {
-            // Sums alone may be asked for a second time, when a term has outgrown its bound: forces and
-            // memory stay as they are.
+            // Sums may be needed a second time, if a term has exceeded its bound. Forces and memory stay as
+            // they are then.
             if !is_known {
                 self.find_forces(model, &blocks, clock);
                 self.count(model, &blocks, clock.time_star());
@@ -257,7 +257,7 @@ impl Band {
         }
     }
 
-    /// Adds up the energies of the blocks and the drive springs, and finds those of the springs between
+    /// Adds up the energies of the blocks and the drive springs, and computes those of the springs between
     /// blocks row by row, after the next velocities are known.
     #[inline(always)]
     pub(super) fn add_energies(&mut self, model: &Model, drive_time_star: f64, sums: [RunningSum; 4]) {
@@ -302,7 +302,7 @@ impl Band {
 
     /// Makes the velocities of this step those of the step before, for the next step.
     pub(super) fn end_step(&mut self) {
-        // Not earlier: sums and energies take the velocities on both sides of the instant.
+        // Not earlier: sums and energies need the velocities on both sides of the instant.
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
         for UpperSheet { state, velocity, .. } in &mut self.sheets {
             std::mem::swap(&mut state.velocity, velocity);
@@ -321,11 +321,12 @@ impl Band {
         }
     }
 
-    /// Lets the law of friction remember the motion of some blocks in the step before, and moves them.
+    /// Updates the memory of the law of friction with the motion of some blocks in the step before, and moves
+    /// them.
     #[inline(always)]
     fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
         let (state, limit) = (&self.state, &mut self.static_limit);
-        // Before displacements change: the law is shown the state of the step that ends here.
+        // Before displacements change: the law reads the state of the step that ends here.
         self.contact
             .remember(&model.surface, blocks, state, &self.forces, limit, self.dt_star);
         let State {
@@ -335,7 +336,7 @@ impl Band {
         move_blocks(displacement, velocity, blocks, self.dt_star);
     }
 
-    /// Finds the forces on some blocks, and their next velocities.
+    /// Computes the forces on some blocks, and their next velocities.
     #[inline(always)]
     fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, clock: &Clock) {
         let (time_star, drive_time_star) = (clock.time_star(), clock.drive_time_star());
@@ -354,7 +355,7 @@ impl Band {
             damper_forces(model, rows, blocks, state, relative, force, bonds);
             add_to(lattice, force, blocks);
         }
-        // Decided outside of the loop: equal masses have one integrator, which no block divides anew.
+        // Chosen outside of the loop: equal masses share one integrator, without a division per block.
         let integrator = Integrator::new(model.damping, self.dt_star);
         sheets::accelerate(&mut self.sheets, model, blocks, &self.forces.drive, integrator);
         match masses(model, blocks) {
@@ -381,7 +382,7 @@ impl Band {
             .apply(&model.surface, blocks, limits, now, integrator, forces);
     }
 
-    /// Counts the blocks that slide among some blocks, and those of them in contact; notes the first slips of
+    /// Counts the sliding blocks among some blocks, and those of them in contact; records the first slips of
     /// the latter.
     #[inline(always)]
     fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
@@ -394,7 +395,7 @@ impl Band {
             n_sliding += u32::from(slides[k]);
             n_slipping += u32::from(slides[k] & !textured[k]);
         }
-        // Mostly no block slips, or all of them have before.
+        // Usually no block slips, or all have slipped before.
         if n_slipping > 0 {
             for k in 0..n {
                 let is_first = slides[k] & !textured[k] & first_slip[k].is_nan();
@@ -410,7 +411,7 @@ impl Band {
     fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
         let (n, scratch) = (blocks.len(), &mut self.scratch);
         let own = [&self.state.velocity, &self.forces.velocity].map(|v| part(v, blocks));
-        // Taken out while sums are given the rest of the scratch arrays.
+        // Moved out while sums use the rest of the scratch arrays.
         let mut velocity = std::mem::take(&mut scratch.velocity);
         let sums = Summed::from(self.sums.each_mut());
         let (mut displacement, mut pulled) = (&self.state.displacement, own);
@@ -472,7 +473,7 @@ impl Band {
     }
 }
 
-/// Velocities of `n` blocks at t_n: means of those half a step before and after.
+/// Velocities of `n` blocks at t_n: means of the velocities half a step before and after.
 #[inline(always)]
 fn mean<'a>([before, after]: [[&[f64]; 2]; 2], velocity: &'a mut VectorField, n: usize) -> [&'a [f64]; 2] {
     let ([bx, by], [ax, ay]) = (before.map(|v| &v[..n]), after.map(|v| &v[..n]));

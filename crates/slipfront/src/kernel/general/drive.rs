@@ -1,4 +1,4 @@
-//! The drive springs (Eq. 2) and the dead load: forces, energy, and the sums over blocks that belong to them.
+//! The drive springs (Eq. 2) and the dead load: forces, energy, and their sums over blocks.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use crate::forces::{part, part_mut};
 use crate::model::Model;
 use crate::vector_field::VectorField;
 
-/// Properties of the drive of each block beside the drive springs of its model.
+/// Properties of the drive of each block in addition to the drive springs of its model.
 #[derive(Debug)]
 pub(super) struct DrivenBlocks {
     /// Direction `g` of a drive that rotates, see [`Drive::direction_at`](crate::Drive::direction_at).
@@ -44,7 +44,7 @@ impl DrivenBlocks {
         let (k_drive, n) = (model.drive.k_drive, blocks.len());
         let ([fx, fy], [ux, uy]) = (part_mut(force, blocks), part(u, blocks));
         let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
-        // Told apart outside of the loops, which then have no branch and become vectors.
+        // The cases are distinguished outside of the loops, which then have no branches and are vectorised.
         match &self.direction {
             None => {
                 let [x, y] = model.drive.position(drive_time_star);

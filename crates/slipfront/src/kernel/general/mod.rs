@@ -1,13 +1,13 @@
 //! The general kernel: it computes every option of the model, one pass over the blocks per equation.
 //!
-//! The passes go over one part of the blocks after the other, so that what one has found is in the cache for
-//! the next. A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and
-//! damping act (Eqs. 4-7). Forces of opposite neighbours are summed in pairs, straight ones before diagonal
-//! ones, so that the trajectory of a rotated or mirrored problem is the rotated or mirrored trajectory, with
-//! the same bits.
+//! All passes go over one part of the blocks before the next part, so that the results of a pass are in the
+//! cache for the next pass. A step moves the blocks (Eq. 8), computes the forces on them (Eqs. 2, 3) and
+//! applies friction and damping (Eqs. 4-7). Forces of opposite neighbours are summed in pairs, straight ones
+//! before diagonal ones, so that the trajectory of a rotated or mirrored problem is the rotated or mirrored
+//! trajectory, with the same bits.
 //!
-//! Threads share out bands of rows. Between the passes that move the blocks and those that find the forces on
-//! them, bands tell each other, and ranks too, how their first and last rows move.
+//! Threads share bands of rows. After the blocks have moved, and before forces are computed, bands exchange
+//! the motion of their first and last rows, also with bands of other ranks.
 
 mod band;
 mod drive;
@@ -38,26 +38,27 @@ use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::VectorField;
 
-/// Least number of blocks in a band of several: some tens of microseconds of work.
+/// Least number of blocks in a band if there are several: some tens of microseconds of work.
 const MIN_BAND_BLOCKS: usize = 1024;
 
-/// Least number of rows in a band of several: each finds the springs of a row before it once more.
+/// Least number of rows in a band if there are several: each band computes the springs of the row before it
+/// once more.
 const MIN_BAND_ROWS: usize = 8;
 
-/// The blocks of this rank, and the way to step them.
+/// The blocks of this rank and the data to step them.
 pub(crate) struct General {
     threads: usize,
     ranks: Arc<dyn Communicator>,
     /// Whether the first step, which does not move the blocks, has been evaluated.
     started: bool,
     bands: Vec<BandOfRank>,
-    /// Motion of the first and the last row of each band, for the bands beside it.
+    /// Motion of the first and the last row of each band, for the neighbouring bands.
     ends: Vec<[Vec<f64>; 2]>,
     /// Motion of the rows below and above this rank.
     beside: [Vec<f64>; 2],
     sums: BandSums,
     energy_sums: [RunningSum; 4],
-    /// Power that the dampers take.
+    /// Power dissipated by the dampers.
     viscous_power: f64,
     contact_totals: ContactTotals,
     /// Largest square of a contact stress before the checkpoint from which the run continues.
@@ -80,7 +81,7 @@ impl BandOfRank {
     }
 
     /// Blocks of the band among the `count` blocks of the rank from `first` on: their places in the band, and
-    /// among the `count` blocks.
+    /// their places among the `count` blocks.
     fn common(&self, first: usize, count: usize) -> Option<[Range<usize>; 2]> {
         let both = first.max(self.blocks.start)..(first + count).min(self.blocks.end);
         let from = |start: usize| both.start - start..both.end - start;
@@ -144,7 +145,7 @@ impl General {
         }
     }
 
-    /// Continues from a checkpoint: its instant is evaluated again to find forces, friction and velocities.
+    /// Continues from a checkpoint: evaluates its instant again to compute forces, friction and velocities.
     pub(crate) fn resume<E>(
         model: &Model,
         dt_star: f64,
@@ -190,7 +191,7 @@ impl General {
         Ok(kernel)
     }
 
-    /// Gives the blocks from `first` on these values of an array.
+    /// Sets an array of the blocks from `first` on to these values.
     fn write(&mut self, first: usize, values: &[f64], array: impl Fn(&mut Band) -> &mut [f64]) {
         for one in &mut self.bands {
             if let Some([own, of_values]) = one.common(first, values.len()) {
@@ -199,7 +200,7 @@ impl General {
         }
     }
 
-    /// Values of an array, of the blocks from `first` on.
+    /// Reads an array for the blocks from `first` on.
     fn read(&self, first: usize, values: &mut [f64], array: impl Fn(&Band) -> &[f64]) {
         for one in &self.bands {
             if let Some([own, of_values]) = one.common(first, values.len()) {
@@ -224,7 +225,7 @@ impl General {
         (&one.band, b - one.blocks.start)
     }
 
-    /// Exchanges the motion of the rows beside every band.
+    /// Exchanges the motion of the rows next to every band.
     fn exchange(&mut self) {
         for (ends, one) in self.ends.iter_mut().zip(&self.bands) {
             one.band.read_ends(ends);
@@ -276,11 +277,11 @@ impl General {
         }
     }
 
-    /// Sum over all rows of the whole lattice, given the numbers of the rows of every band. The order is
-    /// equal for any number of bands and ranks, and so are the bits.
+    /// Sum over all rows of the whole lattice, from the values of the rows of every band. The order, and so
+    /// the bits, are the same for any number of bands and ranks.
     fn sum_rows<'a>(&self, model: &Model, of_bands: impl Iterator<Item = &'a [f64]>) -> f64 {
-        // Every rank knows the numbers of its rows and has zeros elsewhere, so that integer sums of the bits
-        // bring them together; then all add the same numbers in the same order.
+        // Every rank has the values of its rows and zeros elsewhere, so that integer sums of the bits bring
+        // all values together. Then every rank adds the same numbers in the same order.
         let mut bits = vec![0; model.lattice.ny];
         for (bits, number) in bits[model.rows.clone()].iter_mut().zip(of_bands.flatten()) {
             *bits = number.to_bits() as i64;
@@ -298,8 +299,8 @@ impl Engine for General {
             let (model, band) = one.with_model(model);
             dispatch!(level, _ => band.begin_step(model, moves));
         });
-        // Springs join blocks of different bands: all must have moved, and told so, before any of them finds
-        // forces.
+        // Springs join blocks of different bands: all blocks must have moved, and bands exchanged their rows,
+        // before any band computes forces.
         self.exchange();
         let mut is_known = false;
         let found = Summed::from(loop {
@@ -314,7 +315,8 @@ impl Engine for General {
             if let Some(found) = RunningSum::finish(&*self.ranks, &mut self.sums) {
                 break found;
             }
-            // A term was larger than all before, or all have become smaller: once more with the right bound.
+            // A term exceeded the bound, or all terms have become much smaller: once more with the right
+            // bound.
             is_known = true;
         });
         let mut counts = [0; 2];
@@ -324,7 +326,7 @@ impl Engine for General {
         }
         self.ranks.sum(&mut counts);
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
-        // Not negated: without dampers that would write a zero with a sign.
+        // Subtracted from 0, not negated: without dampers negation would give -0.
         self.viscous_power = 0.0 - found.viscous_power;
         self.contact_totals = ContactTotals::of(found.contact, &model.friction, &model.surface);
         let stored_energy = energies.then(|| self.stored_energy(model, clock.drive_time_star()));
@@ -413,7 +415,7 @@ impl Engine for General {
         self.read(first, values, |band| match column {
             BlockColumn::DisplacementX => &band.state.displacement.x,
             BlockColumn::DisplacementY => &band.state.displacement.y,
-            // Half a step before the present instant, which is evaluated again when it resumes.
+            // Velocity half a step before the present instant, which a resumed run evaluates again.
             BlockColumn::VelocityX => &band.forces.velocity.x,
             BlockColumn::VelocityY => &band.forces.velocity.y,
             BlockColumn::FirstSlip => &band.first_slip,
@@ -453,8 +455,8 @@ impl Engine for General {
 fn bands_of(model: &Model, threads: usize) -> Vec<Range<usize>> {
     let (rows, n_blocks) = (&model.rows, model.surface.n_blocks());
     let is_one = threads == 1 || model.friction.lends_thresholds();
-    // More bands than threads: a thread that comes late leaves work to the others. A law by which a block
-    // takes the threshold of any other has all blocks in one band.
+    // More bands than threads: the other threads do the work of a thread that comes late. Under a law in
+    // which a block takes the threshold of any other block, all blocks are in one band.
     let most = if is_one { 1 } else { 4 * threads };
     let n = most
         .min(n_blocks / MIN_BAND_BLOCKS)

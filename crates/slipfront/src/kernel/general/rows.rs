@@ -1,4 +1,4 @@
-//! The rows of a band, and beside them those that other bands or ranks hold.
+//! The rows of a band, and the neighbouring rows that other bands or ranks hold.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use crate::moduli::Moduli;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// The rows of a band, and the row below and the row above if other bands hold these: the input of the forces
-/// of the springs between blocks. With one band, all rows of the lattice.
+/// The rows of a band, and the row below and the row above if other bands hold these: the input for the
+/// forces of the springs between blocks. With one band, all rows of the lattice.
 pub(super) struct Rows {
     /// Lattice of these rows, with free ends.
     pub(super) lattice: Lattice,
@@ -22,7 +22,7 @@ pub(super) struct Rows {
     beside: Option<Beside>,
 }
 
-/// Data of a band about the rows beside its own.
+/// Data of a band about the rows next to its own.
 struct Beside {
     /// Whether there is a row below, and one above.
     has: [bool; 2],
@@ -67,11 +67,11 @@ impl Rows {
         self.own.start / self.lattice.nx..self.own.end / self.lattice.nx
     }
 
-    /// Takes over the motion of some blocks of this band.
+    /// Copies the motion of some blocks of this band.
     #[inline(always)]
     pub(super) fn take_over(&mut self, own: &State, blocks: &Range<usize>) {
-        // Copied beside the rows of others, so that springs find both ends in one array; a single band reads
-        // its own state.
+        // Copied into the array of the neighbouring rows, so that springs find both ends in one array; a
+        // single band reads its own state.
         let among_all = self.among_all(blocks);
         if let Some(Beside {
             state, has_dampers, ..
@@ -87,7 +87,7 @@ impl Rows {
     }
 
     /// Adds the motion of the first and the last row of this band to `ends`, one component after the other,
-    /// for the bands below and above; nothing where there is none.
+    /// for the bands below and above; nothing for a missing band.
     pub(super) fn read_ends(&self, own: &State, ends: &mut [Vec<f64>; 2]) {
         let Some(Beside { has, has_dampers, .. }) = &self.beside else {
             return;
@@ -102,7 +102,7 @@ impl Rows {
         }
     }
 
-    /// Takes over the motion of the row below and of the row above, see [`read_ends`](Self::read_ends).
+    /// Sets the motion of the row below and of the row above, see [`read_ends`](Self::read_ends).
     pub(super) fn set_beside(&mut self, rows: [&[f64]; 2]) {
         let (nx, firsts) = (self.lattice.nx, [0, self.own.end]);
         let Some(Beside {
@@ -119,7 +119,7 @@ impl Rows {
         }
     }
 
-    /// The motion of all blocks of these rows, given that of the blocks of this band.
+    /// The motion of all blocks of these rows, given the motion of the blocks of this band.
     pub(super) fn state<'a>(&'a self, own: &'a State) -> &'a State {
         self.beside.as_ref().map_or(own, |beside| &beside.state)
     }
@@ -130,8 +130,8 @@ impl Rows {
         self.own.start + blocks.start..self.own.start + blocks.end
     }
 
-    /// Blocks behind the first of this band along a bond that no blocks before it are: those of the row
-    /// below, or where a periodic axis begins those of the last row.
+    /// Blocks behind the first of this band along a bond that are not earlier blocks of this band: those of
+    /// the row below, or at the beginning of a periodic axis those of the last row.
     pub(super) fn behind(&self) -> Range<usize> {
         let last_row = self.lattice.block(0, self.lattice.ny - 1)..self.lattice.n_blocks();
         match self.lattice.edges[1] {
@@ -158,13 +158,13 @@ impl Rows {
     }
 }
 
-/// Fields from which the forces between blocks follow: displacements, and velocities with dampers.
+/// Fields that determine the forces between blocks: displacements, and velocities with dampers.
 #[inline(always)]
 fn fields(state: &State, has_dampers: bool) -> impl Iterator<Item = &VectorField> {
     std::iter::once(&state.displacement).chain(has_dampers.then_some(&state.velocity))
 }
 
-/// Fields from which the forces between blocks follow, to be filled.
+/// Fields that determine the forces between blocks, to be filled.
 #[inline(always)]
 fn fields_mut(state: &mut State, has_dampers: bool) -> impl Iterator<Item = &mut VectorField> {
     std::iter::once(&mut state.displacement).chain(has_dampers.then_some(&mut state.velocity))

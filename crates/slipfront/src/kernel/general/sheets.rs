@@ -47,12 +47,12 @@ impl UpperSheet {
     /// Columns of a checkpoint, see [`Model::n_memory_columns`].
     pub(super) fn columns(&self) -> [&[f64]; 4] {
         let u = &self.state.displacement;
-        // Half a step before the present instant, which is evaluated again when it resumes.
+        // Velocity half a step before the present instant, which a resumed run evaluates again.
         let v = &self.velocity;
         [&u.x, &u.y, &v.x, &v.y]
     }
 
-    /// The arrays from which a run goes on that resumes with the columns of a checkpoint.
+    /// The arrays into which the columns of a checkpoint are read when a run resumes.
     pub(super) fn columns_mut(&mut self) -> [&mut [f64]; 4] {
         let State {
             displacement: u,
@@ -82,7 +82,7 @@ impl UpperSheet {
         sum.add(terms);
     }
 
-    /// Energies of the springs between the blocks of the sheet: along each bond one number for every row.
+    /// Energies of the springs between the blocks of the sheet: along each bond one value for every row.
     pub(super) fn row_energies(&self, model: &Model, scratch: &mut WeightedScratch) -> [Vec<f64>; 4] {
         let u = &self.rows.state(&self.state).displacement;
         let mut energies = row_energies(model, &self.rows, u, None, &mut scratch.terms);
@@ -92,8 +92,8 @@ impl UpperSheet {
     }
 }
 
-/// Finds the pull of the drive and of the sheets on some blocks: on those of the lowest sheet into `lowest`,
-/// and on those of the sheets above.
+/// Computes the pull of the drive and of other sheets on some blocks: on those of the lowest sheet into
+/// `lowest`, and on those of the sheets above.
 #[inline(always)]
 pub(super) fn pull(
     sheets: &mut [UpperSheet],
@@ -120,7 +120,7 @@ pub(super) fn pull(
     }
 }
 
-/// Force of the springs to a sheet on some blocks of the one below, `g (u_k - u_k-1)`.
+/// Force of the springs to a sheet on some blocks of the sheet below it, `g (u_k - u_k-1)`.
 #[inline(always)]
 fn couple(sheet: Sheet, above: &State, below: &VectorField, blocks: &Range<usize>, pull: &mut VectorField) {
     let components = part_mut(pull, blocks).into_iter();
@@ -135,8 +135,8 @@ fn couple(sheet: Sheet, above: &State, below: &VectorField, blocks: &Range<usize
     }
 }
 
-/// Finds the next velocities of some blocks of the sheets above, after [`pull`]; `lowest` is the pull on the
-/// lowest sheet.
+/// Computes the next velocities of some blocks of the sheets above, after [`pull`]; `lowest` is the pull on
+/// the lowest sheet.
 #[inline(always)]
 pub(super) fn accelerate(
     sheets: &mut [UpperSheet],

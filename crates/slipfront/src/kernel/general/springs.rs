@@ -10,9 +10,9 @@ use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. Called
-/// for some blocks after the blocks before them. `relative`: stiffness of each spring over that of its bond,
-/// for a heterogeneous slider.
+/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, with every spring computed once.
+/// Must be called for earlier blocks first. `relative`: stiffness of each spring over that of its bond, for a
+/// heterogeneous slider.
 #[inline(always)]
 pub(super) fn lattice_forces(
     model: &Model,
@@ -30,8 +30,9 @@ pub(super) fn lattice_forces(
     sum_all(rows, blocks, (&spring, model.springs), relative, force, springs);
 }
 
-/// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`,
-/// with the velocities half a step before. Arguments as for [`lattice_forces`].
+/// Forces of dampers in parallel with all springs (Kelvin-Voigt),
+/// `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, with the velocities half a step before. Arguments as
+/// for [`lattice_forces`].
 #[inline(always)]
 pub(super) fn damper_forces(
     model: &Model,
@@ -56,7 +57,8 @@ trait Connection {
     /// The force on a block from its neighbour.
     fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2];
 
-    /// The forces on consecutive blocks from their neighbours, which are all equally far away.
+    /// The forces on consecutive blocks from their neighbours, which are all the same distance away in
+    /// memory.
     fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, force: [&mut [f64]; 2]);
 }
 
@@ -66,7 +68,7 @@ struct Spring<'a> {
     epsilon: f64,
 }
 
-/// A damper beside a spring, given displacements and velocities.
+/// A damper in parallel with a spring, given displacements and velocities.
 struct Damper<'a> {
     u: &'a VectorField,
     v: &'a VectorField,
@@ -125,8 +127,8 @@ fn difference(field: &VectorField, b: usize, other: usize) -> [f64; 2] {
     [field.x[other] - field.x[b], field.y[other] - field.y[b]]
 }
 
-/// Sums the forces along the bonds of every block, times `relative`. Forces along the bonds of the blocks
-/// before are known.
+/// Sums the forces along the bonds of some blocks, times `relative`. Forces along the bonds of the blocks
+/// before must be known.
 #[inline(always)]
 fn sum_all(
     rows: &Rows,
@@ -138,7 +140,8 @@ fn sum_all(
 ) {
     let (lattice, [force_x, force_y]) = (&rows.lattice, part_mut(force, blocks));
     let (is_first, blocks) = (blocks.start == 0, &rows.among_all(blocks));
-    // The springs that lead up from the row below are those of another band too: each finds them for itself.
+    // The springs that lead up from the row below also belong to another band: each band computes them
+    // itself.
     let behind = is_first.then(|| rows.behind());
     for blocks in behind.iter().chain([blocks]) {
         for (number, along) in bonds.iter_mut().enumerate() {
@@ -163,7 +166,7 @@ fn sum_all(
     sum_springs(lattice, blocks, y.each_ref().map(|along| &*along.y), force_y);
 }
 
-/// Blocks among `blocks` that stand in column `i`.
+/// Blocks among `blocks` in column `i`.
 #[inline(always)]
 fn in_column(lattice: &Lattice, blocks: &Range<usize>, i: usize) -> impl Iterator<Item = usize> {
     let before = (blocks.start + lattice.nx - i - 1) / lattice.nx;
@@ -177,8 +180,8 @@ fn between(blocks: &Range<usize>, first: usize, end: usize) -> Range<usize> {
     first.max(blocks.start).min(end)..end
 }
 
-/// Force on some blocks along `bond`; zero where a free edge leaves its neighbour out, as `force` is at the
-/// beginning.
+/// Force on some blocks along `bond`; zero for a block without neighbour beyond a free edge, as initially in
+/// `force`.
 #[inline(always)]
 fn along_bond(
     lattice: &Lattice,
@@ -187,8 +190,8 @@ fn along_bond(
     connection: &impl Connection,
     force: &mut VectorField,
 ) {
-    // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds
-    // at the ends of the rows is replaced afterwards.
+    // In block order the neighbours of all blocks are the same distance away: one loop does all rows. Its
+    // results at the ends of the rows are replaced afterwards.
     let (n, shift) = (lattice.n_blocks(), lattice.shift(bond));
     let inside = between(blocks, blocks.start, n.saturating_sub(shift));
     let neighbours = inside.start + shift..inside.end + shift;
@@ -203,8 +206,8 @@ fn along_bond(
     if let Some(i) = column {
         replace(lattice, 0, in_column(lattice, blocks, i), bond, connection, force);
     }
-    // Beyond a free edge there is no neighbour: the forces there are zero from the beginning, and no loop
-    // writes them.
+    // Beyond a free edge there is no neighbour: the forces are zero there from the beginning, and no loop
+    // overwrites them.
     if bond.offset[1] == 1 && lattice.edges[1] == Edges::Periodic {
         let top = between(blocks, lattice.block(0, lattice.ny - 1), n);
         replace(lattice, 1, top, bond, connection, force);
@@ -222,8 +225,8 @@ fn replace(
     force: &mut VectorField,
 ) {
     match lattice.edges[axis] {
-        // The loop over all rows took a block at the other end of a row for the neighbour, which is as far
-        // away in memory.
+        // The loop over all rows used a block at the other end of a row as the neighbour, since it is the
+        // same distance away in memory.
         Edges::Free => {
             for b in blocks {
                 [force.x[b], force.y[b]] = [0.0, 0.0];
@@ -239,11 +242,11 @@ fn replace(
     }
 }
 
-/// Adds the eight springs of some blocks: along each bond that to the neighbour ahead, less that of the
-/// neighbour behind.
+/// Adds the eight springs of some blocks: along each bond the force of the neighbour ahead, less the force of
+/// the spring of the neighbour behind.
 #[inline(always)]
 fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], total: &mut [f64]) {
-    // One loop for all rows again, from the first block whose neighbours behind it all have indices from 0.
+    // Again one loop for all rows, from the first block with only valid indices for its neighbours behind.
     let inside = between(blocks, lattice.shift(&Bond::NORTH_EAST), blocks.end);
     let (own, mut behind) = (springs.map(|spring| &spring[inside.clone()]), springs);
     for (spring, bond) in behind.iter_mut().zip(&Bond::ALL) {
@@ -252,7 +255,7 @@ fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], t
     }
     add_pairs(own, behind, &mut total[inside.start - blocks.start..]);
     if lattice.edges[1] == Edges::Free {
-        // Below the bottom row there is nothing, and the neighbour behind along the row is the block before.
+        // There is no row below the bottom row, and the neighbour behind along the row is the block before.
         let bottom = between(blocks, 1, lattice.nx);
         if !bottom.is_empty() {
             let row = springs.map(|spring| &spring[bottom.clone()]);
@@ -279,8 +282,8 @@ fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], t
         between(blocks, 0, lattice.nx).for_each(&mut replace);
     }
     match lattice.edges[0] {
-        // Beyond free edges the loop found springs of force zero, which is right; it begins after the first
-        // block of the second row.
+        // Beyond free edges the loop read zero forces, as it should; it begins after the first block of the
+        // second row.
         Edges::Free => {
             let firsts = [0, lattice.nx].into_iter();
             firsts.filter(|b| blocks.contains(b)).for_each(replace);
@@ -311,7 +314,7 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
     }
 }
 
-/// Energies of the springs between blocks at displacements `u`: along each bond one number for every row of
+/// Energies of the springs between blocks at displacements `u`: along each bond one value for every row of
 /// this band. `relative`: stiffness of each spring over that of its bond, for a heterogeneous slider. `row`:
 /// room for the energies of a row.
 #[inline(always)]
@@ -332,7 +335,7 @@ pub(super) fn row_energies(
     found
 }
 
-/// The energy of the springs along one bond of one row. No part of it is a closure, which might be compiled
+/// Energy of the springs along one bond of one row. Contains no closures, since these might be compiled
 /// without the vector instructions of the step.
 #[inline(always)]
 fn row_energy(
@@ -345,8 +348,8 @@ fn row_energy(
 ) -> f64 {
     let (lattice, bond) = (&rows.lattice, &model.springs.bond(Bond::ALL[number]));
     let epsilon = model.epsilon;
-    // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are
-    // equally far away.
+    // One block of the row may have its neighbour beyond the end of the row. The neighbours of all other
+    // blocks are the same distance away.
     let (end, first) = match bond.offset[0] {
         1 => (Some(lattice.nx - 1), 0),
         -1 => (Some(0), 1),

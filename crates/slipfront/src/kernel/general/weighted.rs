@@ -1,9 +1,9 @@
-//! Sums over blocks with a weight for each.
+//! Sums over blocks with a weight for each block.
 
 use crate::fixed_point::RunningSum;
 use crate::vector_field::VectorField;
 
-/// Room for numbers of the blocks of a part.
+/// Room for values of the blocks of a part.
 #[derive(Debug)]
 pub(super) struct WeightedScratch {
     /// Velocities at t_n.
@@ -22,8 +22,8 @@ impl WeightedScratch {
     }
 }
 
-/// Adds a term for each of some blocks times its weight; all weights are 1 if there are none. The sum has
-/// room for the products.
+/// Adds a term for each of some blocks times its weight; without weights all are 1. The sum has room for the
+/// products.
 #[inline(always)]
 pub(super) fn add_weighted(
     sum: &mut RunningSum,

@@ -1,4 +1,4 @@
-//! The slip front, found after a run from the times at which the blocks in contact have first slipped: where
+//! The slip front, computed after a run from the times at which the blocks in contact first slipped: where
 //! slip nucleates, how fast its front runs, and how long it takes to pass.
 
 mod nucleation;
@@ -8,32 +8,32 @@ use self::nucleation::nucleations;
 use self::speed::passages;
 use crate::lattice::Lattice;
 
-/// Fewest blocks of a cluster that counts as a nucleation site.
+/// Least number of blocks of a nucleation site.
 const SITE_MIN_BLOCKS: usize = 9;
-/// Smallest nucleation site as a share of all blocks in contact: one in this many.
+/// Number of blocks in contact per block of the smallest nucleation site.
 const SITE_MIN_SHARE: usize = 100;
 
-/// Least share of the windows through which a front passes, for it to have a speed. Through random times that
-/// are alike over as many blocks as a window has, a front passes in less than a fifth of the windows.
+/// Least share of the windows through which a front must pass for it to have a speed. For random times,
+/// correlated over as many blocks as a window has, a front passes through less than a fifth of the windows.
 const LEAST_SHARE: f64 = 0.5;
 
 /// How slip has spread over a slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
-    /// The blocks at which slip has nucleated, the earliest first; of several at once the one with the lowest
-    /// index.
+    /// The first block of every nucleation site, the earliest first; of blocks that slip at the same time,
+    /// the one with the lowest index counts as the first.
     pub nucleations: Vec<usize>,
-    /// Speed of the front, in blocks per unit of time; none where a front passes through less than half of
-    /// the windows, as if all blocks slip at once or each by itself.
+    /// Speed of the front, in blocks per unit of time; none if a front passes through less than half of the
+    /// windows, as when all blocks slip at once or each by itself.
     pub speed: Option<Quantiles>,
     /// Share of the windows through which a front passes; none if there is no window.
     pub share: Option<f64>,
-    /// Time from the first 5 % of the first slips to 95 % of them.
+    /// Time from 5 % to 95 % of the first slips.
     pub duration: f64,
 }
 
-/// Quantiles of some numbers, interpolated linearly between neighbours: of n numbers in rising order the
-/// share q lies at the place q (n - 1), counted from 0.
+/// Quantiles of some numbers, interpolated linearly between neighbours: of n numbers in rising order, the
+/// quantile q has the position q (n - 1), counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
     /// Quantile of 5 %.
@@ -45,28 +45,28 @@ pub struct Quantiles {
 }
 
 impl Front {
-    /// The front of a lattice whose blocks have first slipped at `times`, NaN for blocks that have not
-    /// slipped or have no contact; `n_contact` blocks are in contact. None if no block has slipped.
+    /// The front of a lattice from the `times` at which its blocks first slipped, NaN for blocks that have
+    /// not slipped or have no contact; `n_contact` blocks are in contact. None if no block has slipped.
     ///
-    /// Slip nucleates in clusters of neighbours that have slipped, which grow block by block in the order of
-    /// time (of blocks that slip at once in that of their indices). Where clusters meet, the oldest takes the
-    /// others in. A cluster that reaches
+    /// Slip nucleates in clusters of neighbouring slipped blocks, which grow block by block in order of time;
+    /// blocks that slip at the same time are ordered by index. Where clusters meet, the oldest absorbs the
+    /// others. A cluster that reaches
     ///
     /// ```text
     /// max(9, n_contact/100) blocks
     /// ```
     ///
-    /// or all of them before an older one takes it in is a nucleation site, unless its blocks have slipped at
-    /// once; its place is its first block. A smaller cluster is taken in by a site whatever its age: a block
-    /// that slips alone and early nucleates nothing.
+    /// or all of them before an older cluster absorbs it is a nucleation site, unless its blocks slipped all
+    /// at once; the position of the site is its first block. A site absorbs smaller clusters of any age: a
+    /// block that slips alone and early is not a nucleation.
     ///
-    /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least
-    /// squares) to the times of 7 x 7 blocks around one that has slipped; 7 blocks in a chain. There are
-    /// windows around all blocks but those in which slip nucleates, and those where too few have slipped:
-    /// fewer than 25, or 5 times the number of rows (or columns) of a lattice, or of the part of it that has
-    /// slipped, that has fewer than five. A front passes through a window where the plane explains half of
-    /// the variance of the times, and g turns by no more than 60 degrees to the windows 3 blocks away along
-    /// either axis: where two fronts meet, it does.
+    /// The front speed is `1/|g|`, with the slope g of the least-squares plane through the times of 7 x 7
+    /// blocks around a slipped block; 7 blocks in a chain. There are windows around all slipped blocks except
+    /// those at which slip nucleates and those with too few slipped blocks around them: fewer than 25, or
+    /// fewer than 5 per row (or column) if the lattice, or the part of it that has slipped, has fewer than
+    /// five. A front passes through a window if the plane explains half of the variance of the times, and g
+    /// turns by no more than 60 degrees to the windows 3 blocks away along either axis: where two fronts meet
+    /// it turns by more.
     ///
     /// ```
     /// use slipfront::{Lattice, observe::Front};

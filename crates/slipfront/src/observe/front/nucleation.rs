@@ -1,4 +1,4 @@
-//! Where slip nucleates: clusters of neighbours that grow in the order in which blocks slip.
+//! Nucleation of slip: clusters of neighbours that grow in the order in which blocks slip.
 
 use std::cmp::Ordering;
 
@@ -18,8 +18,8 @@ const NEIGHBOURS: [[isize; 2]; 8] = [
     [1, 1],
 ];
 
-/// The first block of every cluster that has reached `least` blocks, not all at once, before an older one
-/// took it in, in the order of time.
+/// The first block of every cluster that has reached `least` blocks, not all at once, before an older cluster
+/// absorbed it, in order of time.
 pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     assert!(times.len() < NOT_YET as usize, "blocks are numbered with 32 bits");
     let slipped = times.iter().zip(0..).filter(|(time, _)| !time.is_nan());
@@ -46,8 +46,8 @@ pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec
                 }
             }
         }
-        // What has not become a site is taken in whatever its age: a block that slips alone and early
-        // nucleates nothing.
+        // A cluster that is no site is absorbed at any age: a block that slips alone and early is not a
+        // nucleation.
         let by_age = |one: &&(f64, u32), other: &&(f64, u32)| earlier(one, other);
         let oldest_site = met
             .iter()
@@ -71,7 +71,7 @@ pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec
     sites.into_iter().map(|(_, block)| block as usize).collect()
 }
 
-/// The order of times, and of numbers of blocks that slip at once.
+/// Order by time, and by index for blocks that slip at once.
 fn earlier(one: &(f64, u32), other: &(f64, u32)) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
@@ -80,11 +80,11 @@ fn earlier(one: &(f64, u32), other: &(f64, u32)) -> Ordering {
 struct Clusters {
     /// Another block of the same cluster, nearer to the root; the root itself for a root.
     parent: Vec<u32>,
-    /// Blocks of the cluster of a root.
+    /// Number of blocks of the cluster of a root.
     size: Vec<u32>,
     /// Whether a block of the cluster of a root has slipped later than the root.
     has_grown: Vec<bool>,
-    /// Blocks that make a cluster a site.
+    /// Number of blocks that make a cluster a site.
     least: usize,
 }
 
@@ -100,7 +100,7 @@ impl Clusters {
             return None;
         }
         while parent != block {
-            // The way is halved for all that come after.
+            // Shortens the path to the root for later searches.
             let above = self.parent[parent as usize];
             self.parent[block as usize] = above;
             block = above;

@@ -1,27 +1,27 @@
-//! How fast the front runs: planes through the times of the blocks around each.
+//! Speed of the front: planes through the times of the blocks around each block.
 
 use crate::lattice::{Edges, Lattice};
 use crate::vector_field::dot;
 
-/// Blocks from the middle of a window to its edge.
+/// Number of blocks from the middle of a window to its edge.
 const REACH: usize = 3;
-/// Least number of blocks of a window that have slipped, for each row of the window or of all blocks that
-/// have slipped, up to five of them.
+/// Least number of slipped blocks of a window for each row of the window, or of all slipped blocks, for up to
+/// five rows.
 const LEAST_PER_ROW: usize = 5;
 
-/// Least share of the variance of the times in a window that a plane explains where a front passes. White
-/// noise reaches it in one of ten million windows, and a front whose blocks are early and late by twice the
-/// time in which it passes one (rms) in half of them.
+/// Least share of the variance of the times in a window that the plane of a passing front explains. White
+/// noise reaches it in one of ten million windows. In a front with blocks that are early or late by twice the
+/// time in which it passes one (rms), half of the windows reach it.
 const LEAST_EXPLAINED: f64 = 0.5;
-/// Least cosine of the angle by which a front turns from a window to those around it, 60 degrees. Where two
-/// fronts meet, the direction turns by more.
+/// Least cosine of the angle by which a front turns from a window to those around it, 60 degrees. The
+/// direction turns by more where two fronts meet.
 const LEAST_COSINE: f64 = 0.5;
 
 /// Passages of the front through windows.
 pub(super) struct Passages {
     /// Speed of the front in every window through which it passes, in blocks per unit of time.
     pub(super) speeds: Vec<f64>,
-    /// Number of windows that have enough blocks for a plane.
+    /// Number of windows with enough blocks for a plane.
     pub(super) n_windows: usize,
 }
 
@@ -59,8 +59,8 @@ pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) 
     }
 }
 
-/// Numbers of columns and rows of the smallest rectangle that holds all blocks that have slipped: of a line
-/// of contacts one of the two is 1.
+/// Numbers of columns and rows of the smallest rectangle that contains all slipped blocks; one of them is 1
+/// for a line of contacts.
 fn extents(lattice: &Lattice, times: &[f64]) -> [usize; 2] {
     let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
     for block in (0..times.len()).filter(|&b| !times[b].is_nan()) {
@@ -73,8 +73,8 @@ fn extents(lattice: &Lattice, times: &[f64]) -> [usize; 2] {
     [0, 1].map(|axis| (high[axis] + 1).saturating_sub(low[axis]))
 }
 
-/// Whether the front has another direction in one of the windows that lie as far from that of a block, along
-/// either axis, as its edge.
+/// Whether the front has another direction in one of the windows at the distance of a window's edge from its
+/// middle, along either axis.
 fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: usize) -> bool {
     let (i, j) = lattice.column_row(block);
     let [along, across] = axes.each_ref().map(|axis| axis.reach as isize);
@@ -85,7 +85,7 @@ fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: 
     around.any(|other| {
         let [one, other] = [slopes[block], slopes[other]];
         let lengths = (dot(one, one) * dot(other, other)).sqrt();
-        // Of a window without a plane this is not a number, and a level one has no direction: neither says
+        // NaN for a window without a plane, and 0 for a level plane, which has no direction: neither shows
         // that the front turns.
         dot(one, other) < LEAST_COSINE * lengths
     })
@@ -95,8 +95,8 @@ fn turns(lattice: &Lattice, axes: &[WindowAxis; 2], slopes: &[[f64; 2]], block: 
 struct WindowAxis {
     count: usize,
     is_periodic: bool,
-    /// Blocks from the middle of a window to its edge, fewer on a short axis: on a periodic one no block
-    /// stands in a window twice.
+    /// Number of blocks from the middle of a window to its edge. It is smaller on a short axis, so that on a
+    /// periodic axis no block is in a window twice.
     reach: usize,
 }
 
@@ -110,7 +110,7 @@ impl WindowAxis {
         }
     }
 
-    /// Largest number of places of a window.
+    /// Largest number of blocks in a window along this axis.
     fn window(&self) -> usize {
         let all = 2 * REACH + 1;
         if self.is_periodic {
@@ -120,7 +120,7 @@ impl WindowAxis {
         }
     }
 
-    /// The places of a window around a place, each with how far it lies from the middle.
+    /// The positions of a window around its middle, each with its distance from the middle.
     fn around(&self, middle: usize) -> impl Iterator<Item = (i32, usize)> + use<> {
         let (count, is_periodic) = (self.count, self.is_periodic);
         let reach = if is_periodic { self.reach } else { REACH } as i32;
@@ -136,7 +136,8 @@ impl WindowAxis {
     }
 }
 
-/// Sums over the blocks of a window at (x, y) from its middle, with the time t after that of the middle.
+/// Sums over the blocks of a window, with their position (x, y) relative to the middle and their time t after
+/// the time of the middle.
 #[derive(Default)]
 struct WindowSums {
     n: i32,
@@ -152,7 +153,7 @@ struct WindowSums {
 }
 
 impl WindowSums {
-    /// Sums over the blocks around one that have slipped.
+    /// Sums over the slipped blocks around a block.
     fn around(lattice: &Lattice, axes: &[WindowAxis; 2], times: &[f64], block: usize) -> Self {
         let (i, j) = lattice.column_row(block);
         let mut sums = Self::default();
@@ -160,7 +161,7 @@ impl WindowSums {
             for (x, column) in axes[0].around(i) {
                 let time = times[lattice.block(column, row)];
                 if !time.is_nan() {
-                    // Of blocks that slip at once the differences are exactly zero.
+                    // Exactly zero differences for blocks that slip at once.
                     sums.add(x, y, time - times[block]);
                 }
             }
@@ -182,7 +183,7 @@ impl WindowSums {
         self.tt += t * t;
     }
 
-    /// Covariances of place and time, times n^2.
+    /// Covariances of position and time, times n^2.
     fn with_time(&self) -> [f64; 2] {
         let n = f64::from(self.n);
         [
@@ -191,8 +192,8 @@ impl WindowSums {
         ]
     }
 
-    /// Slope g of the plane `t = a + g . r` of least squares; for blocks in a row the one that does not rise
-    /// across it.
+    /// Slope g of the least-squares plane `t = a + g . r`; for blocks in a row the plane that is level across
+    /// it.
     fn slope(&self) -> [f64; 2] {
         // n^2 times the variances and covariances.
         let [xx, xy, yy] = [
@@ -209,8 +210,8 @@ impl WindowSums {
         [xt, yt].map(|g| g / (xx + yy))
     }
 
-    /// Share R^2 of the variance of the times that the plane of this slope explains; none for a window that
-    /// slips at once.
+    /// Share R^2 of the variance of the times that the plane of this slope explains; none for a window in
+    /// which all blocks slip at once.
     fn explained(&self, slope: [f64; 2]) -> f64 {
         let variance = f64::from(self.n) * self.tt - self.t * self.t;
         if variance > 0.0 {

@@ -29,7 +29,7 @@ fn quantiles_are_interpolated() {
     assert_eq!(of(&[]), None);
     let one = of(&[3.0]).unwrap();
     assert_eq!([one.low, one.median, one.high], [3.0; 3]);
-    // 5 and 95 % of 20 are whole places up to rounding.
+    // 5 and 95 % of 20 are integer positions, up to rounding.
     let reversed: Vec<f64> = (0..=20).rev().map(f64::from).collect();
     let many = of(&reversed).unwrap();
     for (found, exact) in [(many.low, 1.0), (many.median, 10.0), (many.high, 19.0)] {
@@ -47,16 +47,17 @@ fn a_straight_front_has_its_speed_everywhere() {
             let [dx, dy] = crate::vector_field::unit_vector(degrees);
             let times = times_of(&lattice, |x, y| 50.0 + (dx * x + dy * y) / 1.7);
             let front = front(&lattice, &times);
-            // Nothing nucleates on a chain along the front, which slips at once.
+            // Nothing nucleates on a chain along the front, which slips all at once.
             let at_once = times.iter().all(|time| *time == times[0]);
             assert_eq!(front.nucleations.len(), usize::from(!at_once));
-            // Of a chain that the front crosses askew the trace along it is seen.
+            // On a chain that the front crosses at an angle, the speed of its trace along the chain is
+            // measured.
             let seen = match (nx, ny) {
                 (_, 1) => 1.7 / dx.abs(),
                 (1, _) => 1.7 / dy.abs(),
                 _ => 1.7,
             };
-            // One window alone fits a chain of 7, and that holds the nucleation.
+            // A chain of 7 has room for a single window, which contains the nucleation.
             let Some(speed) = front.speed.filter(|_| seen < 1e3) else {
                 assert!(seen >= 1e3 || nx == 7, "{nx} x {ny} at {degrees}");
                 continue;
@@ -71,8 +72,8 @@ fn a_straight_front_has_its_speed_everywhere() {
     }
 }
 
-/// A circle is bent within a window: at the distance R the mean slope is less by the mean square of the
-/// distance across the front, 4, over 2 R^2. Half of the windows lie beyond R = 20, where that is 0.5 %.
+/// A circle is curved within a window: at the distance R the mean slope is reduced by the mean square of the
+/// distance across the front, 4, over 2 R^2. Half of the windows lie beyond R = 20, where this is 0.5 %.
 #[test]
 fn a_round_front_has_its_speed() {
     let lattice = Lattice::free(61, 61);
@@ -90,10 +91,10 @@ fn a_round_front_has_its_speed() {
     assert!(speed.low >= 0.6 && speed.high < 1.2 * 0.6, "{speed:?}");
 }
 
-/// Noise of a whole time between neighbours: differences of neighbours are wrong by far, planes are not. The
+/// Noise as large as the time between neighbours: differences of neighbours are far off, planes are not. The
 /// slope of a plane over 49 blocks has a standard error of (1/sqrt(12))/sqrt(49 * 4) = 2 % of 1/c per
-/// component; across the front it adds (2 %)^2/2 to the mean, and the median over windows is known ten times
-/// better than one of them.
+/// component; across the front it adds (2 %)^2/2 to the mean, and the error of the median over windows is ten
+/// times smaller than that of one window.
 #[test]
 fn noise_does_not_hide_the_speed() {
     let lattice = Lattice::free(60, 60);
@@ -131,19 +132,20 @@ fn two_fronts_begin_at_two_sites() {
     });
     let sites = [lattice.block(10, 12), lattice.block(38, 30)];
     assert_eq!(front(&lattice, &times).nucleations, sites);
-    // Blocks that slip alone and early are none, one of them before all others.
+    // Blocks that slip alone and early are no sites, here one of them before all other blocks.
     times[lattice.block(14, 12)] = 1.0;
     times[lattice.block(45, 3)] = -1.0;
     assert_eq!(front(&lattice, &times).nucleations, sites);
 }
 
-/// On a chain a cluster grows by one block after the other: the younger has reached 9 when both meet, or 8.
+/// On a chain a cluster grows by one block after the other: the younger cluster has reached 9 blocks when
+/// both meet, or 8.
 #[test]
 fn a_site_has_nine_blocks_or_one_in_a_hundred() {
     let sites = |n: usize, second: usize, blocks: f64| {
         let lattice = Lattice::free(n, 1);
-        // From the first block on to the right, and from `second` on to the left, over so many blocks; then
-        // what is left.
+        // From the first block on to the right, and from `second` on to the left, over `blocks` blocks; then
+        // the remaining blocks.
         let times = times_of(&lattice, |x, _| {
             let back = second as f64 - x;
             if (0.0..blocks).contains(&back) {
@@ -156,7 +158,7 @@ fn a_site_has_nine_blocks_or_one_in_a_hundred() {
     };
     assert_eq!(sites(100, 50, 9.0), [0, 50]);
     assert_eq!(sites(100, 50, 8.0), [0, 50][..1]);
-    // One in a hundred of 2000 are 20. The clusters meet over the blocks beside the younger one, which takes
+    // One in a hundred of 2000 is 20. The clusters meet in the blocks next to the younger one, which absorbs
     // none of them before.
     assert_eq!(sites(2000, 1000, 20.0), [0, 1000]);
     assert_eq!(sites(2000, 1000, 19.0), [0]);
@@ -166,7 +168,7 @@ fn a_site_has_nine_blocks_or_one_in_a_hundred() {
 fn what_slips_at_once_has_no_site_and_no_speed() {
     for (nx, ny) in [(20, 20), (1, 1), (2, 2), (30, 1)] {
         let lattice = Lattice::free(nx, ny);
-        // A time that is no sum of few powers of two.
+        // A time that is not a sum of few powers of two.
         let front = front(&lattice, &vec![0.1; nx * ny]);
         let has_windows = nx >= 20;
         let expected = Front {
@@ -179,13 +181,13 @@ fn what_slips_at_once_has_no_site_and_no_speed() {
     }
     assert_eq!(Front::of(&Lattice::free(3, 3), &[f64::NAN; 9], 9), None);
 
-    // A column that slips at once is a site when the next one follows.
+    // A column that slips at once becomes a site when the next one follows.
     let lattice = Lattice::free(20, 20);
     let times = times_of(&lattice, |x, _| x.max(4.0));
     assert_eq!(front(&lattice, &times).nucleations, [0]);
 }
 
-/// Mean of the values of `size` x `size` blocks around each, round the edges.
+/// Mean of the values of `size` x `size` blocks around each block, with periodic edges.
 fn smoothed(values: &[f64], n: usize, size: usize) -> Vec<f64> {
     let mean = |b: usize| {
         let (i, j) = (b % n, b / n);
@@ -195,9 +197,9 @@ fn smoothed(values: &[f64], n: usize, size: usize) -> Vec<f64> {
     (0..values.len()).map(mean).collect()
 }
 
-/// White noise, and noise that is alike over 3, 5 and 7 blocks, as many as a window has: planes explain half
-/// of it by chance, the more often the more it is alike, yet in less than half as many windows as a speed
-/// takes.
+/// White noise, and noise correlated over 3, 5 and 7 blocks, as many as a window has. Planes explain half of
+/// it by chance, more often the longer the correlation, but in less than half as many windows as a speed
+/// requires.
 #[test]
 fn no_front_passes_through_noise() {
     let n = 60;
@@ -216,9 +218,9 @@ fn no_front_passes_through_noise() {
     }
 }
 
-/// Where fronts meet, a plane lies across both and is too level: with those windows the median of two fronts
-/// would be right, but the fastest 5 % more than twice too fast. A circle of radius R is bent by 4/(2 R^2): 1
-/// % half-way to where they meet.
+/// Where fronts meet, a plane through both is too level. With those windows the median of two fronts would be
+/// right, but the fastest 5 % more than twice too fast. A circle of radius R is curved by 4/(2 R^2): 1 %
+/// half-way to where fronts meet.
 #[test]
 fn windows_in_which_fronts_meet_are_left_out() {
     let speed = 1.633;
@@ -264,7 +266,7 @@ fn cavities_are_left_out_and_part_the_slider() {
     assert!((speed.low / exact - 1.0).abs() < 1e-9 && (speed.high / exact - 1.0).abs() < 1e-9);
     assert_eq!(front.nucleations.len(), 1);
 
-    // A groove parts it: slip nucleates on either side.
+    // A groove divides the slider: slip nucleates on either side.
     let mut times = times_of(&lattice, |x, y| x + 0.01 * y);
     for j in 0..40 {
         times[lattice.block(20, j)] = f64::NAN;
@@ -273,7 +275,7 @@ fn cavities_are_left_out_and_part_the_slider() {
     assert_eq!(front.nucleations, [0, 21]);
 }
 
-/// Too few blocks around each for a plane: rows of contact, one block wide, between grooves.
+/// Too few blocks around each block for a plane: rows of contact, one block wide, between grooves.
 #[test]
 fn strips_between_grooves_have_no_planes() {
     let lattice = Lattice::free(40, 40);
@@ -282,7 +284,7 @@ fn strips_between_grooves_have_no_planes() {
     assert_eq!((front.nucleations.len(), front.speed), (14, None));
 }
 
-/// A front that runs round both axes is the same wherever it begins.
+/// A front that runs round both periodic axes gives the same result wherever it begins.
 #[test]
 fn periodic_edges_are_no_edges() {
     for n in [4, 5, 24] {
@@ -304,14 +306,14 @@ fn periodic_edges_are_no_edges() {
             let other = from(i, j);
             assert_eq!(other.nucleations, [lattice.block(i, j)]);
             let [one, other] = [&inside, &other].map(|front| front.speed.unwrap());
-            // Sums of other order.
+            // Sums are in another order.
             assert!((one.median - other.median).abs() < 1e-12 && (one.high - other.high).abs() < 1e-12);
         }
     }
 }
 
-/// Sites are those of clusters that are coloured anew at every meeting, over random times with ties and
-/// holes.
+/// Sites agree with those of clusters that are coloured anew at every meeting, over random times with ties
+/// and holes.
 #[test]
 fn sites_are_those_of_a_plain_search() {
     let mut state = 7;
@@ -341,7 +343,7 @@ fn plain_search(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..times.len()).filter(|&b| !times[b].is_nan()).collect();
     order.sort_by(|&one, &other| times[one].total_cmp(&times[other]));
     let place = |b: usize| order.iter().position(|&other| other == b).unwrap();
-    // The cluster of every block is named by the place of its first block in that order.
+    // The name of every cluster is the position of its first block in that order.
     let is_site = |cluster: &[usize], name: usize| {
         let blocks: Vec<usize> = (0..cluster.len())
             .filter(|&other| cluster[other] == name)
