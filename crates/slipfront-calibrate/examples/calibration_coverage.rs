@@ -204,8 +204,8 @@ fn report(unknowns: &[Unknown], truths: &[Vec<f64>], fits: &[Estimate]) {
     println!("pairs told: {pairs} in {} records", fits.len());
 }
 
-/// Probability that uniform ranks have at least this Kolmogorov-Smirnov distance: `2 sum (-1)^(k-1) exp(-2
-/// k^2 x^2)`.
+/// Probability that uniform ranks have at least this Kolmogorov-Smirnov distance:
+/// `2 sum (-1)^(k-1) exp(-2 k^2 x^2)`.
 fn uniformity(ranks: &mut [f64]) -> f64 {
     ranks.sort_by(f64::total_cmp);
     let n = ranks.len() as f64;

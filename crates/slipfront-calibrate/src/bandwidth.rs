@@ -36,9 +36,9 @@ pub(crate) fn missing_noise(record: &MeasuredRecord, stated: f64) -> f64 {
     }
 }
 
-/// Frequency in Hz of a sinusoid that has the range of the record and its fastest rate of change: `f =
-/// rate/(pi range)`. The rate is taken over the shortest time in which friction changes by more than noise
-/// does; none if there is no such change.
+/// Frequency in Hz of a sinusoid with the range and the fastest rate of change of the record:
+/// `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by more than
+/// noise does; none if there is no such change.
 pub(crate) fn fastest_swing(record: &MeasuredRecord) -> Option<f64> {
     let (x, y) = (&record.x, &record.y);
     let [low, high] = quantiles(y, [0.0, 1.0]);
@@ -86,8 +86,8 @@ mod tests {
         );
         let frequency = fastest_swing(&found).unwrap();
         assert!((frequency / 14.0 - 1.0).abs() < 0.3, "{frequency}");
-        // 2000 values give a standard deviation to 2 %; the curvature of the sinusoid adds to it, 0.1 (2 pi
-        // 0.014)^2 to 0.012.
+        // 2000 values give a standard deviation to 2 %; the curvature of the sinusoid adds
+        // `0.1 (2 pi 0.014)^2` to 0.012.
         let share = noise_share(&found);
         assert!((share / 0.01 - 1.0).abs() < 0.1, "{share}");
     }

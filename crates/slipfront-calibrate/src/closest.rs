@@ -406,8 +406,8 @@ struct Part {
 }
 
 impl Part {
-    /// The first part of the records, with its own time step: every slip shifts the phase by a share of the
-    /// step, so a part with fewer slips can have coarser steps than the whole.
+    /// The first part of the records, with its own time step: the step shifts the phase at every slip, so a
+    /// part with fewer slips can have coarser steps than the whole.
     fn of(set_up: &SetUp, share: f64) -> Self {
         let set_up = SetUp {
             halvings: set_up.halvings.saturating_sub(((1.0 / share) as u32).ilog2()),

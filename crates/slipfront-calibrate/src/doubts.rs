@@ -14,8 +14,8 @@ const LOOSE: f64 = 0.25;
 /// Number of standard deviations of the noise within which friction counts as constant.
 const STILL: f64 = 5.0;
 
-/// Warnings about a record that the model can hardly have made. `noise` is a share of the mean friction. The
-/// warnings are about:
+/// Warnings about a record that the model can hardly have made; `noise` is a share of the mean friction.
+/// There are warnings about:
 ///
 /// - a negative mean;
 /// - rest after the drive starts, at 0: the line through the first points at a quarter and at half of the

@@ -64,8 +64,8 @@ impl CalibrationFolder {
     ///
     /// # Errors
     /// When the ranges leave the bounds of the case; then nothing is written. When the folder contains other
-    /// files, or results that were edited afterwards and `force` does not allow to replace them; when another
-    /// process uses it, or it cannot be written to.
+    /// files, or results that were edited afterwards, unless `force` is set; when another process uses it, or
+    /// it cannot be written to.
     pub fn open(
         path: &Path,
         training: Option<&Path>,

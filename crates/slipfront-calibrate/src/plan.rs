@@ -115,8 +115,8 @@ impl ExperimentPlan {
 type Planned = (&'static str, Result<SetUp, String>);
 
 impl CalibrationFile {
-    /// Sample points of planned records, at equal steps from the start of the drive to `until`, such as `20
-    /// s`: one record for each of the file.
+    /// Sample points of planned records at equal steps from the start of the drive to `until`, such as
+    /// `20 s`, for one record per record in the file.
     ///
     /// # Errors
     /// When `until` has another unit than records of the file, or there are too few values.

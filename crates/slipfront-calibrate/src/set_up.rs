@@ -110,7 +110,7 @@ impl SetUp {
         part
     }
 
-    /// The set-up with a time step that is halved this number of times.
+    /// The set-up after this number of halvings of its time step.
     pub(crate) fn halved(&self, times: u32) -> Self {
         Self {
             halvings: self.halvings + times,
@@ -182,7 +182,7 @@ impl SetUp {
         Ok(coefficients(1)? != coefficients(2)?)
     }
 
-    /// Memory of the largest run at a time step that is halved this number of times, in bytes.
+    /// Memory of the largest run, in bytes, after this number of halvings of the time step.
     pub(crate) fn bytes_of_run(&self, halvings: u32) -> Result<f64, CaseError> {
         // Time, path and friction of every step, and a fourth number as a reserve.
         const STEP: f64 = 4.0 * size_of::<f64>() as f64;

@@ -10,11 +10,12 @@
 //! at most 10 %, with features and gaps of at least 3 blocks.
 //!
 //! Prints a line for every start number:
+//!
 //! - the result of the design on fresh surfaces with the half width of its 95 % interval: the reduction in %;
-//! mu_s* and its distance from the value in %; or the root mean square difference of mu* from the curve, and
-//! its ratio to that of the cavity itself on 16 surfaces;
+//!   mu_s* and its distance from the value in %; or the root mean square difference of mu* from the curve,
+//!   and its ratio to that of the cavity itself on 16 surfaces;
 //! - by how many points the design is better than the groove across and than the best named pattern (lower
-//! ends of the intervals);
+//!   ends of the intervals);
 //! - for several cases, the reduction in each of them by the design and by the groove;
 //! - the optimism of the search in points.
 

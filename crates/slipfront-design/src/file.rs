@@ -26,8 +26,8 @@ use slipfront_study::project_file::ProjectFile;
 use slipfront_study::project_folder::ProjectKind;
 use slipfront_study::work_memory::WorkMemory;
 
-/// Folders of designs. Their design file contains the base case as a table: `slipfront design
-/// DIR/design.toml` repeats the design.
+/// Folders of designs. Their design file contains the base case as a table:
+/// `slipfront design DIR/design.toml` repeats the design.
 pub(crate) static DESIGN: ProjectKind = ProjectKind {
     name: "design",
     table: "design",

@@ -40,8 +40,8 @@ impl DesignFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process uses.
     ///
     /// # Errors
-    /// When the folder contains other files, or results that were edited afterwards and `force` does not
-    /// allow to replace them; when another process uses it, or it cannot be written to.
+    /// When the folder contains other files, or results that were edited afterwards, unless `force` is set;
+    /// when another process uses it, or it cannot be written to.
     pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
         DESIGN.is_used(path)?;
         let given = file.project.given()?;

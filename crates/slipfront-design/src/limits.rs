@@ -72,7 +72,7 @@ impl Limits {
         if !(least..=most).contains(&found) {
             return Err(Illegal::Coverage { found, least, most });
         }
-        // Few drafts are too narrow, so their width is only determined then.
+        // Few drafts have parts that are too narrow, so the width is determined only for those.
         let narrow = |set: &[bool], least| {
             if grid.lattice.opened(set, least) == set {
                 None

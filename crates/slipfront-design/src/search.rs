@@ -60,8 +60,7 @@ pub(crate) struct RatedTexture {
 #[derive(Debug)]
 pub(crate) struct Search {
     space: Space,
-    /// Smallest width of a feature in blocks; the best textures must differ by more than a square of that
-    /// width.
+    /// Smallest width of a feature in blocks, for the least difference between the best textures.
     feature: usize,
     draws: Draws,
     /// Patterns that were not proposed yet, the next one last.
@@ -231,8 +230,8 @@ impl Search {
 /// Number of best textures that a search keeps.
 const FINALISTS: usize = 24;
 
-/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a
-/// square of `feature` blocks.
+/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by at least
+/// the number of blocks in a square of `feature` blocks along a side, or by 9 if that is less.
 fn merge(list: &mut Vec<RatedTexture>, found: &[RatedTexture], feature: usize) {
     let mut all = std::mem::take(list);
     all.extend_from_slice(found);

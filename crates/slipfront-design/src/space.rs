@@ -78,8 +78,8 @@ impl Space {
         }
     }
 
-    /// A draft for a start from a known one: patches get at least one patch; none if the known draft has no
-    /// numbers to vary.
+    /// A draft for a start from a known one: a draft of patches has at least one; none if the known draft has
+    /// no numbers to vary.
     pub(crate) fn near(&self, draft: &Draft, draws: &mut Draws) -> Option<Draft> {
         match (self, draft) {
             (Self::Patches { ranges, .. }, Draft::Patches(patches)) => {

@@ -120,8 +120,8 @@ pub struct Cut {
 }
 
 impl Bounds<'_> {
-    /// Share of a time limit, in seconds, that has passed; 1 if the limit is not positive, and 0 without a
-    /// limit.
+    /// Share of a time limit, in seconds, that has passed, at most 1; 1 if the limit is not positive, and 0
+    /// without a limit.
     pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
         match most {
             Some(most) if passed < most => passed / most,

@@ -1,4 +1,4 @@
-//! A case in which designs are tried: its runs with a texture, their steps and their ends.
+//! A case in which designs are tried: its runs with a texture, their time steps and durations.
 
 use std::path::Path;
 

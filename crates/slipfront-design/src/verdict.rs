@@ -26,13 +26,13 @@ const NAMED_FINALISTS: usize = 4;
 pub struct FreshValues {
     /// Number of surfaces over which the means are taken: all, unless the texture is lost on some.
     pub surfaces: u64,
-    /// The quantity of the wish in units of mu_s, where runs have it; for a curve the largest mu*.
+    /// The quantity of the wish in units of mu_s, if the runs have it; for a curve, the largest mu*.
     pub wished_star: Option<Mean>,
     /// The largest mu*.
     pub static_friction_star: Mean,
     /// The first peak of mu*.
     pub first_peak_star: Mean,
-    /// Kinetic friction mu_k*, where runs are long enough.
+    /// Kinetic friction mu_k*, if runs are long enough.
     pub kinetic_friction_star: Option<Mean>,
 }
 

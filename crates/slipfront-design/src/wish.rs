@@ -129,7 +129,7 @@ impl Measured {
         }
     }
 
-    /// A quantity; NaN where the run has none.
+    /// A quantity; NaN if the run does not have it.
     pub(crate) fn get(&self, quantity: Quantity) -> f64 {
         let kinetic = || self.kinetic_star.unwrap_or(f64::NAN);
         match quantity {

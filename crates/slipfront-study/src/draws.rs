@@ -1,4 +1,4 @@
-//! Random numbers of searches and calibrations, equal on every machine.
+//! Random numbers of searches and calibrations, identical on every machine.
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};

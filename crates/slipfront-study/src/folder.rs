@@ -41,8 +41,8 @@ impl StudyFolder {
     /// the records.
     ///
     /// # Errors
-    /// When the folder contains other things, or results that were edited afterwards and `force` does not
-    /// allow to replace them; when another process uses it, or it cannot be written to.
+    /// When the folder contains other things, or results that were edited afterwards, unless `force` is set;
+    /// when another process uses it, or it cannot be written to.
     pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
         STUDIES.is_used(path)?;
         if is_of_figures(path) {

@@ -228,8 +228,8 @@ mod tests {
         assert!((found.half_width.unwrap() - expected).abs() < 1e-4, "{found:?}");
     }
 
-    /// F(2, d) has a closed form, P(F > f) = (1 + 2 f/d)^(-d/2), so the p-value is (1 + T^2/(n - 1))^(-(n -
-    /// 2)/2).
+    /// F(2, d) has a closed form, P(F > f) = (1 + 2 f/d)^(-d/2), so the p-value is
+    /// `(1 + T^2/(n - 1))^(-(n - 2)/2)`.
     #[test]
     fn the_test_is_that_of_hotelling() {
         let fits = [

@@ -56,7 +56,7 @@ struct RunSpec {
     n_blocks: usize,
     /// Whether the drive stops while blocks slide, for an additional time that `steps` do not include.
     is_held: bool,
-    /// Memory of a run among others, in bytes.
+    /// Memory of a run that is made at the same time as others, in bytes.
     memory: f64,
     /// Memory of only the case of a run, in bytes.
     memory_of_case: f64,

@@ -94,8 +94,8 @@ impl Unknown {
         })
     }
 
-    /// The unknown for a key and its range as written in a file: `[0.3, 0.9]`, `["1 um", "5 um"]`, or `{ from
-    /// = 0.03, to = 0.5, scale = "log" }`.
+    /// The unknown for a key and its range, as written in a file: `[0.3, 0.9]`, `["1 um", "5 um"]`, or
+    /// `{ from = 0.03, to = 0.5, scale = "log" }`.
     ///
     /// # Errors
     /// A sentence, when the range has another form, its ends have different units, or [`new`](Self::new)

@@ -40,7 +40,7 @@ impl<'a> Curve<'a> {
         self.s5[self.peak]
     }
 
-    /// A number of values that is a share of the record, given as `count` of 400.
+    /// Number of values in a share of the record, given as `count` of 400.
     pub(super) fn of_400(&self, count: usize) -> usize {
         window(self.y, count)
     }
@@ -51,7 +51,7 @@ pub(crate) fn level(y: &[f64]) -> f64 {
     mean(&y[y.len() / 2..])
 }
 
-/// Number of values that is a share of `y`, given as `count` of 400; one at least.
+/// Number of values in a share of `y`, given as `count` of 400; at least one.
 fn window(y: &[f64], count: usize) -> usize {
     ((count * y.len() + 200) / 400).max(1)
 }

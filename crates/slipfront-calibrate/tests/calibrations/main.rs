@@ -537,7 +537,7 @@ fn a_key_of_the_instrument_may_be_unknown() {
         .unwrap();
     let end = |k: usize| of_gain["interval"][k].as_f64().unwrap();
     assert!(end(0) <= 1.0 && 1.0 <= end(1) && end(1) - end(0) < 0.05, "{text}");
-    // The case that is written has no key of the instrument.
+    // The written case has no key of the instrument.
     assert!(
         !fs::read_to_string(out.join("case.toml"))
             .unwrap()

@@ -43,7 +43,7 @@ fn from_above(drawn: &mut Sketch) {
         for (di, dj, colour) in [(1, 0, 0), (0, 1, 0), (1, 1, 1), (-1, 1, 1)] {
             let (to_i, to_j) = (i + di, j + dj);
             if (0..BLOCKS).contains(&to_i) && (0..BLOCKS).contains(&to_j) {
-                // Diagonals cross where they are straight.
+                // Move the zigzags of diagonals away from the middle, so that they cross at straight parts.
                 let middle = if colour == 0 { 0.5 } else { 0.3 };
                 let spring = spring(place(i, j), place(to_i, to_j), middle);
                 add(drawn, StrokeStyle::Line(colour), spring);

@@ -93,8 +93,8 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     Response::of_values(label, &middles, &shares)
 }
 
-/// Kolmogorov-Smirnov distance between a sample and the standard Gaussian, times sqrt(n): below 1.36 with 95
-/// % confidence for a Gaussian sample.
+/// Kolmogorov-Smirnov distance between a sample and the standard Gaussian, times sqrt(n): below 1.36 with
+/// 95 % confidence if the sample is Gaussian.
 fn distance_to_normal(mut sorted: Vec<f64>) -> f64 {
     let normal = Normal::standard();
     sorted.sort_by(f64::total_cmp);

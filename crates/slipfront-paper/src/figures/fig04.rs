@@ -91,8 +91,8 @@ fn first_slip_rank(run: &FigureRun) -> Result<f64, PaperError> {
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
 }
 
-/// Fall of the contact stress of the first block to slip within 2 t* after its slip, over its rise within 2
-/// t* before. In that time, a wave travels only two blocks, so the fall is local and not that of the whole
+/// Fall of the contact stress of the first block to slip within 2 t* after its slip, over its rise within
+/// 2 t* before. In that time, a wave travels only two blocks, so the fall is local, not that of the whole
 /// slider.
 fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, run.first_block()?);
@@ -121,7 +121,7 @@ fn slipped_at_peak(run: &FigureRun) -> Result<f64, PaperError> {
     Ok(100.0 * slipped as f64 / run.case.model.surface.n_contact() as f64)
 }
 
-/// Time from the peak until the last block has slipped first, % of t_s*.
+/// Time from the peak until every block has slipped, % of t_s*.
 fn rest_slips_within(run: &FigureRun) -> Result<f64, PaperError> {
     let onset = run.record.summary.onset_time_star;
     Ok(100.0 * (run.time_of_share(1.0)? - onset) / onset)

@@ -32,7 +32,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         let asked = case.texture.asked_percent.unwrap_or(f64::NAN);
         misses.push((case.texture.meshed_percent - asked).abs());
         if let CavitySize::Coverage(percent) = cavity.size {
-            // Eq. 18 as printed has N^2 where the area is N l^2.
+            // Eq. 18 as printed has N^2 in place of N; the area of the slider is N l^2.
             let n = case.model.lattice.n_blocks() as f64;
             let lambda_square =
                 n * n * percent / (100.0 * 0.5 * TAU * (1.0 - f64::from(cavity.s) * cavity.w.powi(2)));

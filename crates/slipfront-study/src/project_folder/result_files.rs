@@ -40,8 +40,8 @@ pub struct ResultFiles {
 }
 
 impl ResultFiles {
-    /// The result files of a folder. `of` names the content, such as `study`; `force` allows to replace
-    /// edited and foreign files.
+    /// The result files of a folder. `of` names the content, such as `study`; `force` allows the replacement
+    /// of edited and foreign files.
     pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -188,8 +188,8 @@ impl Batch {
         let staged = self.expect_folder(name).and_then(|()| {
             let stage = || {
                 make_folders(folder_of(&path))?;
-                // There may be too many files to keep them open. No lock is needed, because only one process
-                // uses the folder.
+                // There may be too many files to keep them open. The caller has locked the folder against
+                // other processes.
                 let file = write_beside(&path, fill)?.into_temp_path();
                 let listed = ManifestFile::of_copy(name, &file)?;
                 Ok((file, listed))
