@@ -1,7 +1,7 @@
 //! The process whose threads the engine uses.
 //!
-//! A forked process lacks its pool of threads, and locks that other threads held stay locked: a child that
-//! used them would wait for ever. All uses of them go through this file, and are refused in such a child.
+//! A forked child lacks the pool of threads, and locks that other threads held stay locked: a child that used
+//! them would wait forever. All uses of them go through this file, which refuses them in such a child.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};

@@ -4,12 +4,13 @@
 //! $ cargo run --release -p slipfront-calibrate --example calibration_coverage -- 1000 1000 5000
 //! ```
 //!
-//! The arguments are the numbers of training runs and of records, of 30 x 30 blocks with six unknowns, over
-//! surfaces that training has not drawn, at 1 % and 5 % of noise. Prints for every unknown: the share of
-//! records whose interval of 90 % holds the truth, in all and in each quarter of the range; the median width
-//! of the interval over 0.9 of the range; the probability that the ranks of the truth are uniform (Kolmogorov
-//! and Smirnov). Then the share of records that the check refuses, as they are and with a drift, and
-//! processor times. The third number is that of the first record: other numbers are other records.
+//! The arguments are the number of training runs, the number of records, and the number of the first record;
+//! another first number selects other records. The slider has 30 x 30 blocks and six unknowns. The records
+//! come from surfaces that training has not used, with 1 % and 5 % of noise. For every unknown, the program
+//! prints the share of records with the true value in the interval of 90 %, in total and for each quarter of
+//! the range; the median width of the interval over 0.9 of the range; and the probability that the ranks of
+//! the true values are uniform (Kolmogorov-Smirnov test). It then prints the share of records that the check
+//! refuses, without and with a drift, and processor times.
 
 #[path = "support/random.rs"]
 mod random;
@@ -32,7 +33,7 @@ use crate::random::{normal, uniform};
 /// Values of a record, one per t*.
 const VALUES: usize = 399;
 
-/// Seeds of the surfaces of records; those of training runs are small.
+/// First seed of the surfaces of records; the seeds of training runs are smaller.
 const FIRST_SEED: u64 = 3_000_000_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -141,7 +142,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
     ))
 }
 
-/// Friction without noise of records over surfaces of their own.
+/// Friction of records without noise, each on its own surface.
 fn records_of(set_up: &SetUp, truths: &[Vec<f64>], first: usize) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     let go_on = AtomicBool::new(false);
     let curves: Vec<_> = truths
@@ -153,7 +154,8 @@ fn records_of(set_up: &SetUp, truths: &[Vec<f64>], first: usize) -> Result<Vec<V
     Ok(curves.ok_or("given up")?.into_iter().flatten().collect())
 }
 
-/// A record with noise of a share of its mean, and a drift of a share of friction over it.
+/// A record with added noise, as a share of its mean, and a linear drift, as a share of friction over the
+/// record.
 fn noisy(curve: &[f64], noise: f64, drift: f64, record: usize) -> Vec<f64> {
     let mut state = (record as u64 + 7).wrapping_mul(0xE703_7ED1_A0B4_28DB) ^ noise.to_bits();
     let deviation = noise * curve.iter().sum::<f64>() / curve.len() as f64;
@@ -202,7 +204,7 @@ fn report(unknowns: &[Unknown], truths: &[Vec<f64>], fits: &[Estimate]) {
     println!("pairs told: {pairs} in {} records", fits.len());
 }
 
-/// Probability that uniform ranks have a Kolmogorov-Smirnov distance as large:
+/// Probability that uniform ranks have at least this Kolmogorov-Smirnov distance:
 /// `2 sum (-1)^(k-1) exp(-2 k^2 x^2)`.
 fn uniformity(ranks: &mut [f64]) -> f64 {
     ranks.sort_by(f64::total_cmp);

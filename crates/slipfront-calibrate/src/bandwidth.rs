@@ -1,16 +1,16 @@
-//! How fast friction of a record changes, and how much its values scatter.
+//! The fastest change of friction in a record, and the noise of its values.
 
 use slipfront_run::measured::MeasuredRecord;
 
 use crate::summaries::quantiles;
 use slipfront_study::statistics::mean;
 
-/// Standard deviations of the noise by which friction has to change before it counts as a change.
+/// Smallest change of friction that is not attributed to noise, in standard deviations of the noise.
 const CHANGE: f64 = 12.0;
 
-/// Standard deviation of the noise of a record, by its second differences: it is 1/sqrt(6) of theirs where
-/// friction is straight over three values, and half of those of a normal distribution exceed 0.6745 standard
-/// deviations.
+/// Standard deviation of the noise of a record, from its second differences. Where friction is linear over
+/// three values, their standard deviation is sqrt(6) times that of the noise. Half of the values of a normal
+/// distribution exceed 0.6745 standard deviations in magnitude.
 pub(crate) fn noise(y: &[f64]) -> f64 {
     let second = y.windows(3).map(|y| (y[0] - 2.0 * y[1] + y[2]).abs());
     quantiles(&second.collect::<Vec<_>>(), [0.5])[0] / (0.6745 * 6.0_f64.sqrt())
@@ -21,11 +21,12 @@ pub fn noise_share(record: &MeasuredRecord) -> f64 {
     noise(&record.y) / mean(&record.y).abs()
 }
 
-/// Standard errors of the noise of a record by which it has to be less than the stated one to count as less.
+/// Number of standard errors by which the noise of a record must be below the stated noise to count as less.
 const CERTAIN: f64 = 3.0;
 
-/// Standard deviation of the noise, over mean friction, that a record lacks to have as much as is stated: 0
-/// where it has as much but for chance. The deviation of n values has a relative error of about 1/sqrt(n).
+/// Standard deviation, over mean friction, of the noise that has to be added to a record to reach the stated
+/// noise; 0 if the difference may be chance. The relative error of the standard deviation of n values is
+/// about 1/sqrt(n).
 pub(crate) fn missing_noise(record: &MeasuredRecord, stated: f64) -> f64 {
     let own = noise_share(record);
     let most = own * (1.0 + CERTAIN / (record.y.len() as f64).sqrt());
@@ -35,9 +36,9 @@ pub(crate) fn missing_noise(record: &MeasuredRecord, stated: f64) -> f64 {
     }
 }
 
-/// Frequency in Hz of a swing over the whole range of friction that changes as fast as a record over time
-/// does at most: `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by
-/// more than noise can; none if it never does.
+/// Frequency in Hz of a sinusoid with the range and the fastest rate of change of the record:
+/// `f = rate/(pi range)`. The rate is taken over the shortest time in which friction changes by more than
+/// noise does; none if there is no such change.
 pub(crate) fn fastest_swing(record: &MeasuredRecord) -> Option<f64> {
     let (x, y) = (&record.x, &record.y);
     let [low, high] = quantiles(y, [0.0, 1.0]);
@@ -69,9 +70,9 @@ mod tests {
         MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient)
     }
 
-    /// A swing of 14 Hz and amplitude 0.1 about 0.5, every millisecond. Its rate over 8 ms, in which it
-    /// exceeds the noise twelve times, is that at the steepest place but for (2 pi 14 0.004)^2/6 = 2 %, and
-    /// noise adds some 3 standard deviations over such a change.
+    /// A sinusoid of 14 Hz and amplitude 0.1 about 0.5, sampled every millisecond. Over 8 ms it changes by
+    /// more than twelve times the noise. The mean rate over that time is (2 pi 14 0.004)^2/6 = 2 % less than
+    /// the largest rate, and noise adds some 3 standard deviations to such a change.
     #[test]
     fn a_swing_has_its_frequency_and_its_noise() {
         let swing = |k: usize| 0.5 + 0.1 * (std::f64::consts::TAU * 0.014 * k as f64).sin();
@@ -85,13 +86,13 @@ mod tests {
         );
         let frequency = fastest_swing(&found).unwrap();
         assert!((frequency / 14.0 - 1.0).abs() < 0.3, "{frequency}");
-        // 2000 values tell a deviation to 2 %; curvature of the swing adds to it, 0.1 (2 pi 0.014)^2 to
-        // 0.012.
+        // 2000 values give a standard deviation to 2 %; the curvature of the sinusoid adds
+        // `0.1 (2 pi 0.014)^2` to 0.012.
         let share = noise_share(&found);
         assert!((share / 0.01 - 1.0).abs() < 0.1, "{share}");
     }
 
-    /// 2000 values tell a deviation to 2 %: of 1 % less than 0.94 % lacks something.
+    /// 2000 values give a standard deviation to 2 %: where 1 % is stated, noise is missing below 0.94 %.
     #[test]
     fn a_quiet_record_lacks_noise() {
         let with = |noise: f64| {

@@ -1,4 +1,4 @@
-//! Estimates of unknowns from records, by a training.
+//! Estimates of the unknowns from records, by regression on training runs.
 
 use rayon::prelude::*;
 use slipfront_regression::{Prediction, Regression};
@@ -16,17 +16,19 @@ use crate::training::Training;
 /// unknown.
 pub(crate) const UNDETERMINED: f64 = 0.8;
 
-/// Correlation from which errors of two unknowns make a pair, and least width of both intervals of a pair.
+/// Least correlation of the errors of two unknowns that form a pair, and least width of both of their
+/// intervals.
 const OF_A_PAIR: f64 = 0.8;
 const WIDTH_OF_A_PAIR: f64 = 0.2;
 
-/// A training whose summaries are regressed at one level of noise.
+/// Regressions of the unknowns on the summaries of a training, at one level of noise.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     /// Units of the friction of the records in their summaries.
     units: Vec<f64>,
     scaling: Scaling,
-    /// Shares of the ranges of the training runs: for every unknown the shares of all runs.
+    /// Values of the unknowns in the training runs, as shares of the ranges: for every unknown those of all
+    /// runs.
     truths: Vec<Vec<f64>>,
     regressions: Vec<Regression>,
     check: Check,
@@ -37,8 +39,8 @@ pub struct Calibration {
 pub struct Pair {
     /// Numbers of the two unknowns.
     pub unknowns: [usize; 2],
-    /// Correlation of the errors of both: above 0 where both may be larger than found together, below 0 where
-    /// one may be larger and the other smaller.
+    /// Correlation of their errors: above 0 if both unknowns may be larger than estimated, below 0 if one may
+    /// be larger and the other smaller.
     pub correlation: f64,
 }
 
@@ -53,17 +55,19 @@ pub struct Estimate {
     pub pairs: Vec<Pair>,
     /// Whether the model can have made the records.
     pub misfit: Misfit,
-    /// Likeness of the records to every training run, in the predictions of the unknowns; the sum is 1.
+    /// Weight of every training run, by the similarity of its predictions of the unknowns to those from the
+    /// records; the sum is 1.
     likeness: Vec<f64>,
     predictions: Vec<Prediction>,
 }
 
-/// Least number of training runs that count where records are compared with them.
+/// Least effective number of training runs that records are compared with.
 const LIKE_AT_LEAST: f64 = 50.0;
 
 impl Calibration {
-    /// Learns from a training the relation between records and unknowns, for records with white noise whose
-    /// standard deviation is the share `noise` of their mean friction. `grids` are those of the set-up.
+    /// Learns the relation between records and unknowns from a training. The records have white noise; its
+    /// standard deviation is the share `noise` of their mean friction. `grids` are the sample points of the
+    /// set-up.
     pub fn new(training: &Training, grids: &[SamplePoints], noise: f64) -> Self {
         let units = units_of_friction(training, grids);
         let rows: Vec<Vec<f64>> = training
@@ -102,7 +106,7 @@ impl Calibration {
         }
     }
 
-    /// Estimate from records, each made by [`SamplePoints::record`].
+    /// Estimates the unknowns from records, each returned by [`SamplePoints::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
         let summaries = self.scaling.scaled(&summaries_of(records, &self.units));
         let predictions: Vec<_> = self
@@ -132,8 +136,8 @@ impl Calibration {
         }
     }
 
-    /// How far the median of every unknown moves from some records to others of the same unknowns: the median
-    /// of all pairs, as a share of the range.
+    /// Shift of the median of every unknown between two sets of records with the same unknowns: the median
+    /// over all pairs, as a share of the range.
     pub(crate) fn moved(&self, from: &[Curves], to: &[Curves]) -> Vec<f64> {
         let medians = |records: &Curves| -> Vec<f64> {
             let found = self.estimate(records).distributions;
@@ -157,8 +161,8 @@ impl Calibration {
         (0..self.truths.len()).map(of_unknown).collect()
     }
 
-    /// Likeness of a record with these predictions to every training run: a product of normal weights, wide
-    /// enough to leave enough runs.
+    /// Weight of every training run for a record with these predictions: a product of Gaussians, wide enough
+    /// that at least [`LIKE_AT_LEAST`] runs effectively count.
     fn likeness(&self, predictions: &[Prediction]) -> Vec<f64> {
         let runs = self.truths.first().map_or(0, Vec::len);
         let distance = |run: usize| -> f64 {
@@ -209,8 +213,8 @@ impl Calibration {
         (0..count).map(point).collect()
     }
 
-    /// Widths of the intervals of 90 % for records like these, for every unknown, as a share of its range:
-    /// the mean over training runs that are left out.
+    /// Widths of the intervals of 90 % of every unknown for records like these, as shares of its range: the
+    /// means over the most similar training runs, each of them left out.
     pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
         let mut alike: Vec<usize> = (0..of.likeness.len()).collect();
         alike.sort_by(|&a, &b| of.likeness[b].total_cmp(&of.likeness[a]));
@@ -218,8 +222,8 @@ impl Calibration {
         self.widths_of(&alike)
     }
 
-    /// Widths of the intervals of 90 % for records over all of the ranges, as [`widths`](Self::widths) gives
-    /// them for some.
+    /// Widths of the intervals of 90 % as [`widths`](Self::widths) returns, but averaged over all training
+    /// runs.
     pub(crate) fn mean_widths(&self) -> Vec<f64> {
         let runs = self.truths.first().map_or(0, Vec::len);
         self.widths_of(&Vec::from_iter(0..runs))
@@ -240,7 +244,7 @@ impl Calibration {
             .collect()
     }
 
-    /// Pairs of unknowns whose errors go together in training runs like the record.
+    /// Pairs of unknowns with correlated errors in training runs like the record.
     fn pairs(&self, summaries: &[f64], widths: &[f64]) -> Vec<Pair> {
         let wide: Vec<usize> = (0..widths.len())
             .filter(|&j| widths[j] > WIDTH_OF_A_PAIR)
@@ -315,8 +319,8 @@ mod tests {
         let fit = calibration.estimate(&[record(0)]);
         assert_eq!(fit.undetermined, [2]);
         for (distribution, truth) in fit.distributions.iter().zip(point).take(2) {
-            // The interval of 99 % of both: a hundredth of the range would be missed by 1 % of noise over 100
-            // values.
+            // The interval of 99 % of both: with 1 % of noise over 100 values, a hundredth of the range would
+            // be missed.
             let [low, high] = distribution.interval(0.99);
             assert!(
                 low <= truth && truth <= high && high - low < 0.1,
@@ -354,7 +358,8 @@ mod tests {
         assert!(foreign.distance > 1.0, "{foreign:?}");
     }
 
-    /// A record in other units or of another slider has a friction that no training run has.
+    /// The mean friction of a record in other units or of another slider is outside of that of the training
+    /// runs.
     #[test]
     fn records_of_another_friction_are_refused() {
         let calibration = calibration();
@@ -372,7 +377,8 @@ mod tests {
         assert!(!own.misfit.is_outside(), "{:?}", own.misfit);
     }
 
-    /// Noise moves a mean that no unknown moves; 20 records of 1 % lie within 5 standard errors of the mean.
+    /// Noise alone changes a mean that depends on no unknown; 20 records with 1 % of noise lie within 5
+    /// standard errors of the mean.
     #[test]
     fn a_mean_that_is_the_same_in_all_runs_refuses_no_good_record() {
         let mut training = training(300);
@@ -385,8 +391,8 @@ mod tests {
         }
     }
 
-    /// Forces of a quintillionth of a newton tell as much as those of a newton: powers of two keep every
-    /// digit.
+    /// Forces of a quintillionth of a newton give the same estimates as forces of a newton: scaling by powers
+    /// of two keeps every digit.
     #[test]
     fn the_size_of_forces_does_not_matter() {
         let found = |newtons: f64| {

@@ -1,19 +1,19 @@
-//! Values at the end of the range of a sensor.
+//! Clipping: values at the end of the range of a sensor.
 
 use serde::Serialize;
 use slipfront_run::measured::MeasuredRecord;
 
 use crate::bandwidth::noise;
 
-/// Number of equal values, at the least and as a multiple of those of the next value, that chance does not
-/// make: the values of a record become rarer towards its largest one.
+/// Least number of equal values that are not chance, also as a multiple of the number at the next value:
+/// values of a record become rarer towards the largest one.
 const EQUAL: usize = 5;
 
 /// Values that differ by less than this share of the range of a record are equal.
 const ROUNDING: f64 = 1e-9;
 
-/// Largest distance of the next value, in standard deviations of the noise: digits that are coarser than
-/// noise make equal values, too.
+/// Largest distance of the next value, in standard deviations of the noise: a resolution coarser than the
+/// noise makes equal values, too.
 const FINE: f64 = 2.0;
 
 /// Equal values at the end of a record's range.
@@ -23,13 +23,13 @@ pub struct Clipped {
     pub record: usize,
     /// Number of the values.
     pub values: usize,
-    /// Share of the record that they are.
+    /// Number of the values as a share of the record.
     pub share: f64,
 }
 
 impl Clipped {
-    /// The values of largest magnitude of the record of this number, if more of them are equal than chance
-    /// makes.
+    /// The values of largest magnitude in the record of this number, if more of them are equal than by
+    /// chance.
     pub fn of(record: usize, measured: &MeasuredRecord) -> Option<Self> {
         let mut sorted: Vec<f64> = measured.y.iter().map(|y| y.abs()).collect();
         sorted.sort_by(|one, other| other.total_cmp(one));
@@ -74,7 +74,7 @@ mod tests {
             let found = clipped(noisy().map(|y| sign * y.min(0.48))).unwrap();
             assert!((0.05..0.2).contains(&found.share), "{found:?}");
         }
-        // With a step of the converter of 0.002.
+        // The converter has a resolution of 0.002.
         let found = clipped(noisy().map(|y| 0.002 * (y.min(0.48) / 0.002).round()));
         assert!(found.is_some_and(|found| found.share > 0.05), "{found:?}");
     }
@@ -85,7 +85,7 @@ mod tests {
         for digit in [0.002, 0.01, 0.02, 0.03, 0.05] {
             assert_eq!(clipped(noisy().map(|y| digit * (y / digit).round())), None);
         }
-        // Steady sliding at one digit for ever.
+        // Steady sliding at one constant value to the end.
         assert_eq!(clipped((0..500).map(|k| f64::from(k.min(50)))), None);
         assert_eq!(clipped((0..500).map(|_| 1.0)), None);
     }

@@ -1,5 +1,5 @@
-//! The curve of the model that lies closest to records, where the unknowns determine it: without random
-//! coefficients there is one whose difference from a good record is noise.
+//! Search for the curve of the model that is closest to the records, if the unknowns determine the curve:
+//! without random coefficients, the residuals between a good record and its closest curve are noise.
 
 use serde::Serialize;
 use slipfront_regression::least_squares;
@@ -15,64 +15,65 @@ use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, MOST_HALVINGS, SetUp};
 use crate::summaries::deviation;
 
-/// Number of the surface of the first run; all surfaces are alike.
+/// Number of the surface of the first run; without random coefficients all surfaces are equal.
 const FIRST_SURFACE: u64 = 1;
 
-/// Largest ratio of the differences from the closest curve to the noise that the file states: intervals for
-/// less noise are too narrow.
+/// Largest accepted ratio of the residuals to the noise that the file states: if the noise is larger than
+/// stated, the intervals are too narrow.
 const MOST_NOISE: f64 = 1.2;
 
-/// Standard errors by which differences of neighbouring values may be correlated. Noise is by more than half
-/// of them, one time in 40, and a search that ends near the closest curve leaves the rest.
+/// Largest accepted correlation of neighbouring residuals, in standard errors. The correlation of noise alone
+/// exceeds half of that one time in 40; the rest allows for a search that ends near the closest curve.
 const MOST_CORRELATED: f64 = 4.0;
 
-/// Ratio of differences to noise over a part of the records with which a search goes on to the next part.
+/// Ratio of residuals to noise over a part of the records at which a search goes on to the next part.
 const NEAR: f64 = 1.5;
 
-/// Shares of the records, from their beginning, over which curves are compared one after the other: where the
-/// phases of stick-slip agree over a part, they nearly agree over twice of it.
+/// Shares of the records, from their beginning, over which curves are compared one after the other: if the
+/// phases of stick-slip agree over a part, they nearly agree over a part twice as long.
 const PARTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
-/// Differences of curves from those at the finest time step, in units of the noise, with which a step is fine
-/// enough, and the number of points at which they are taken. Slips begin at a step, so that a coarse one
-/// moves their phases.
+/// Largest difference of a curve from that at the finest time step, in units of the noise, for a step that is
+/// fine enough; and the number of points of the ranges at which it is tested. Slips begin at whole steps, so
+/// a coarse step shifts their phases.
 const STEP_ERROR: f64 = 0.25;
 const STEP_POINTS: usize = 5;
 
-/// Number of times by which the time step is halved at the most for whole searches. At still finer steps a
-/// curve that is near already is followed.
+/// Largest number of halvings of the time step for whole searches. At still finer steps, the search only
+/// refines a curve that is already close.
 const SEARCHED_HALVINGS: u32 = 5;
 
 /// Number of searches, and runs of a generation.
 const SEARCHES: usize = 5;
 const DRAFTS: usize = 24;
 
-/// Difference of a number of a search for a derivative, in units of the deviation from which it begins.
+/// Increment of a search variable for the finite difference of a derivative, in units of its initial standard
+/// deviation.
 const BESIDE: f64 = 0.02;
 
-/// Dampings of a step, as shares of the squares of the derivatives.
+/// Damping factors of a Levenberg-Marquardt step, as shares of the squared derivatives.
 const DAMPING: [f64; 3] = [1e-6, 0.1, 10.0];
 
-/// Generations without progress after which a search over a part ends, and the share of the distance that is
-/// progress.
+/// Number of generations without progress after which a search over a part ends, and the least relative
+/// decrease of the distance that counts as progress.
 const PATIENCE: usize = 5;
 const PROGRESS: f64 = 0.002;
 
-/// Share by which the distances of two searches may differ that have found the same curve.
+/// Largest relative difference of the distances of two searches that have found the same curve.
 const SAME: f64 = 0.005;
 
-/// Differences between records and the curve of the model that lies closest to them.
+/// Residuals between the records and the curve of the model that is closest to them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closest {
-    /// Root of their mean square, over the standard deviation of the noise that the file states.
+    /// Root mean square of the residuals, over the standard deviation of the noise that the file states.
     pub noise_ratio: f64,
-    /// Correlation of differences of neighbouring values: 0 of white noise.
+    /// Correlation of neighbouring residuals: 0 for white noise.
     pub correlation: f64,
-    /// Correlation above which the differences are not taken for noise.
+    /// Correlation above which the residuals are not accepted as noise.
     pub most_correlated: f64,
-    /// Share of the records, from their beginning, over which they were compared.
+    /// Share of the records, from their beginning, that was compared.
     pub share: f64,
-    /// Number of times by which the time step of the case was halved for it.
+    /// Number of halvings of the time step of the case.
     pub halvings: u32,
 }
 
@@ -82,22 +83,22 @@ impl Closest {
         self.is_noisier() || self.is_correlated()
     }
 
-    /// Whether the differences are larger than the noise.
+    /// Whether the residuals are larger than the noise.
     pub fn is_noisier(&self) -> bool {
         self.noise_ratio > MOST_NOISE
     }
 
-    /// Whether the differences are no white noise.
+    /// Whether the residuals are not white noise.
     pub fn is_correlated(&self) -> bool {
         self.correlation > self.most_correlated
     }
 
-    /// Whether the records differ over their whole length by little more than the noise.
+    /// Whether the residuals over the whole records are little more than the noise.
     fn is_nearly_passed(&self) -> bool {
         self.is_refused() && self.share == 1.0 && self.noise_ratio < NEAR
     }
 
-    /// Differences of every record in units of the noise, over this share of the records.
+    /// Summary of the residuals of every record, in units of the noise, over this share of the records.
     fn of(differences: &[Vec<f64>], share: f64, halvings: u32) -> Self {
         let all = differences.iter().flatten();
         let count = all.clone().count() as f64;
@@ -113,24 +114,24 @@ impl Closest {
         }
     }
 
-    /// Whether another search ended at the same distance over the same part, so that no further one is
-    /// needed.
+    /// Whether another search ended at the same distance over the same part; then no further one is needed.
     fn agrees_with(&self, other: &Self) -> bool {
         let apart = (self.noise_ratio - other.noise_ratio).abs();
         self.share == other.share && apart < SAME * other.noise_ratio
     }
 
-    /// Whether the curve lies closer than another one, or follows the records farther.
+    /// Whether the curve follows a longer part of the records than another one, or is closer over the same
+    /// part.
     fn is_closer_than(&self, other: &Self) -> bool {
         (self.share, -self.noise_ratio) > (other.share, -other.noise_ratio)
     }
 }
 
-/// Looks for the closest curve among those of the unknowns that an estimate has drawn, where the unknowns
-/// determine a curve; none where random coefficients make curves of the same unknowns differ. Returns it with
-/// the set-up of its time step, which is that of the case for records that were computed at such steps, and
-/// otherwise a finer one. `drawn` are points of the ranges, `noise` is that of a value of the records, as a
-/// share of their mean friction.
+/// Searches for the closest curve, from points that were drawn from an estimate; none if random coefficients
+/// make curves with the same unknowns differ. Returns the result with the set-up at its time step: the step
+/// of the case for records that were computed at that step, and otherwise a finer one. `drawn` are points of
+/// the ranges; `noise` is the standard deviation of a value of the records, as a share of their mean
+/// friction.
 ///
 /// # Errors
 /// When a run cannot be made or kept, and after a stop.
@@ -165,7 +166,7 @@ pub fn closest(
         }
         (found, set_up) = (search.closest(&fine)?, fine);
     }
-    // Phases of slips may still move by what is left of the step.
+    // The phases of slips may still shift by the remaining error of the time step.
     while found.closest.is_nearly_passed() && set_up.halvings < MOST_HALVINGS {
         set_up = set_up.halved(1);
         let whole = Part::of(&set_up, 1.0);
@@ -175,8 +176,8 @@ pub fn closest(
     Ok(Some((set_up, found.closest)))
 }
 
-/// The set-up with the largest time step whose curves are those of the finest one, but for less than the
-/// noise.
+/// The set-up with the largest time step at which curves differ from those at the finest step by less than
+/// the noise.
 fn fine_enough(
     maker: &mut RunMaker,
     set_up: &SetUp,
@@ -215,17 +216,17 @@ struct Search<'a, 'm> {
     begin: Vec<[f64; 2]>,
 }
 
-/// A curve with the numbers of a search that make it.
+/// A curve with the search variables that produce it.
 #[derive(Clone)]
 struct Found {
     numbers: Vec<f64>,
-    /// Differences of every record in units of the noise.
+    /// Residuals of every record in units of the noise.
     differences: Vec<Vec<f64>>,
     closest: Closest,
 }
 
 impl Search<'_, '_> {
-    /// The closest curve of a set-up. Searches end where the differences are noise.
+    /// The closest curve of a set-up. No further search begins once the residuals are noise.
     fn closest(&mut self, set_up: &SetUp) -> Result<Found, StudyError> {
         let mut best = self.from(set_up, 0)?;
         let mut before = vec![best.closest];
@@ -265,8 +266,8 @@ impl Search<'_, '_> {
         Ok(best)
     }
 
-    /// The closest curve over a part of the records: by descent, and by generations where that does not lead
-    /// to it.
+    /// The closest curve over a part of the records: by descent, and by further generations if descent alone
+    /// does not reach it.
     fn over(
         &mut self,
         part: &Part,
@@ -309,8 +310,8 @@ impl Search<'_, '_> {
         Ok(ranked[0].0.clone())
     }
 
-    /// Descends to a closer curve by the method of Levenberg and Marquardt, with differences of runs for the
-    /// derivatives, as long as that makes progress.
+    /// Improves a curve by the Levenberg-Marquardt method, with derivatives by finite differences, as long as
+    /// that makes progress.
     fn descend(&mut self, part: &Part, mut best: Found) -> Result<Found, StudyError> {
         while !part.is_done(&best.closest) {
             let beside = (0..best.numbers.len()).map(|j| {
@@ -351,13 +352,14 @@ impl Search<'_, '_> {
         Ok(best)
     }
 
-    /// Runs the curve of numbers over a part of the records, and compares it with them.
+    /// Computes the curve of some search variables over a part of the records, and compares it with them.
     fn judge(&mut self, part: &Part, numbers: Vec<Vec<f64>>) -> Result<Found, StudyError> {
         let mut judged = self.judge_all(part, numbers)?;
         Ok(judged.remove(0))
     }
 
-    /// Runs the curves of numbers over a part of the records, and compares them with these.
+    /// Computes the curves of several sets of search variables over a part of the records, and compares them
+    /// with it.
     fn judge_all(&mut self, part: &Part, numbers: Vec<Vec<f64>>) -> Result<Vec<Found>, StudyError> {
         let points: Vec<Vec<f64>> = numbers.iter().map(|numbers| self.point(numbers)).collect();
         let runs = Runs::new(&part.set_up, &points, FIRST_SURFACE);
@@ -373,14 +375,14 @@ impl Search<'_, '_> {
         Ok(judged.collect())
     }
 
-    /// The point of the ranges at numbers of a search.
+    /// The point of the ranges for some search variables.
     fn point(&self, numbers: &[f64]) -> Vec<f64> {
         let all = self.begin.iter().zip(numbers);
         all.map(|([mean, deviation], x)| (mean + deviation * x).clamp(0.0, 1.0))
             .collect()
     }
 
-    /// Differences between the records and curves of a part, in units of the noise.
+    /// Residuals between the records and curves of a part, in units of the noise.
     fn differences(&self, curves: &Curves) -> Vec<Vec<f64>> {
         let records = self.records.iter().zip(curves).zip(&self.deviations);
         let differences = records.map(|((record, curve), deviation)| {
@@ -404,8 +406,8 @@ struct Part {
 }
 
 impl Part {
-    /// Steps move phases by a share of a period for every slip, so that a part, which has fewer slips, needs
-    /// no steps as fine as the whole does.
+    /// The first part of the records, with its own time step: the step shifts the phase at every slip, so a
+    /// part with fewer slips can have coarser steps than the whole.
     fn of(set_up: &SetUp, share: f64) -> Self {
         let set_up = SetUp {
             halvings: set_up.halvings.saturating_sub(((1.0 / share) as u32).ilog2()),
@@ -438,8 +440,8 @@ mod tests {
         );
         let more: Vec<f64> = noise.iter().map(|e| 1.5 * e).collect();
         assert!(Closest::of(&[more], 1.0, 0).is_noisier());
-        // The mean square of the wave is 0.32, which makes the correlation 0.24, and the noise 1.15 times as
-        // much.
+        // The wave has a mean square of 0.32, which raises the correlation to 0.24 and the residuals to 1.15
+        // times the noise.
         let wave = noise
             .iter()
             .enumerate()

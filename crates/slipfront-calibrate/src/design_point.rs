@@ -5,12 +5,12 @@ use sobol_burley::{NUM_DIMENSIONS, sample};
 /// Shares of the ranges of `count` unknowns in training run `run`, of at most 65536: points that fill the
 /// ranges evenly, for any number of runs.
 ///
-/// They are Sobol's sequence with the directions of Joe and Kuo (SIAM Journal on Scientific Computing 30
-/// (2008) 2635), its digits scrambled as Owen proposed: every unknown alone, and every two together, take
-/// values as even as those of a grid. Multiples of powers of one number do not, since such a power may lie
-/// near a fraction of small numbers.
+/// The points are a Sobol sequence with the direction numbers of Joe and Kuo (SIAM Journal on Scientific
+/// Computing 30 (2008) 2635) and Owen's scrambling: each unknown alone, and each pair of unknowns, has values
+/// as even as those of a grid. Multiples of powers of one number do not have this property, since such a
+/// power may be close to a ratio of small integers.
 pub fn design_point(run: usize, count: usize) -> Vec<f64> {
-    // Beyond the last dimension the sequence begins again, with other digits.
+    // Beyond the last dimension the sequence starts again with another scrambling.
     let share = |j: u32| sample(run as u32, j % NUM_DIMENSIONS, j / NUM_DIMENSIONS);
     (0..count as u32).map(|j| f64::from(share(j))).collect()
 }
@@ -31,8 +31,8 @@ mod tests {
         })
     }
 
-    /// The share of n values below any number differs from it by less than log2(n)/n, for n that are no
-    /// powers of two as well.
+    /// The share of n values below any number differs from that number by less than log2(n)/n, also if n is
+    /// not a power of two.
     #[test]
     fn design_points_fill_the_range_of_every_unknown() {
         for (runs, count) in [(100, 3), (300, 8), (400, 4), (2500, 6), (2500, 12), (100, 300)] {

@@ -1,4 +1,4 @@
-//! Properties of a record that no run of the model has, and what mends each.
+//! Properties of a record that no run of the model has, and how to correct each of them.
 
 use std::path::Path;
 
@@ -8,20 +8,22 @@ use slipfront_run::measured::MeasuredRecord;
 
 use crate::sample_points::SamplePoints;
 
-/// Share of the largest friction above which a record that begins at 0 does not begin with loose springs.
+/// Share of the largest friction: a record that begins at 0 with more than that does not begin with unloaded
+/// springs.
 const LOOSE: f64 = 0.25;
-/// Number of standard deviations of its noise within which friction is taken for constant.
+/// Number of standard deviations of the noise within which friction counts as constant.
 const STILL: f64 = 5.0;
 
-/// Sentences on what makes it doubtful that a record is one of the model, with noise as a share of its mean
-/// friction:
+/// Warnings about a record that the model can hardly have made; `noise` is a share of the mean friction.
+/// There are warnings about:
 ///
 /// - a negative mean;
-/// - rest behind the beginning of the drive, at 0: the line through the first points at a quarter and at half
-///   of the rise to the largest friction crosses the first friction after more than the time between both,
-///   and up to there friction is constant within [`STILL`] standard deviations;
-/// - a record that begins at 0 with more than [`LOOSE`] of its largest friction, where the springs of a run
-///   are loose.
+/// - rest after the drive starts, at 0: the line through the first points at a quarter and at half of the
+///   rise to the largest friction is extrapolated back to the first value of friction. The crossing is later
+///   than the time between these two points, and friction is constant within [`STILL`] standard deviations
+///   until then;
+/// - a record that begins at 0 with more than [`LOOSE`] of its largest friction, while the springs of a run
+///   begin unloaded.
 pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, path: &Path) -> Vec<String> {
     let (places, values) = (grid.places(), grid.record(record));
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -84,7 +86,7 @@ mod tests {
 
     use super::*;
 
-    /// Doubts about a record of 200 values from `start` on whose stated noise is 1 %. Friction is `curve`
+    /// Warnings about a record of 200 values from `start` on, with a stated noise of 1 %. Friction is `curve`
     /// with pseudorandom noise of up to `noise`.
     fn doubts_of(start: f64, noise: f64, curve: impl Fn(f64) -> f64) -> Vec<String> {
         let x: Vec<f64> = (0..200).map(|k| start + 0.01 * f64::from(k)).collect();
@@ -95,7 +97,7 @@ mod tests {
         doubts(&record, &grid, 0.01, Path::new("r.csv"))
     }
 
-    /// Friction that rises to 1 within 0.2 s from `start` on, and falls to 0.8.
+    /// Friction that rises to 1 within 0.2 s after `start`, and then falls to 0.8.
     fn slide(start: f64) -> impl Fn(f64) -> f64 {
         move |x| {
             if x < start + 0.2 {
@@ -124,7 +126,7 @@ mod tests {
         assert!(doubts[0].starts_with("r.csv begins at 0 with 4"), "{doubts:?}");
     }
 
-    /// Rest of half a second, with the zero of the load cell and without.
+    /// Half a second of rest, without and with an offset of the load cell.
     #[test_case(0.0, ""; "zero")]
     #[test_case(0.2, ", and `y_offset` removes the "; "offset")]
     fn rest_is_told(offset: f64, words: &str) {

@@ -55,8 +55,8 @@ pub(crate) const RECORD: &str = "record-";
 /// Table of the file that describes the measuring chain.
 const INSTRUMENT: &str = "instrument";
 
-/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs hold three values of
-/// four, more are a system of equations that memory is too small for.
+/// Smallest and largest number of runs of a training: intervals of 90 % from 100 runs contain only three of
+/// four true values, and the system of equations of more than 5000 runs needs too much memory.
 const RUNS: [u32; 2] = [200, 5000];
 
 /// Largest number of steps of a run for a record: a thousand such runs take days.
@@ -147,12 +147,12 @@ struct RecordKeys {
     to: Option<String>,
 }
 
-/// A record as measured, and the steps in which it is compared.
+/// A record as measured, and the points at which it is compared.
 #[derive(Clone, Debug)]
 pub struct SampledRecord {
     pub(crate) measured: MeasuredRecord,
     pub(crate) grid: SamplePoints,
-    /// Sentences on what makes it doubtful that the record is one of the model.
+    /// Warnings that the model can hardly have made the record.
     doubts: Vec<String>,
     /// Ending of the name of its file.
     pub(crate) ending: String,
@@ -161,7 +161,7 @@ pub struct SampledRecord {
 }
 
 impl SampledRecord {
-    /// Sentences on how the record was read, on lines that were passed over, and on what makes it doubtful.
+    /// Notes on how the record was read, on skipped lines, and on doubts about the record.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         self.measured.notes().chain(self.doubts.iter().cloned())
     }
@@ -186,7 +186,7 @@ impl CalibrationKeys {
         self.records.len().max(1)
     }
 
-    /// How the tables of records are written, as far as the file says.
+    /// Format of the tables of records, as far as the file gives it.
     fn table(&self) -> TableOptions {
         TableOptions::stated(self.header_line, self.decimal, self.separator)
     }
@@ -205,7 +205,7 @@ impl CalibrationFile {
     /// `folder`.
     ///
     /// # Errors
-    /// When it is no TOML, has unknown keys, or values out of their bounds.
+    /// When it is not TOML, has unknown keys, or has values out of bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let (project, keys) = ProjectFile::parse(
             &CALIBRATION,
@@ -221,10 +221,10 @@ impl CalibrationFile {
         Ok(file)
     }
 
-    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    /// Sets keys of the base case, each by a string such as `drive.v_star=0.05`.
     ///
     /// # Errors
-    /// When a text is no override.
+    /// When a string is not an override.
     pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
         self.project.set(overrides)
     }
@@ -272,7 +272,8 @@ impl CalibrationFile {
         self.unknowns().map(drop)
     }
 
-    /// Refuses a key of the table `[instrument]` that there is not; its values may be unknown.
+    /// Refuses an unknown name in the table `[instrument]`. The values of its keys may be unknowns of the
+    /// calibration.
     fn check_names_of_instrument(&self) -> Result<(), CaseError> {
         let known: Vec<&str> = InstrumentKeys::KEYS.iter().map(|key| key.name).collect();
         let mut given = self.project.table(INSTRUMENT)?.into_iter().flatten();
@@ -298,7 +299,7 @@ impl CalibrationFile {
     /// Reads records, one for each of `records` in the file, or any number if it has none.
     ///
     /// # Errors
-    /// When their number is another one, when one cannot be read, or when it is no record of these columns.
+    /// When their number differs, when one cannot be read, or when it has no record in these columns.
     pub fn read(&self, paths: &[PathBuf]) -> Result<Vec<SampledRecord>, StudyError> {
         let expected = self.keys.records.len();
         if paths.is_empty() || (expected > 0 && expected != paths.len()) {
@@ -315,7 +316,7 @@ impl CalibrationFile {
             .collect()
     }
 
-    /// The correction of the record of this number, by its own keys or by those of all records.
+    /// The correction of the record of this number, from its own keys or the common ones.
     fn correction(&self, number: usize, along: Measure) -> Result<Correction, CaseError> {
         let keys = &self.keys;
         let own = keys.records.get(number);
@@ -350,7 +351,7 @@ impl CalibrationFile {
     /// Reads the record of this number from the bytes of its file.
     ///
     /// # Errors
-    /// When it is no record of these columns.
+    /// When it has no record in these columns.
     pub(crate) fn read_bytes(
         &self,
         number: usize,
@@ -390,7 +391,7 @@ impl CalibrationFile {
         self.set_up_at(records.iter().map(|record| record.grid.clone()).collect())
     }
 
-    /// The set-up for records at these places.
+    /// The set-up for records at these sample points.
     pub(crate) fn set_up_at(&self, grids: Vec<SamplePoints>) -> Result<SetUp, StudyError> {
         let conditions = grids.into_iter().enumerate().map(|(number, grid)| Conditions {
             overrides: self.overrides_of(number),
@@ -440,11 +441,12 @@ impl CalibrationFile {
         Ok(set_up)
     }
 
-    /// Refuses a calibration from these records if there is no memory for `threads` runs at once and the
-    /// regressions behind them, and says how many there is memory for.
+    /// Refuses a calibration from these records if memory is too small for `threads` simultaneous runs and
+    /// the regressions after them. The error gives the number of threads that memory is large enough for.
     ///
     /// # Errors
-    /// When the ranges leave the bounds of the case, and with both figures of memory.
+    /// When the ranges leave the bounds of the case, or memory is too small: with the needed and the
+    /// available memory.
     pub fn check_memory(&self, records: &[SampledRecord], threads: usize) -> Result<(), StudyError> {
         expect_memory(&self.memory(records)?, threads)
     }
@@ -455,12 +457,13 @@ impl CalibrationFile {
     /// When the ranges leave the bounds of the case.
     pub fn memory(&self, records: &[SampledRecord]) -> Result<WorkMemory, StudyError> {
         const NUMBER: f64 = size_of::<f64>() as f64;
-        // Runs from which a regression finds its weights, with four numbers of a pair: it takes no less.
+        // Least size of a regression: it finds its weights from 900 runs, with four numbers for each pair of
+        // runs.
         const LEAST: usize = 2 * 900;
         let set_up = self.set_up(records)?;
         let [runs, finer_runs] = [self.keys.runs, self.keys.finer_runs].map(|runs| runs as usize);
         let further = self.further(&set_up)?;
-        // Blocks of half the size that are not possible are left out of a calibration.
+        // A calibration skips blocks of half the size if they are not possible.
         let finer = set_up.finer().ok().filter(|_| finer_runs > 0);
         let mut trainings = vec![(&set_up, runs)];
         trainings.extend(finer.iter().map(|finer| (finer, finer_runs)));
@@ -478,11 +481,12 @@ impl CalibrationFile {
         if !set_up.is_random()? {
             run = run.max(set_up.bytes_of_run(MOST_HALVINGS)?);
         }
-        // One for each unknown, and that of the drift of a record; with a further experiment and without.
+        // Regressions: one for each unknown and one for the drift of a record. Records: those of the file,
+        // and one of a further experiment.
         let regressions = 1 + set_up.unknowns.len();
         let records = set_up.conditions.len() + usize::from(!further.is_empty());
         let kept = 10 * (regressions + 1) * runs * records * n_summaries();
-        // Curves are in the journal, in a training and in copies of both.
+        // Curves are held by the journal, by a training and by copies of both.
         let numbers = (4 * values + kept) as f64;
         let regression = NUMBER * (runs.max(LEAST) as f64).powi(2);
         Ok(WorkMemory {
@@ -552,7 +556,7 @@ impl CalibrationFile {
     }
 }
 
-/// Refuses work of a calibration that there is no memory for, on this number of threads.
+/// Refuses work of a calibration on this number of threads if memory is too small.
 pub(crate) fn expect_memory(memory: &WorkMemory, threads: usize) -> Result<(), StudyError> {
     let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
     memory.check(threads, no_memory)
@@ -576,7 +580,7 @@ mod tests {
         file.memory(&file.read(&[record]).unwrap()).unwrap()
     }
 
-    /// A record of 80 values, of which the last 60 count: they are those of the record that the model makes.
+    /// A record of 80 values, of which the last 60 are used: they equal the record that the model makes.
     #[test]
     fn records_are_corrected_by_keys_of_all_and_of_their_own() {
         let folder = tempfile::tempdir().unwrap();
@@ -598,7 +602,7 @@ mod tests {
             let found = &read(keys, std::slice::from_ref(&record)).unwrap()[0].measured;
             assert_eq!(found.x.len(), 60, "{keys}");
             for (k, (x, y)) in found.x.iter().zip(&found.y).enumerate() {
-                // Milliseconds and the shift are rounded once each.
+                // The conversion from milliseconds and the shift each round once.
                 assert!(
                     (x - 1e-3 * k as f64).abs() < 1e-16 && *y == zero + k as f64,
                     "{x} {y}"
@@ -612,7 +616,7 @@ mod tests {
     #[test]
     fn threads_are_held_against_the_memory() {
         let found = memory("runs = 2000\nfiner_runs = 0");
-        // A kernel of all runs, which becomes its factor; of a regression for each unknown and one more.
+        // A kernel matrix of all runs, factorised in place; for a regression of each unknown and one more.
         assert_eq!(found.pieces[1], (8.0 * 2000.0 * 2000.0, 3));
         let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
         assert!(found.compare(2, found.of(2), no_memory).is_ok());
@@ -634,8 +638,7 @@ mod tests {
         );
     }
 
-    /// Blocks of half the size have runs of four times the blocks and twice the steps, and curves of their
-    /// own.
+    /// Runs on blocks of half the size have four times the blocks, twice the steps, and their own curves.
     #[test]
     fn all_trainings_count() {
         let plain = memory("runs = 200\nfiner_runs = 0");

@@ -30,24 +30,24 @@ pub(crate) struct Findings {
     pub(crate) is_refused: bool,
     /// Share of the values of each record that lie within the band of the calibrated model, %.
     pub(crate) within_band_percent: Vec<f64>,
-    /// Number by which the time step is divided for the finer one.
+    /// Divisor of the time step for the finer one.
     pub(crate) finer_step: u32,
     /// Results on blocks of half the size.
     pub(crate) finer: OnFinerBlocks,
-    /// Narrowing of the intervals by further experiments.
+    /// Reduction of the intervals by further experiments.
     pub(crate) next: Vec<Further>,
     pub(crate) version: &'static str,
 }
 
-/// Frequencies that the instrument passes and that the records have, and their noise.
+/// Bandwidth of the instrument, and frequencies and noise of the records.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct InstrumentFindings {
     /// Frequency up to which the instrument passes friction; none without filter, load cell and sampling.
     pub(crate) bandwidth_hz: Option<f64>,
-    /// Frequency of a swing over the range of the record that changes as fast as the record does at most;
-    /// none of records over displacement, or of noise alone.
+    /// Frequency of a sinusoid with the range and the fastest rate of change of the record; none for records
+    /// over displacement, or of noise alone.
     pub(crate) fastest_swing_hz: Option<f64>,
-    /// Noise of every record, by how its values scatter about their neighbours, % of mean friction.
+    /// Noise of every record, estimated from the scatter of neighbouring values, % of mean friction.
     pub(crate) noise_percent: Vec<f64>,
 }
 
@@ -59,7 +59,7 @@ pub(crate) struct UnknownEstimate {
     pub(crate) range: [f64; 2],
     pub(crate) unit: Option<String>,
     pub(crate) median: f64,
-    /// Interval that holds the unknown with 90 %.
+    /// Interval that contains the unknown with a probability of 90 %.
     pub(crate) interval: [f64; 2],
     /// Whether the records determine the unknown: the interval is less than 0.8 of the range.
     pub(crate) is_determined: bool,
@@ -97,7 +97,7 @@ pub(crate) enum OnFinerBlocks {
 pub(crate) struct Further {
     /// The keys in which the experiment differs from the case.
     pub(crate) set: String,
-    /// Widths of the intervals with it over those without, for every unknown.
+    /// Ratio of the width of the interval with this experiment to the width without, for every unknown.
     pub(crate) narrowed_to: Vec<f64>,
 }
 
@@ -118,8 +118,8 @@ impl UnknownEstimate {
         }
     }
 
-    /// Adds the median at the finer time step, by the share of the range by which records of that step
-    /// move the estimate.
+    /// Adds the median at the finer time step: records at that step shift the estimate by `moved`, a share of
+    /// the range.
     pub(crate) fn hold_against_finer_step(&mut self, unknown: &Unknown, moved: f64) {
         let [low, high] = self.interval;
         self.at_finer_step = unknown.at(unknown.share_of(self.median) - moved);
@@ -134,7 +134,7 @@ impl UnknownEstimate {
         self.on_finer_blocks = Some((median, interval));
     }
 
-    /// A value of the unknown, as a text with its unit.
+    /// A value of the unknown with its unit, as a string.
     pub(crate) fn text(&self, value: f64) -> String {
         with_unit(value, self.unit.as_deref())
     }

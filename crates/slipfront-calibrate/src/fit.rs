@@ -51,10 +51,10 @@ impl FittedRecords {
         self.calibration.sample(&self.estimate, points)
     }
 
-    /// Runs of the calibrated model, and what they and the training say of the records.
+    /// Runs of the calibrated model, and the tests of the records against them and against the training.
     ///
-    /// A record with less noise than the file states has intervals that are too wide and hold: it is compared
-    /// with the runs as a record with the noise that it lacks.
+    /// If a record has less noise than the file states, its intervals are wider than needed but valid. For
+    /// the comparison with the runs, the missing noise is added to it.
     fn check(
         &self,
         set_up: &SetUp,
@@ -98,16 +98,16 @@ pub(crate) struct Fit {
 /// Results of a calibration.
 pub(crate) struct Found {
     pub(crate) findings: Findings,
-    /// Friction of every record at the places where it is compared.
+    /// Friction of every record at the points of the comparison.
     pub(crate) records: Curves,
-    /// Friction of every record as the calibrated model has it.
+    /// Band of the friction of the calibrated model for every record.
     pub(crate) bands: Vec<Band>,
     /// Points of the ranges that are drawn from the estimate.
     pub(crate) sample: Vec<Vec<f64>>,
 }
 
 impl Fit {
-    /// A calibration by a file from these records.
+    /// A calibration as a file describes, from these records.
     ///
     /// # Errors
     /// When the ranges leave the bounds of the case.
@@ -163,7 +163,8 @@ impl Fit {
         let next = weigh(maker, &set_up.grids(), further, &training, &fitted, noise)?;
         let (predicted, check) = fitted.check(set_up, records, noise, maker)?;
         let bands = predicted.bands();
-        // Where the calibrated model needs a finer step already, it is held against that of the training.
+        // If the calibrated model already runs at a finer step, the runs to compare with have the step of the
+        // training.
         let halvings = predicted.halvings();
         let points = predicted.points()[..AT_OTHER_STEP].to_vec();
         let other = if halvings > 0 {
@@ -219,7 +220,7 @@ impl Fit {
         Ok(check)
     }
 
-    /// Frequencies that the instrument passes and that the records have, and their noise.
+    /// Bandwidth of the instrument, and frequencies and noise of the records.
     fn instrument(&self) -> Result<InstrumentFindings, StudyError> {
         let set_up = &self.set_up;
         let middle = set_up.middle();
@@ -244,8 +245,8 @@ impl Fit {
     }
 }
 
-/// Trains with each of the further experiments beside the records, and returns how much narrower the
-/// intervals are.
+/// Trains with each further experiment in addition to the records, and returns by how much the intervals
+/// shrink.
 fn weigh(
     maker: &mut RunMaker,
     grids: &[SamplePoints],

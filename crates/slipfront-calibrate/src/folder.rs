@@ -53,7 +53,7 @@ fn find_again(
     Ok([kept, again.n_kept()])
 }
 
-/// Whether two paths, which need not exist yet, are those of one folder.
+/// Whether two paths, which need not exist yet, lead to the same folder.
 fn is_same_place(one: &Path, other: &Path) -> bool {
     let are_equal = || matches!((absolute(one), absolute(other)), (Ok(one), Ok(other)) if one == other);
     is_same(one, other) || are_equal()
@@ -61,12 +61,12 @@ fn is_same_place(one: &Path, other: &Path) -> bool {
 
 impl CalibrationFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call for these records that no
-    /// other process works in. Training runs are kept in it, or in the folder `training`.
+    /// other process uses. Training runs are kept in it, or in the folder `training`.
     ///
     /// # Errors
-    /// When the ranges leave the bounds of the case: then nothing is written. When the folder holds other
-    /// files, or some that were edited since they were written and may not be replaced by `force`; when
-    /// another process works in it, or it cannot be written to.
+    /// When the ranges leave the bounds of the case; then nothing is written. When the folder contains other
+    /// files, or results that were edited afterwards, unless `force` is set; when another process uses it, or
+    /// it cannot be written to.
     pub fn open(
         path: &Path,
         training: Option<&Path>,
@@ -97,7 +97,7 @@ impl CalibrationFolder {
         })
     }
 
-    /// The calibration in one folder, to be found again in another.
+    /// The calibration of one folder, to be repeated in another.
     fn again(folder: &Path, other: &Path) -> Result<Self, StudyError> {
         let file = CalibrationFile::load(&folder.join(CALIBRATION.file))?;
         let listed = Checksums::read(folder)?.unwrap_or_default().files;
@@ -160,8 +160,8 @@ impl CalibrationFolder {
         Ok(text)
     }
 
-    /// Trains, and makes the tests of [`Self::find`] of whether the model can have made the records. Training
-    /// runs are kept, and no findings are written.
+    /// Trains, and tests as [`Self::find`] does whether the model can have made the records. Keeps the
+    /// training runs, and writes no findings.
     ///
     /// # Errors
     /// When runs cannot be made or kept, and after a stop.
@@ -175,7 +175,7 @@ impl CalibrationFolder {
     }
 }
 
-/// The part of the findings that decides whether they promise anything.
+/// The part of the findings that decides whether they are valid.
 #[derive(Deserialize)]
 struct Judgement {
     is_refused: bool,
@@ -185,7 +185,7 @@ impl CalibrationFolder {
     /// Refuses findings about records that the model cannot have made.
     ///
     /// # Errors
-    /// A sentence that names the findings; when the folder has none.
+    /// A sentence with the name of the findings; when the folder has none.
     pub fn expect_own_records(&self) -> Result<(), StudyError> {
         let [numbers, words] = FOUND.map(|name| self.path().join(name));
         match read_numbers(&numbers)? {

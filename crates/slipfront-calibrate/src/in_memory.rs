@@ -1,5 +1,5 @@
-//! A calibration without a results folder. A page makes it of the texts and bytes that it has, and may have
-//! its runs made by several workers.
+//! A calibration without a results folder, for a web page: the page passes texts and bytes, and can
+//! distribute the runs over several workers.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -14,7 +14,7 @@ use crate::report::Report;
 use crate::runs::{KeptRuns, RunMaker, WantedRun};
 use crate::set_up::Curves;
 
-/// A calibration whose file, record and runs are in memory.
+/// A calibration with its file, record and runs in memory.
 #[derive(Debug)]
 pub struct CalibrationInMemory {
     fit: Fit,
@@ -37,13 +37,13 @@ pub struct CalibrationResults {
 pub enum Outcome {
     /// The calibration is done.
     Found(CalibrationResults),
-    /// The calibration needs these runs first, by [`add`](CalibrationInMemory::add).
+    /// The calibration needs these runs first; pass them to [`add`](CalibrationInMemory::add).
     Wants(Vec<WantedRun>),
 }
 
 impl CalibrationInMemory {
-    /// A calibration by the text of a calibration file, from a record of this name and these bytes. Files
-    /// that its base case names are in memory.
+    /// A calibration from the text of a calibration file and a record with this name and content. Files that
+    /// the base case names are in memory.
     ///
     /// # Errors
     /// When the file is not valid, the record cannot be read, the ranges leave the bounds of the case, or
@@ -64,7 +64,7 @@ impl CalibrationInMemory {
         })
     }
 
-    /// Calibrates, or gives the runs that are wanted first if they are made elsewhere.
+    /// Calibrates, or returns the runs that are needed first if they are made elsewhere.
     ///
     /// # Errors
     /// When a run cannot be made, and after a stop.
@@ -97,7 +97,7 @@ impl CalibrationInMemory {
         }))
     }
 
-    /// Makes a run that another calibration with the same file and record wants; none after a stop.
+    /// Makes a run that another calibration with the same file and record needs; none after a stop.
     ///
     /// # Errors
     /// The error of the run.
@@ -105,7 +105,7 @@ impl CalibrationInMemory {
         wanted.make(&self.fit.set_up, stop)
     }
 
-    /// Adds a run that was wanted and has been made elsewhere.
+    /// Adds a needed run that was made elsewhere.
     pub fn add(&mut self, wanted: WantedRun, made: Curves) {
         self.kept.add(wanted, made);
     }
@@ -158,7 +158,7 @@ mod tests {
                     stages.push((stage.unwrap(), wanted.len()));
                     let other = calibration();
                     for run in wanted {
-                        // As a message to another worker: every bit of a number comes back.
+                        // A message to another worker keeps every bit of a number.
                         let sent: WantedRun =
                             serde_json::from_str(&serde_json::to_string(&run).unwrap()).unwrap();
                         let made = other.make(&sent, &go_on).unwrap().unwrap();

@@ -1,4 +1,4 @@
-//! From a prediction and the residuals of training runs to a distribution of the unknown.
+//! Distribution of an unknown, from a prediction and the residuals of training runs.
 
 use slipfront_regression::{Prediction, Regression};
 
@@ -11,8 +11,8 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// The distribution of residuals that training runs like the record had when they were left out, in units
-    /// of their scale, around the prediction from the record.
+    /// The distribution of an unknown: leave-one-out residuals of training runs like the record, in units of
+    /// their scale, around the prediction from the record.
     ///
     /// ```text
     /// u = f + s (u_i - f_i)/s_i   with the weight exp(-(f - f_i)^2/(2 0.15^2) - log^2(s/s_i)/(2 0.5^2))
@@ -46,13 +46,13 @@ impl Distribution {
         self.values[place.min(self.values.len() - 1)]
     }
 
-    /// The interval that holds `share` of the distribution, with as much below as above.
+    /// The central interval with `share` of the distribution: equal shares are below and above.
     pub fn interval(&self, share: f64) -> [f64; 2] {
         [self.quantile(0.5 - 0.5 * share), self.quantile(0.5 + 0.5 * share)]
     }
 
-    /// The share of the distribution below a value: a uniform number for the true values of records that were
-    /// drawn from the prior.
+    /// The share of the distribution below a value: uniformly distributed for the true values of records that
+    /// were drawn from the prior.
     pub fn below(&self, value: f64) -> f64 {
         let place = self.values.partition_point(|&other| other < value);
         if place == 0 { 0.0 } else { self.sums[place - 1] }
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(one.interval(0.9), [0.1, 0.9]);
     }
 
-    /// A summary that is the unknown with normal noise, whose deviation grows from 0.02 to 0.12 over the
+    /// The summary is the unknown with normal noise; its standard deviation grows from 0.02 to 0.12 over the
     /// range.
     #[test]
     fn intervals_hold_the_truth_as_often_as_they_say() {
@@ -100,14 +100,14 @@ mod tests {
             all[half] += 1.0;
             held[half] += f64::from(u8::from((low..=high).contains(&truth(run))));
         }
-        // Two and a half standard deviations of coverage: 0.3/sqrt(1000) of records and as much again,
-        // 0.3/sqrt(400), of training.
+        // Two and a half standard deviations of the coverage: 0.3/sqrt(1000) from the records, and
+        // 0.3/sqrt(400) from the training.
         let coverage = (held[0] + held[1]) / 1000.0;
         assert!(
             (coverage - 0.9).abs() < 2.5 * 0.3 * (1.0_f64 / 1000.0 + 1.0 / 400.0).sqrt(),
             "{coverage}"
         );
-        // The noise of the upper half is thrice that of the lower, and each has intervals of its own.
+        // The noise in the upper half is three times that in the lower half, and so are the intervals.
         assert!(
             held[0] / all[0] > 0.84 && held[1] / all[1] > 0.84,
             "{held:?} {all:?}"

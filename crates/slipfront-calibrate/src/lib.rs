@@ -1,12 +1,12 @@
 //! Calibration: unknown keys of a case from measured records, with intervals that hold what they promise.
 //!
 //! ```text
-//! CalibrationFile, records -> SetUp -> Training (curves of runs over the ranges) -> Calibration (what their summaries tell) -> Estimate
+//! CalibrationFile, records -> SetUp -> Training (curves of runs over the ranges) -> Calibration (regressions on their summaries) -> Estimate
 //! ```
 //!
-//! Least squares on the curve fails where friction sticks and slips, since the phases of that are chance.
-//! Here every curve becomes `summaries`, every unknown is predicted from them by `regression`, and
-//! `intervals` are those that hold the truth for runs that the prediction has not seen.
+//! Least squares on the curve fails for stick-slip, since its phases are random. Here, every curve is reduced
+//! to `summaries`, `regression` predicts every unknown from them, and `intervals` contain the true value with
+//! the stated probability for runs that the prediction has not used.
 
 mod bandwidth;
 mod calibration;

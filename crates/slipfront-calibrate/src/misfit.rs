@@ -11,7 +11,7 @@ use crate::scaling::{Scaling, summaries_of};
 use crate::summaries::level;
 use crate::training::Training;
 
-/// Largest drift in training: friction that rises or falls by this share of itself over the record.
+/// Largest drift in training: friction rises or falls by this share of itself over the record.
 const MAX_DRIFT: f64 = 0.12;
 
 /// Share of good records that each of the two checks refuses.
@@ -29,47 +29,48 @@ pub(crate) struct Check {
     drifts: Vec<f64>,
     /// Scaled summaries of the training runs.
     table: Vec<f64>,
-    /// Distance of a run to the others that few exceed.
+    /// Distance of a run to the other runs that only few runs exceed.
     far: f64,
-    /// The least and the largest mean of the second half in the training, for each record, with noise: where
-    /// no unknown moves the mean, noise alone makes records differ.
+    /// The least and the largest mean of the second half in the training, for each record, with noise: if the
+    /// mean depends on no unknown, noise alone makes records differ.
     levels: Vec<[f64; 2]>,
 }
 
 /// Tests of whether the model can have made a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
-    /// Drift of friction over the record, as a share of friction: an interval that holds it for all records
-    /// but 10 in 1000.
+    /// Drift of friction over the record, as a share of friction: the interval contains the true drift in all
+    /// but 10 of 1000 records.
     pub drift: [f64; 2],
-    /// Whether the interval leaves out 0.
+    /// Whether the interval excludes 0.
     pub has_drift: bool,
     /// Distance of the summaries from those of the nearest training runs, over the distance that 5 training
     /// runs in 1000 exceed.
     pub distance: f64,
-    /// Mean of the second half of the record whose mean lies farthest outside of the means of the training
-    /// runs, and the least and the largest of these. Scaled summaries do not tell it, since what is far away
-    /// is drawn nearer there.
+    /// Mean of the second half of the record that is farthest outside of the means of the training runs, and
+    /// the least and the largest of these means. Scaled summaries do not show it, since they limit large
+    /// distances.
     pub level: [f64; 3],
 }
 
-/// Part of the width of their range by which a mean may lie outside of the means of the training runs: one
-/// more run may well exceed all others, but hardly by a quarter of what these differ.
+/// Largest accepted distance of a mean from the range of the means of the training runs, over the width of
+/// the range: one more run may well exceed all others, but hardly by a quarter of their range.
 const MAX_OUTSIDE: f64 = 0.25;
 
-/// How far a mean lies outside of a range, over its width; 0 within.
+/// Distance of a mean from a range, over the width of the range; 0 within it.
 fn outside([level, low, high]: [f64; 3]) -> f64 {
     let beyond = (low - level).max(level - high);
     if beyond > 0.0 { beyond / (high - low) } else { 0.0 }
 }
 
 impl Misfit {
-    /// Whether the records are refused as none of the model; some 4 % of the model's own are.
+    /// Whether the records are refused because the model cannot have made them; some 4 % of the model's own
+    /// records are refused, too.
     pub fn is_refused(&self) -> bool {
         self.has_drift || self.distance > 1.0 || self.is_outside()
     }
 
-    /// Whether friction of a record is of a size that no training run comes near.
+    /// Whether the friction of a record is far from that of all training runs.
     pub fn is_outside(&self) -> bool {
         outside(self.level) > MAX_OUTSIDE
     }
@@ -88,8 +89,8 @@ fn drift_at(share: f64) -> f64 {
 }
 
 impl Check {
-    /// Learns drift from the training runs, each with a drift of its own; of every record there are the
-    /// places, and the unit of friction in its summaries.
+    /// Learns to recognise drift from the training runs, each with its own drift. `grids` and `units` are the
+    /// sample points of every record, and the unit of friction in its summaries.
     pub(crate) fn learn(
         training: &Training,
         grids: &[SamplePoints],
@@ -163,7 +164,7 @@ impl Check {
     }
 }
 
-/// Root of the mean of the least squared distances; for a run among all, the first is the distance to itself.
+/// Root mean square of the smallest distances; for a training run, the first is the distance to itself.
 fn distance(row: &[f64], nearest: usize) -> f64 {
     let mut row = row.to_vec();
     let nearest = nearest.min(row.len());

@@ -1,5 +1,5 @@
-//! Experiments before they are made: how narrow the intervals of the unknowns would be, by records of runs
-//! that are simulated over the ranges.
+//! Planning of experiments: the expected widths of the intervals of the unknowns, from records that are
+//! simulated over the ranges.
 
 use std::sync::atomic::AtomicBool;
 
@@ -23,7 +23,8 @@ use crate::training::Training;
 /// Number of runs of an experiment.
 const RUNS: usize = 200;
 
-/// Factor of the path of the drive in a longer experiment, and of its speed in a slower and a faster one.
+/// Factor between the paths of the drive in a longer and in the planned experiment, and between the speeds in
+/// a slower or faster one.
 const LONGER: usize = 2;
 const SPEED: f64 = 3.0;
 
@@ -114,8 +115,8 @@ impl ExperimentPlan {
 type Planned = (&'static str, Result<SetUp, String>);
 
 impl CalibrationFile {
-    /// Values of planned records at equal steps from the beginning of the drive to `until`, such as `20 s`,
-    /// one record for each of the file.
+    /// Sample points of planned records at equal steps from the start of the drive to `until`, such as
+    /// `20 s`, for one record per record in the file.
     ///
     /// # Errors
     /// When `until` has another unit than records of the file, or there are too few values.
@@ -242,7 +243,7 @@ fn is_speed(key: &str) -> bool {
     ["drive.v_star", "drive.speed"].contains(&key)
 }
 
-/// The conditions at another speed, over the same path; none where the drive has a program.
+/// The conditions at another speed, over the same path; none if the drive has a program.
 fn at_speed(set_up: &SetUp, conditions: &Conditions, factor: f64) -> Result<Option<Conditions>, CaseError> {
     let case = set_up.case(&set_up.middle(), 0, conditions)?;
     let set = match &case.file.drive.speed {
@@ -282,8 +283,8 @@ mod tests {
         file.plan(file.planned(until, 100)?, &AtomicBool::new(false), &mut |_| {})
     }
 
-    /// The speed V* is in units of the static coefficient, which the slope of loading shows; the ratio of the
-    /// coefficients is not seen before the first slip.
+    /// The speed V* is relative to the static coefficient, which the slope of loading determines; the ratio
+    /// of the coefficients has no effect before the first slip.
     const UNKNOWNS: &str =
         "unknowns = { 'friction.mu_static' = [0.3, 0.9], 'friction.r_star' = [0.5, 0.98] }\n";
     const NO_SCATTER: &str = "friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
@@ -306,7 +307,7 @@ mod tests {
             "{slips:?}"
         );
         assert!(!slips.in_words().contains("does not determine"));
-        // The force of the spring 0.53 V* t reaches 1, the static one, at 18.9.
+        // The spring force 0.53 V* t reaches the static friction, 1, at 18.9.
         let rest = plan(&case, &format!("{} s", 5.0 * unit)).unwrap();
         assert!(
             width(&rest, 0, 0) < 0.1 && width(&rest, 0, 1) > UNDETERMINED,

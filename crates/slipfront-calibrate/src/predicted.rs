@@ -12,13 +12,13 @@ use crate::set_up::{Curves, SetUp};
 use crate::summaries::{checked, checked_groups, level, quantiles};
 use slipfront_study::StudyError;
 
-/// Number of the surface of the first run; training draws from 1 on.
+/// Number of the surface of the first run; those of training count from 1.
 const FIRST_SURFACE: u64 = 1 << 32;
 
 /// Number of runs of a prediction.
 pub(crate) const PREDICTED: usize = 120;
 
-/// Shares of the runs below the lines of a band.
+/// Quantiles of the runs at the lines of a band.
 const LINES: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// Share of good records that the comparison refuses, at most.
@@ -34,12 +34,12 @@ pub struct Predicted {
     points: Vec<Vec<f64>>,
     /// Friction of every record, for every run.
     curves: Vec<Curves>,
-    /// Number of times by which the time step of the case is halved.
+    /// Number of halvings of the time step of the case.
     halvings: u32,
 }
 
-/// Friction of a record as the calibrated model has it, noise included: 90 % of the runs at every place, and
-/// their median.
+/// Friction of the calibrated model for a record, noise included: the central 90 % of the runs at every
+/// sample point, and their median.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Band {
     pub(crate) low: Vec<f64>,
@@ -47,12 +47,12 @@ pub(crate) struct Band {
     pub(crate) high: Vec<f64>,
 }
 
-/// Records beside the runs of the calibrated model.
+/// Comparison of records with the runs of the calibrated model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Share of the runs that are at least as far from the others as the records are.
     pub rank: f64,
-    /// Distance of the records from the runs, over the one that half of the runs exceed.
+    /// Distance of the records from the runs, over the median distance of the runs.
     pub distance: f64,
     /// The groups of numbers in which the records differ most from the runs: names in words, and the mean
     /// square of their distances in standard deviations of the runs.
@@ -60,7 +60,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether the calibrated model does not make such records.
+    /// Whether the records differ from those of the calibrated model.
     pub fn is_refused(&self) -> bool {
         self.rank < REFUSED
     }
@@ -123,7 +123,7 @@ impl Predicted {
         &self.points
     }
 
-    /// Number of times by which the time step of the case is halved.
+    /// Number of halvings of the time step of the case.
     pub(crate) fn halvings(&self) -> u32 {
         self.halvings
     }
@@ -143,7 +143,7 @@ impl Predicted {
         &self.curves
     }
 
-    /// Compares records with the runs, by numbers of which most have no part in the estimate.
+    /// Compares records with the runs, by numbers that are mostly not used in the estimate.
     pub fn compare(&self, records: &[Vec<f64>]) -> Comparison {
         let (rows, own) = self.all_numbers(records);
         let found = distance_from(&rows, &self.points, &own.concat());
@@ -167,15 +167,15 @@ impl Predicted {
         }
     }
 
-    /// The numbers of every run, and those of records in groups.
+    /// The numbers of every run in a row, and those of the records in groups.
     fn all_numbers(&self, records: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let runs = self.curves.par_iter().enumerate();
         let rows = runs.map(|(run, curves)| self.numbers(curves, Some(run)).concat());
         (rows.collect(), self.numbers(records, None))
     }
 
-    /// The numbers of some curves, in groups: those of every record, and its distance from the nearest runs
-    /// but for the one of this number.
+    /// The numbers of some curves, in groups: for every record, the numbers of its curve and the distance
+    /// from the nearest runs except run `but_for`.
     fn numbers(&self, curves: &[Vec<f64>], but_for: Option<usize>) -> Vec<Vec<f64>> {
         let mut groups = Vec::new();
         for (record, curve) in curves.iter().enumerate() {

@@ -11,7 +11,7 @@ pub enum CalibrationStage {
     Further,
     /// Runs of the calibrated model.
     Prediction,
-    /// Search for the closest curve; its number of runs is not known before.
+    /// Search for the closest curve; its number of runs is not known in advance.
     Closest,
     /// Runs of the calibrated model at another time step.
     OtherStep,
@@ -20,7 +20,8 @@ pub enum CalibrationStage {
 }
 
 impl CalibrationStage {
-    /// Whether the runs of this stage serve all records at the same places, whatever their friction is.
+    /// Whether the runs of this stage are valid for all records at the same sample points, whatever their
+    /// friction.
     pub(crate) fn is_for_any_records(self) -> bool {
         match self {
             Self::Training | Self::FinerBlocks | Self::Further | Self::Planning => true,

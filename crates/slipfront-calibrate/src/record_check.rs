@@ -11,13 +11,13 @@ use crate::predicted::Comparison;
 /// Tests of whether the model can have made the records.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordCheck {
-    /// Values at the end of the range of a sensor, where the file has no range.
+    /// Values at the end of the range of a sensor, if the file has no range.
     pub clipped: Option<Clipped>,
-    /// The records beside the runs of the training.
+    /// Comparison of the records with the training runs.
     pub misfit: Misfit,
-    /// The records beside runs of the calibrated model.
+    /// Comparison of the records with runs of the calibrated model.
     pub comparison: Comparison,
-    /// The closest curve, where the unknowns determine it.
+    /// The closest curve, if the unknowns determine it.
     pub closest: Option<Closest>,
 }
 
@@ -30,7 +30,7 @@ impl RecordCheck {
             || self.closest.is_some_and(|closest| closest.is_refused())
     }
 
-    /// Reasons for which the model cannot have made the records; none where it can.
+    /// Reasons why the model cannot have made the records; empty if it can.
     pub fn reasons(&self) -> Vec<String> {
         let mut reasons = Vec::new();
         if let Some(clipped) = &self.clipped {
@@ -81,7 +81,7 @@ impl RecordCheck {
     }
 }
 
-/// The differences from the closest curve, in words.
+/// The residuals from the closest curve, in words.
 fn differences(closest: &Closest) -> String {
     let part = match closest.share {
         1.0 => String::new(),
@@ -119,7 +119,7 @@ fn one_over(share: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Results of records of the model.
+    /// Results for records that the model has made.
     fn passed() -> RecordCheck {
         RecordCheck {
             clipped: None,
@@ -148,7 +148,7 @@ mod tests {
         })
     }
 
-    /// There is a reason where a record is refused, and none where it is not.
+    /// A refused record has a reason; an accepted one has none.
     #[test]
     fn every_refusal_has_its_reason() {
         assert!(!passed().is_refused() && passed().reasons().is_empty());

@@ -78,8 +78,9 @@ impl<'a> Report<'a> {
             .collect()
     }
 
-    /// Notes on the calibrated case that matter for what it says of an experiment: a slider that is no sheet
-    /// under its texture, and few blocks with random coefficients; each for the first record that has it.
+    /// Notes on how far the calibrated case represents an experiment: a slider that is too thick for a sheet
+    /// under its texture, and too few blocks with random coefficients; each for the first record that it
+    /// applies to.
     fn notes_on_case(&self) -> Result<String, StudyError> {
         let medians = self.medians();
         let records = self.set_up.conditions.iter();
@@ -118,7 +119,7 @@ fn write_record(
     batch.draw(&name, |size| picture(&places, record, band, measures, size))
 }
 
-/// Writes a row for every point, in the units of the unknowns.
+/// Writes a row for every drawn point, in the units of the unknowns.
 fn write_sample(set_up: &SetUp, sample: &[Vec<f64>], to: &mut impl Write) -> Result<(), csv::Error> {
     let unknowns = &set_up.unknowns;
     let mut table = csv::Writer::from_writer(to);
@@ -239,7 +240,7 @@ fn in_words(found: &Findings) -> String {
     text
 }
 
-/// A sentence in lines, with its line break.
+/// A sentence that is wrapped into lines, with a line break at the end.
 fn paragraph(sentence: &str) -> String {
     format!("{}\n", wrapped(sentence, COLUMNS))
 }
@@ -264,7 +265,7 @@ fn row(estimate: &UnknownEstimate) -> Vec<String> {
     row
 }
 
-/// Reasons for which the records are none of the model.
+/// Reasons why the model cannot have made the records.
 fn refusal(found: &Findings) -> String {
     format!(
         "The model cannot reproduce these records: {}. The test rejects about 4 % of the model's own records. Correct a drift \
@@ -274,7 +275,7 @@ fn refusal(found: &Findings) -> String {
     )
 }
 
-/// Results of the tests, where none speaks against the model.
+/// Results of the tests, if none of them refuses the records.
 fn accepted(found: &Findings) -> String {
     let [low, high] = found.check.misfit.drift.map(|drift| four_digits(100.0 * drift));
     let closest = match &found.check.closest {
@@ -386,7 +387,7 @@ fn on_finer_blocks(found: &Findings) -> String {
     }
 }
 
-/// Narrowing of the intervals by further experiments, in words.
+/// Reduction of the intervals by further experiments, in words.
 fn further(found: &Findings) -> String {
     if found.next.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! Runs of a calibration: made on rayon's threads, counted, and kept where there is a journal.
+//! Runs of a calibration: made on rayon's threads, counted, and kept in a journal if there is one.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::file::CALIBRATION;
 use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::set_up::{Curves, SetUp};
 
-/// Number of runs that are made before they are kept and shown.
+/// Number of runs after which the journal and the progress are updated.
 const AT_ONCE: usize = 32;
 
 /// Number of runs that a device makes before they are kept and shown.
@@ -35,7 +35,7 @@ impl JournalEntry for CalibrationRun {
     const KEYS: &'static [&'static str] = &["curves"];
 }
 
-/// Runs to be made: points of the ranges, each over a surface of its own.
+/// Runs to make: points of the ranges, each with its own surface.
 pub(crate) struct Runs<'a> {
     set_up: &'a SetUp,
     points: &'a [Vec<f64>],
@@ -53,7 +53,7 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// Identities of all runs: hashes of what decides their curves.
+    /// Identities of all runs: hashes of everything that determines their curves.
     fn identities(&self) -> Result<Vec<String>, StudyError> {
         let of_set_up = self.set_up.identity()?;
         let of_run = |(surface, point): (u64, &Vec<f64>)| {
@@ -68,7 +68,7 @@ impl<'a> Runs<'a> {
         Ok((self.first_surface..).zip(self.points).map(of_run).collect())
     }
 
-    /// The run of this number and identity, to be made elsewhere.
+    /// The run with this number and identity, to be made elsewhere.
     fn wanted(&self, number: usize, id: &str) -> WantedRun {
         WantedRun {
             id: id.to_owned(),
@@ -108,7 +108,7 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// A run that a calibration needs and that is made elsewhere, such as in another Worker of a page.
+/// A run that a calibration needs and that is made elsewhere, such as in another worker of a web page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WantedRun {
     /// Identity of the run.
@@ -135,10 +135,10 @@ impl WantedRun {
     }
 }
 
-/// Runs that were made before, with the journals to which others are appended.
+/// Runs that were made before, and the journals to which new runs are appended.
 #[derive(Debug, Default)]
 pub(crate) struct KeptRuns {
-    /// Journal of the results folder, which keeps other processes out; none for runs in memory alone.
+    /// Journal of the results folder, locked against other processes; none for runs that are only in memory.
     journal: Option<Journal>,
     /// Journal of training runs that several calibrations share.
     shared: Option<Journal>,
@@ -148,9 +148,10 @@ pub(crate) struct KeptRuns {
 }
 
 impl KeptRuns {
-    /// Opens the journals of a results folder, and of one of training runs, that no other process works in.
+    /// Opens the journals of a results folder and of a folder of training runs. No other process may use
+    /// them.
     pub(crate) fn open(folder: &Path, training: Option<&Path>) -> Result<Self, StudyError> {
-        // A folder that another process works in is met before a new one is made.
+        // Fail if another process uses a folder, before a new folder is created.
         let is_used = CALIBRATION.is_used(folder)?;
         let own = is_used.then(|| CALIBRATION.open_journal(folder)).transpose()?;
         let shared = training.map(|folder| CALIBRATION.open_journal::<CalibrationRun>(folder));
@@ -204,16 +205,17 @@ pub struct RunMaker<'a> {
     watch: &'a mut dyn FnMut(&CalibrationProgress),
     kept: Option<&'a mut KeptRuns>,
     device: Option<&'a dyn Device>,
-    /// Whether runs that are known before they are needed are made elsewhere.
+    /// Whether runs are made elsewhere if they are known in advance.
     is_elsewhere: bool,
-    /// The runs for which a calibration was left, to be made elsewhere.
+    /// The runs to be made elsewhere, for which the calibration was interrupted.
     wanted: Option<Vec<WantedRun>>,
     ended: usize,
     of: usize,
 }
 
 impl<'a> RunMaker<'a> {
-    /// Runs of which none is kept, `of` of them beside those of a search for the closest curve.
+    /// Makes runs without keeping them; `of` is their number, without those of a search for the closest
+    /// curve.
     pub fn new(stop: &'a AtomicBool, of: usize, watch: &'a mut dyn FnMut(&CalibrationProgress)) -> Self {
         Self {
             stop,
@@ -227,12 +229,12 @@ impl<'a> RunMaker<'a> {
         }
     }
 
-    /// Counts on so many runs beside those of a search for the closest curve.
+    /// Sets the expected number of runs, without those of a search for the closest curve.
     pub(crate) fn expect(&mut self, of: usize) {
         self.of = of;
     }
 
-    /// Keeps the runs, and makes none that is kept already.
+    /// Keeps the runs, and does not repeat those that are kept already.
     pub(crate) fn with(self, kept: &'a mut KeptRuns) -> Self {
         Self {
             kept: Some(kept),
@@ -245,13 +247,13 @@ impl<'a> RunMaker<'a> {
         Self { device, ..self }
     }
 
-    /// Leaves runs to others, but for those of a search for the closest curve, where each depends on those
-    /// before.
+    /// Leaves runs to others, except those of a search for the closest curve, where each run depends on
+    /// earlier ones.
     pub(crate) fn elsewhere(self, is_elsewhere: bool) -> Self {
         Self { is_elsewhere, ..self }
     }
 
-    /// The runs that are to be made elsewhere before the calibration can go on.
+    /// The runs that must be made elsewhere before the calibration can continue.
     pub(crate) fn into_wanted(self) -> Option<Vec<WantedRun>> {
         self.wanted
     }
@@ -259,7 +261,7 @@ impl<'a> RunMaker<'a> {
     /// The curves of all runs, in their order.
     ///
     /// # Errors
-    /// The error of the first run that has one, those of the journal, after a stop, and where runs are to be
+    /// The error of the first run that has one; an error of the journal; after a stop; and if runs must be
     /// made elsewhere first.
     pub(crate) fn curves(&mut self, stage: CalibrationStage, runs: &Runs) -> Result<Vec<Curves>, StudyError> {
         let ids = match self.kept {
@@ -270,7 +272,7 @@ impl<'a> RunMaker<'a> {
         let mut found: Vec<Option<Curves>> = ids.iter().map(known).collect();
         let missing: Vec<usize> = (0..found.len()).filter(|run| found[*run].is_none()).collect();
         self.of = match stage {
-            // How many runs a search takes is not known before.
+            // The number of runs of a search is not known in advance.
             CalibrationStage::Closest => self.of + missing.len(),
             _ => self.of.saturating_sub(found.len() - missing.len()),
         };
@@ -303,7 +305,7 @@ impl<'a> RunMaker<'a> {
         Ok(found.into_iter().flatten().collect())
     }
 
-    /// Shows that `runs` more runs have ended.
+    /// Reports that `runs` more runs have ended.
     fn show(&mut self, stage: CalibrationStage, runs: usize) {
         self.ended += runs;
         (self.watch)(&CalibrationProgress {

@@ -1,5 +1,5 @@
-//! Times or displacements of a record, at which it and the curves of runs are compared: values between those
-//! of a record would have less noise than these.
+//! Sample points of a record, times or displacements, at which it is compared with the curves of runs. Values
+//! that are interpolated between those of a record would have less noise.
 
 use std::sync::Arc;
 
@@ -10,8 +10,7 @@ use slipfront_run::run_curve::RunCurve;
 
 use crate::summaries::MIN_VALUES;
 
-/// Largest number of values of a curve from which summaries are made: more values are averaged over
-/// neighbours.
+/// Largest number of values of a curve for the summaries: more values are averaged over neighbours.
 const MAX_VALUES: usize = 400;
 
 /// Places at which friction of a record is known.
@@ -21,22 +20,22 @@ pub struct SamplePoints {
     along: Measure,
     /// Quantity at the places: force or coefficient.
     of: Measure,
-    /// Places of the values of the record, which never fall.
+    /// Places of the values of the record, in ascending order.
     x: Arc<[f64]>,
-    /// Number of values that are averaged to one.
+    /// Number of neighbouring values that are averaged.
     merged: usize,
-    /// Least and largest value that the instrument writes.
+    /// Least and largest value that the instrument can record.
     range: Option<[f64; 2]>,
 }
 
 impl SamplePoints {
-    /// The places of the values of a record; none for a record that is too short or stands still.
+    /// The places of the values of a record; none for a record that is too short or does not advance.
     pub fn of(record: &MeasuredRecord) -> Option<Self> {
         Self::at(record.along, record.of, record.x.clone())
     }
 
-    /// As many equal steps of a planned record of coefficients, from 0 to `end`; none if they are too few, or
-    /// do not go forwards.
+    /// The places of a planned record of coefficients, `count` equal steps from 0 to `end`; none if they are
+    /// too few, or `end` is not positive.
     pub(crate) fn planned(along: Measure, end: f64, count: usize) -> Option<Self> {
         let step = end / (count.max(2) - 1) as f64;
         Self::at(
@@ -56,8 +55,8 @@ impl SamplePoints {
         })
     }
 
-    /// The places of a record that is `times` times as long, with as many values in a time: these places,
-    /// one behind the other.
+    /// The places of a record that is `times` times as long, with the same spacing: these places, repeated
+    /// one after the other.
     pub(crate) fn longer(&self, times: usize) -> Self {
         let again = self.end() + self.mean_step() - self.x[0];
         let x = (0..times).flat_map(|part| self.x.iter().map(move |x| x + part as f64 * again));
@@ -72,7 +71,7 @@ impl SamplePoints {
         (self.end() - self.x[0]) / (self.x.len() - 1) as f64
     }
 
-    /// Adds all that decides the values at the places to a hash.
+    /// Adds everything that determines the values at the places to a hash.
     pub(crate) fn add_to(&self, hasher: &mut blake3::Hasher) {
         let Self {
             along,
@@ -97,7 +96,8 @@ impl SamplePoints {
         self.of
     }
 
-    /// The grid over the same path of a drive that takes `times` times as long for it; displacements stay.
+    /// The sample points over the same path of a drive that takes `times` times as long; displacements are
+    /// unchanged.
     pub(crate) fn slower(&self, times: f64) -> Self {
         let times = if self.along == Measure::Time { times } else { 1.0 };
         Self {
@@ -111,7 +111,7 @@ impl SamplePoints {
         self.x.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// Number of averages, which are the values of a curve.
+    /// Number of averages, the values of a curve.
     pub(crate) fn n_values(&self) -> usize {
         self.x.len() / self.merged
     }
@@ -131,11 +131,11 @@ impl SamplePoints {
         self.merge(&record.y)
     }
 
-    /// The curve of a run in the form of a record, as an instrument writes it; none if the run ends before,
-    /// or its friction is a torque.
+    /// The curve of a run in the form of a record, as an instrument records it; none if the run ends earlier
+    /// than the record, or its friction is a torque.
     pub(crate) fn curve(&self, curve: &RunCurve, instrument: Option<&Instrument>) -> Option<Vec<f64>> {
         let x = curve.along(self.along);
-        // What rounding makes of the end of a run is not missed.
+        // Rounding may end a run slightly before the last place.
         if *x.last()? < self.end() - 0.5 * self.mean_step() {
             return None;
         }
@@ -150,7 +150,7 @@ impl SamplePoints {
         Some(self.averages(x, &instrument.record(&curve.time, &friction)))
     }
 
-    /// The first places, a share of all.
+    /// The first places, up to a share of all.
     pub(crate) fn beginning(&self, share: f64) -> Self {
         let values = (share * self.n_values() as f64) as usize;
         Self {
@@ -159,20 +159,20 @@ impl SamplePoints {
         }
     }
 
-    /// Keeps the values at the places within the range of an instrument.
+    /// Limits the values at the places to the range of an instrument.
     pub(crate) fn bound_by(&mut self, range: Option<[f64; 2]>) {
         self.range = range;
     }
 
-    /// Standard deviation of the noise of a curve at the places, where that of a value of the record is a
-    /// share of the mean.
+    /// Standard deviation of the noise of a curve at the places; `noise` is that of a value of the record, as
+    /// a share of the mean.
     pub(crate) fn deviation(&self, curve: &[f64], noise: f64) -> f64 {
         let share = noise * self.noise_share();
         share * curve.iter().sum::<f64>().abs() / curve.len() as f64
     }
 
-    /// A curve at the places with white noise whose standard deviation is the share `noise` of its mean for a
-    /// value of the record; noise does not go beyond the range of the instrument.
+    /// Adds white noise to a curve at the places: for a value of the record, the standard deviation is the
+    /// share `noise` of the mean. The result is limited to the range of the instrument.
     pub(crate) fn noisy(&self, curve: &[f64], noise: f64, normals: impl Iterator<Item = f64>) -> Vec<f64> {
         let deviation = self.deviation(curve, noise);
         let mut values: Vec<f64> = curve
@@ -188,7 +188,7 @@ impl SamplePoints {
         values
     }
 
-    /// Means over neighbours of y, interpolated between the values at x, which never fall.
+    /// Means over neighbours of y, interpolated between the values at x, which are in ascending order.
     fn averages(&self, x: &[f64], y: &[f64]) -> Vec<f64> {
         let values = self.x.iter().map(|&place| interpolate(x, y, place));
         self.merge(&values.collect::<Vec<_>>())
@@ -213,7 +213,7 @@ mod tests {
         MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient)
     }
 
-    /// Values between those of a record would have less noise than these.
+    /// Values that are interpolated between those of a record would have less noise.
     #[test]
     fn a_record_is_itself_whatever_its_steps_are() {
         let mut record = record(50);

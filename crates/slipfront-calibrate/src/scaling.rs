@@ -6,9 +6,9 @@ use crate::sample_points::SamplePoints;
 use crate::summaries::{level, summaries};
 use crate::training::Training;
 
-/// Units of the friction of several records in their summaries: 1 for a coefficient, and for a force the mean
-/// of the training. Forces may be nanonewtons or meganewtons, and the bounds of summaries are small numbers
-/// in the unit of friction.
+/// Units of friction in the summaries of several records: 1 for a coefficient, and the mean of the training
+/// for a force. Forces may be nanonewtons or meganewtons, while the lower bounds of summaries are fixed small
+/// numbers in these units.
 pub(crate) fn units_of_friction(training: &Training, grids: &[SamplePoints]) -> Vec<f64> {
     let mean = |record: usize| {
         let levels = training.curves.iter().map(|curves| level(&curves[record]).abs());
@@ -21,26 +21,26 @@ pub(crate) fn units_of_friction(training: &Training, grids: &[SamplePoints]) -> 
             Measure::Force => mean(record),
             _ => 1.0,
         });
-    // Without any friction there is nothing to divide by.
+    // Without friction, do not divide by a mean of 0.
     units.map(|unit| if unit > 0.0 { unit } else { 1.0 }).collect()
 }
 
-/// Summaries of several records in a row, of friction in these units.
+/// Summaries of several records, concatenated, with friction in these units.
 pub(crate) fn summaries_of(curves: &[Vec<f64>], units: &[f64]) -> Vec<f64> {
     let records = curves.iter().zip(units);
     let in_units = records.map(|(curve, unit)| curve.iter().map(|y| y / unit).collect::<Vec<f64>>());
     in_units.flat_map(|curve| summaries(&curve)).collect()
 }
 
-/// Means and standard deviations by which summaries are scaled.
+/// Means and standard deviations for scaling summaries.
 #[derive(Clone, Debug)]
 pub(crate) struct Scaling {
     means: Vec<f64>,
     deviations: Vec<f64>,
 }
 
-/// Largest distance of a summary from its mean that counts, in standard deviations: there is no extrapolation
-/// to a record outside of the training.
+/// Limit of the distance of a summary from its mean, in standard deviations: no extrapolation to a record
+/// outside of the training.
 const MAX_AWAY: f64 = 4.0;
 
 impl Scaling {
@@ -60,7 +60,7 @@ impl Scaling {
         Self { means, deviations }
     }
 
-    /// Summaries in standard deviations from their mean; 0 for those that never differ.
+    /// Summaries in standard deviations from their mean; 0 for constant ones.
     pub(crate) fn scaled(&self, row: &[f64]) -> Vec<f64> {
         let columns = row.iter().zip(&self.means).zip(&self.deviations);
         columns

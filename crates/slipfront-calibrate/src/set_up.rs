@@ -14,7 +14,7 @@ use slipfront_study::Unknown;
 use slipfront_study::identity::physics;
 use slipfront_study::{StudyError, TrainingError};
 
-/// Number of times by which the time step of a case is halved at the most.
+/// Largest number of halvings of the time step of a case.
 pub(crate) const MOST_HALVINGS: u32 = 7;
 
 /// Conditions of one record.
@@ -39,7 +39,7 @@ pub struct SetUp {
     pub instrument: Option<toml::Table>,
     /// Whether blocks have half the size of those of the case.
     pub is_finer: bool,
-    /// Number of times by which the time step of the case is halved.
+    /// Number of halvings of the time step of the case.
     pub halvings: u32,
 }
 
@@ -60,8 +60,8 @@ impl SetUp {
         of_case.map(|(unknown, &share)| unknown.set_to(share)).collect()
     }
 
-    /// The instrument at these shares of the ranges, for the record of these conditions; none if the file has
-    /// no such table, and no key of it is unknown.
+    /// The instrument at these shares of the ranges, for the record under these conditions; none if the file
+    /// has no table `[instrument]`, and no key of it is unknown.
     ///
     /// # Errors
     /// When its keys are not valid there.
@@ -111,7 +111,7 @@ impl SetUp {
         part
     }
 
-    /// The set-up with a time step that is halved this number of times.
+    /// The set-up after this number of halvings of its time step.
     pub(crate) fn halved(&self, times: u32) -> Self {
         Self {
             halvings: self.halvings + times,
@@ -144,10 +144,10 @@ impl SetUp {
         set.collect::<Vec<_>>().join(", ")
     }
 
-    /// The case of a record at these shares of the ranges, over the surface that `friction.seed` draws.
+    /// The case of a record at these shares of the ranges, on the surface of this `friction.seed`.
     ///
     /// # Errors
-    /// When the case is not valid, or cannot be put on blocks of half the size where they are asked for.
+    /// When the case is not valid, or cannot be put on blocks of half the size if the set-up asks for them.
     pub fn case(&self, shares: &[f64], seed: u64, conditions: &Conditions) -> Result<Case, CaseError> {
         let mut changes = self.set_to(shares);
         changes.push(Override::new("friction.seed", &toml::Value::from(seed as i64)));
@@ -183,9 +183,9 @@ impl SetUp {
         Ok(coefficients(1)? != coefficients(2)?)
     }
 
-    /// Memory of the largest run at a time step that is halved this number of times, in bytes.
+    /// Memory of the largest run, in bytes, after this number of halvings of the time step.
     pub(crate) fn bytes_of_run(&self, halvings: u32) -> Result<f64, CaseError> {
-        // Time, path and friction of every step, and a fourth number to spare.
+        // Time, path and friction of every step, and a fourth number as a reserve.
         const STEP: f64 = 4.0 * size_of::<f64>() as f64;
         let middle = self.middle();
         let mut largest = 0.0_f64;
@@ -197,8 +197,8 @@ impl SetUp {
         Ok(largest)
     }
 
-    /// The curves of all records at these shares of the ranges, over the surface that `friction.seed` draws;
-    /// none after a stop.
+    /// The curves of all records at these shares of the ranges, on the surface of this `friction.seed`; none
+    /// after a stop.
     ///
     /// # Errors
     /// When the case is not valid there, the run diverges, or it ends before a record.
@@ -260,10 +260,10 @@ impl SetUp {
         })
     }
 
-    /// A hash of all that decides the curves, but for the number of runs.
+    /// A hash of everything that determines the curves, except the number of runs.
     pub(crate) fn identity(&self) -> Result<String, StudyError> {
         let mut hasher = blake3::Hasher::new();
-        // This crate makes the recorded curves of what a run leaves.
+        // This crate converts the output of a run to recorded curves, so its sources count, too.
         hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
         let middle = self.middle();
         for conditions in &self.conditions {

@@ -1,9 +1,9 @@
 //! Summaries of a curve of friction: numbers from which a calibration learns.
 //!
 //! `y_i`, i from 0 to n - 1, is friction at n instants or places in equal steps. Widths of windows are shares
-//! of the record: "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of 400, `m` is
-//! the mean of the second half, in which a slider is taken to slide steadily. Each file of this folder has
-//! the formulas of its numbers; they are ratios and logarithms, so that a regression on them can be nearly
+//! of the record: "w of 400" is w n/400 values. `s3` and `s5` are running means over 3 and 5 of 400; `m` is
+//! the mean of the second half, in which the slider is assumed to slide steadily. Each file of this folder
+//! has the formulas of its numbers. They are ratios and logarithms, so that the regression can be nearly
 //! linear.
 
 mod check;
@@ -29,13 +29,13 @@ pub(crate) fn summaries(y: &[f64]) -> Vec<f64> {
     estimated_from(&Curve::new(y)).concat()
 }
 
-/// Names of the groups of numbers by which a record is checked, in words.
+/// Names of the groups of numbers for the check of a record, in words.
 pub(crate) fn checked_groups() -> impl Iterator<Item = &'static str> {
     ESTIMATED.into_iter().chain(CHECKED)
 }
 
-/// The numbers by which a curve is checked: its summaries, and others that the estimate does not use, by the
-/// groups of [`checked_groups`].
+/// The numbers for the check of a curve, in the groups of [`checked_groups`]: its summaries, and others that
+/// the estimate does not use.
 pub(crate) fn checked(y: &[f64]) -> Vec<Vec<f64>> {
     let curve = Curve::new(y);
     let mut groups = estimated_from(&curve).to_vec();
@@ -57,7 +57,8 @@ fn estimated_from(curve: &Curve) -> [Vec<f64>; 4] {
     groups.map(finite)
 }
 
-/// The numbers, with 0 for those that are none: a curve without friction, or without noise, has such ratios.
+/// The numbers, with NaN and infinity replaced by 0: ratios of a curve without friction or without noise are
+/// not finite.
 fn finite(numbers: Vec<f64>) -> Vec<f64> {
     let or_zero = |number: f64| if number.is_finite() { number } else { 0.0 };
     numbers.into_iter().map(or_zero).collect()

@@ -1,4 +1,4 @@
-//! Training: runs of the model over the ranges of the unknowns, with their curves without noise.
+//! Training: runs of the model over the ranges of the unknowns, and their curves without noise.
 
 use slipfront_study::StudyError;
 
@@ -20,7 +20,7 @@ pub struct Training {
 }
 
 impl Training {
-    /// Makes runs at points over the ranges, each over a surface of its own.
+    /// Makes runs at points over the ranges, each on its own surface.
     ///
     /// # Errors
     /// When a run cannot be made or kept, and after a stop.
@@ -37,7 +37,7 @@ impl Training {
         Ok(Self { points, curves })
     }
 
-    /// Adds the curves that the runs of the training have under further conditions.
+    /// Adds the curves of the same runs under further conditions.
     pub(crate) fn with(mut self, further: Self) -> Self {
         for (curves, more) in self.curves.iter_mut().zip(further.curves) {
             curves.extend(more);
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn what_cannot_be_run_is_told_with_its_unknowns() {
         let message = |set_up: &SetUp| trained(set_up, 1).unwrap_err().to_string();
-        // A program of speeds moves the drive as far as its case runs.
+        // A program of speeds limits the path of the drive by the duration of its case.
         let mut short = set_up([0.5, 1.0], 50.0);
         for conditions in &mut short.conditions {
             let program = "drive.program=[{ v_star = 0.1, until_star = 50 }, { v_star = 0.2 }]";

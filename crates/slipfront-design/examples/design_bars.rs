@@ -1,18 +1,23 @@
-//! Verdicts of searches that begin with different numbers.
+//! Verdicts of searches with different start numbers.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-design --example design_bars -- 50 0.03 0 10000 least 1 2 3
 //! ```
 //!
 //! Arguments: blocks along a side, V*, sigma_s*, runs of a search, the wish, and start numbers. The wish is
-//! `least` static friction, `worst` for the least over V*/3, V* and 3 V* by the worst of them, a value of
-//! mu_s* such as `0.7`, or `curve`, that of a cavity beside the middle on a surface of its own. Textures
-//! cover at most 10 %, with features and gaps of at least 3 blocks. Prints a line for every start number:
-//! what the design gives on fresh surfaces with the half width of its 95 % interval (the reduction in %,
-//! mu_s* and its distance from the value in %, or the root of the mean square of mu* less the curve, and how
-//! many times that of the cavity itself on 16 surfaces it is), by how many points it is better than the
-//! groove across and than the best named pattern (the lower ends of the intervals), of several cases the
-//! reduction in each of them beside that of the groove, and the optimism of the search in points.
+//! `least` static friction; `worst` for the least static friction in the worst of V*/3, V* and 3 V*; a value
+//! of mu_s* such as `0.7`; or `curve`, the curve of an off-centre cavity on its own surface. Textures cover
+//! at most 10 %, with features and gaps of at least 3 blocks.
+//!
+//! Prints a line for every start number:
+//!
+//! - the result of the design on fresh surfaces with the half width of its 95 % interval: the reduction in %;
+//!   mu_s* and its distance from the value in %; or the root mean square difference of mu* from the curve,
+//!   and its ratio to that of the cavity itself on 16 surfaces;
+//! - by how many points the design is better than the groove across and than the best named pattern (lower
+//!   ends of the intervals);
+//! - for several cases, the reduction in each of them by the design and by the groove;
+//! - the optimism of the search in points.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -26,7 +31,7 @@ use slipfront_design::{
 };
 use slipfront_run::running;
 
-/// Keys that are added to the case whose curve is asked for.
+/// Keys that are added to the case that provides the curve.
 const CAVITY: &str = "friction.seed = 1000\noutput.series = 5\n\
     texture = [{ shape = 'cavity', coverage = 8, center = ['17 um', '30 um'] }]";
 

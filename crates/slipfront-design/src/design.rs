@@ -1,4 +1,4 @@
-//! A design: a wish with its limits, the search for it, and the verdict on what is found.
+//! A design: a wish with its limits, the search for a texture, and the verdict on the result.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -27,11 +27,11 @@ use slipfront_study::StudyError;
 pub struct Design {
     pub(crate) evaluator: Evaluator,
     pub(crate) limits: Limits,
-    /// Number from which the random drafts of the search begin.
+    /// Seed of the random drafts of the search.
     start: u64,
-    /// Masks with which the search also begins, and their names.
+    /// Masks that the search also starts from, and their names.
     drawn: Vec<(String, Vec<bool>)>,
-    /// The shapes whose numbers are searched for, in place of masks.
+    /// Shapes with unknown numbers, if numbers are searched for in place of masks.
     pub(crate) shapes: Option<Arc<Shapes>>,
 }
 
@@ -53,8 +53,8 @@ pub struct Outcome {
 }
 
 impl Design {
-    /// A design for some cases, at least one, all on the same blocks, each with the wish in its own units;
-    /// `is_worst` asks for the worst case, in place of the mean over them.
+    /// A design for at least one case. All cases have the same blocks, and each has the wish in its own
+    /// units. With `is_worst`, the loss is that of the worst case instead of the mean over the cases.
     ///
     /// # Errors
     /// When a case cannot be run for as long as the search needs, or one of its files has changed since the
@@ -84,19 +84,19 @@ impl Design {
         })
     }
 
-    /// Searches for numbers of shapes in place of masks; named patterns and masks are compared with what is
-    /// found, and are no answer.
+    /// Searches for numbers of shapes in place of masks. Named patterns and masks are only compared with the
+    /// result, and cannot be the answer.
     pub(crate) fn vary(&mut self, shapes: Shapes) {
         self.shapes = Some(Arc::new(shapes));
     }
 
-    /// Lets the search begin with a mask too, or with what is legal of it; it counts as a named pattern, and
-    /// is judged whether it is good or not.
+    /// Adds a mask, or the legal part of it, to the starts of the search. It counts as a named pattern, and
+    /// is always judged, good or not.
     pub fn begin_with(&mut self, name: String, textured: Vec<bool>) {
         self.drawn.push((name, textured));
     }
 
-    /// Sentences about the masks with which the search begins that break a limit.
+    /// Notes on starting masks that break a limit.
     pub(crate) fn notes(&self) -> Vec<String> {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let note = |(name, textured): &(String, Vec<bool>)| {
@@ -118,7 +118,7 @@ impl Design {
     /// Searches, and judges the result on fresh surfaces.
     ///
     /// # Errors
-    /// When the limits leave no texture, when the slider without texture has nothing to compare with, when
+    /// When the limits leave no texture, when the slider without texture has no value to compare with, when
     /// runs cannot be made or kept, and after a stop.
     pub fn run(
         &self,
@@ -224,7 +224,7 @@ impl Design {
         Ok(best.into_iter().map(|found| found.texture).collect())
     }
 
-    /// A search that begins with patterns, if it is for masks.
+    /// A new search; a search for masks begins with these patterns.
     fn search_from(&self, starts: Vec<Named>) -> Search {
         let (space, starts) = match &self.shapes {
             Some(shapes) => (Space::shapes(Arc::clone(shapes)), Vec::new()),
@@ -236,12 +236,12 @@ impl Design {
         Search::new(space, self.limits.feature, self.start, starts)
     }
 
-    /// Whether a pattern is one of the masks with which the search begins.
+    /// Whether a pattern is one of the starting masks.
     fn is_drawn(&self, name: &str) -> bool {
         self.drawn.iter().any(|(drawn, _)| drawn == name)
     }
 
-    /// Largest number of runs of the verdict beside legal patterns of these names, and their cost in steps
+    /// Largest number of runs of the verdict with legal patterns of these names, and their cost in steps
     /// times blocks.
     pub(crate) fn most_of_verdict(&self, patterns: &[String]) -> (usize, f64) {
         let is_judged = |name: &&String| *name == GROOVE || self.is_drawn(name);
@@ -249,8 +249,8 @@ impl Design {
         Judge::most_runs(&self.evaluator, patterns.len(), judged)
     }
 
-    /// The legal patterns with which a search begins, and their textures: the named ones, and masks; fewer
-    /// once `ends` returns true.
+    /// The legal patterns that a search begins with, named patterns and masks, and their textures; fewer once
+    /// `ends` returns true.
     pub(crate) fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
         let drawn = self.drawn.iter().filter_map(|(name, textured)| {
@@ -261,7 +261,7 @@ impl Design {
         named(grid, limits, ends).into_iter().chain(drawn).unzip()
     }
 
-    /// A search whose runs the caller makes.
+    /// A search for which the caller makes the runs.
     pub fn open_search(&self) -> OpenSearch {
         OpenSearch::new(self.search_from(self.starts(&|| false).0))
     }
@@ -280,7 +280,7 @@ impl Design {
     }
 
     /// Loss of each texture, a distance from the wish, as a mean over the first `surfaces` surfaces of the
-    /// search, or the reason for which a texture has none; with a coarse step, or that of the case.
+    /// search, with a coarse step or the step of the case; or the reason why a texture has no loss.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.
@@ -309,7 +309,7 @@ impl Design {
     }
 
     /// Loss of each texture, a distance from the wish, on each of `surfaces` surfaces that the search has not
-    /// seen, or on one where they do not differ, with the steps and times of a verdict.
+    /// used, with the steps and times of a verdict. If surfaces do not differ, there is one.
     ///
     /// # Errors
     /// When runs cannot be made, and after a stop.

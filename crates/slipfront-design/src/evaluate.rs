@@ -1,4 +1,4 @@
-//! Runs of designs in memory: the wanted and the known runs, and the loss of each design.
+//! Runs of designs in memory: needed and known runs, and the loss of each design.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -19,12 +19,12 @@ use crate::wish::{Measured, Wish};
 use slipfront_study::StudyError;
 use slipfront_study::statistics::mean;
 
-/// A run that is wanted.
+/// A run that is needed.
 #[derive(Clone)]
 pub(crate) struct Wanted {
     /// Index of the case.
     pub(crate) subject: usize,
-    /// The texture; none for the slider without.
+    /// The texture; none for the slider without texture.
     pub(crate) texture: Option<Arc<Vec<bool>>>,
     /// Number of the surface; 0 is the surface of the search.
     pub(crate) surface: u64,
@@ -32,14 +32,14 @@ pub(crate) struct Wanted {
     pub(crate) fidelity: Fidelity,
 }
 
-/// Identity of a run: a hash of all that decides its numbers.
+/// Identity of a run: a hash of everything that determines its numbers.
 pub type RunId = String;
 
-/// Numbers of a run, or the reason for which it has none, a sentence: it diverged, or never came to rest
-/// under a held drive.
+/// Numbers of a run, or a sentence with the reason why it has none: it diverged, or never came to rest while
+/// the drive was held.
 pub type RunOutcome = Result<Measured, String>;
 
-/// Ends of runs by their identities.
+/// Outcomes of runs by their identities.
 pub type RunCache = HashMap<RunId, RunOutcome>;
 
 /// A run that was made, a line of the journal.
@@ -47,17 +47,17 @@ pub type RunCache = HashMap<RunId, RunOutcome>;
 pub struct MadeRun {
     /// Identity of the run.
     pub id: RunId,
-    /// End of the run.
+    /// Outcome of the run.
     pub ended: RunOutcome,
-    /// Cost of the run in this process, in steps times blocks; 0 for a run that the journal had.
+    /// Cost of the run in this process, in steps times blocks; 0 for a run from the journal.
     #[serde(skip)]
     pub(crate) work: f64,
 }
 
-/// Takes runs that were made, in their order.
+/// Callback that receives finished runs, in their order.
 pub type Keep<'a> = dyn FnMut(&[MadeRun]) -> Result<(), StudyError> + 'a;
 
-/// The cases in which designs are tried, and the rule by which their losses become one.
+/// The cases in which designs are tried, and the rule that combines their losses.
 #[derive(Debug)]
 pub(crate) struct Evaluator {
     /// The cases, all with the same blocks.
@@ -82,13 +82,13 @@ impl Evaluator {
         })
     }
 
-    /// Mean cost over the cases of a run, in steps times blocks.
+    /// Mean cost of a run over the cases, in steps times blocks.
     pub(crate) fn work(&self, fidelity: Fidelity) -> f64 {
         let work: f64 = self.subjects.iter().map(|subject| subject.work(fidelity)).sum();
         work / self.subjects.len() as f64
     }
 
-    /// An evaluator with other cases for this wish.
+    /// An evaluator with other cases and the same rule.
     pub(crate) fn with_subjects(&self, subjects: Vec<Subject>, grid: SliderBlocks) -> Self {
         Self {
             subjects,
@@ -97,7 +97,7 @@ impl Evaluator {
         }
     }
 
-    /// Whether surfaces differ by their seeds in any case.
+    /// Whether surfaces with different seeds differ in any of the cases.
     pub(crate) fn scatters(&self) -> bool {
         self.subjects.iter().any(|subject| subject.scatters)
     }
@@ -107,7 +107,7 @@ impl Evaluator {
         let subject = &self.subjects[wanted.subject];
         let mut hasher = blake3::Hasher::new();
         hasher.update(subject.physics.as_bytes());
-        // This crate makes the recorded numbers of what a run leaves.
+        // This crate computes the recorded numbers from the output of a run, so its sources count, too.
         hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
         if let Some(texture) = &wanted.texture {
             hasher.update(&hash(texture));
@@ -147,8 +147,8 @@ impl Evaluator {
         wanted
     }
 
-    /// Makes the runs that are not known yet, on the threads of rayon's pool, and hands them over in the
-    /// order in which they are wanted. After a stop, no run is handed over.
+    /// Makes the runs that are not known yet, on the threads of rayon's pool, and passes them on in the order
+    /// of `wanted`. After a stop, it passes none on.
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],
@@ -156,14 +156,14 @@ impl Evaluator {
         stop: &AtomicBool,
         keep: &mut Keep,
     ) -> Result<(), StudyError> {
-        // Textures and cases may share runs, above all that of the slider without texture.
+        // Textures and cases may share runs, above all the run of the slider without texture.
         let mut asked = HashSet::new();
         let missing: Vec<(RunId, &Wanted)> = wanted
             .iter()
             .map(|wanted| (self.id(wanted), wanted))
             .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
             .collect();
-        // One run is a task: some end early, and threads must not be left with a share of long ones.
+        // Each run is its own task: some end early, and no thread may be left with several long runs.
         let runs = missing.into_par_iter().with_max_len(1);
         let made: Result<Vec<MadeRun>, StudyError> = runs
             .map(|(id, wanted)| {
@@ -174,8 +174,8 @@ impl Evaluator {
                 })
             })
             .collect();
-        // In the order in which they were wanted, whichever thread was first: the journal is the same for any
-        // number of them.
+        // In the order of the request, whichever thread was first, so the journal is the same for any number
+        // of threads.
         let made = made?;
         keep(&made)?;
         known.extend(made.into_iter().map(|made| (made.id, made.ended)));
@@ -205,13 +205,13 @@ impl Evaluator {
         }))
     }
 
-    /// End of a run.
+    /// Outcome of a run.
     pub(crate) fn ended(&self, wanted: &Wanted, known: &RunCache) -> RunOutcome {
         let ended = known.get(&self.id(wanted)).cloned();
         ended.unwrap_or_else(|| Err("the run was not made".to_owned()))
     }
 
-    /// Deviation from the wish in a run with a texture, or the reason for which there is none.
+    /// Deviation from the wish in a run with a texture, or the reason why there is none.
     fn deviation(&self, run: &Wanted, known: &RunCache) -> Result<f64, String> {
         let wish = &self.subjects[run.subject].wish;
         let with = self.ended(run, known)?;
@@ -228,7 +228,7 @@ impl Evaluator {
         wish.deviation(&with, Some(&without))
     }
 
-    /// Deviations of a texture in one case, surface by surface; NaN where there is none.
+    /// Deviations of a texture in one case, one per surface; NaN where there is none.
     fn deviations(
         &self,
         subject: usize,
@@ -248,8 +248,8 @@ impl Evaluator {
             .collect()
     }
 
-    /// The loss of a texture on some surfaces: the mean over the cases of the mean deviation of each, or the
-    /// largest; infinite if the texture is [lost](Self::lost) on any of them.
+    /// The loss of a texture on some surfaces: the mean, or the largest, of the losses of the cases; infinite
+    /// if the texture is [lost](Self::lost) on any surface.
     pub(crate) fn loss(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -269,8 +269,9 @@ impl Evaluator {
         }
     }
 
-    /// Parts of the [loss](Self::loss) of a texture, surface by surface: their mean is the loss, and their
-    /// scatter that of the loss. If the worst case counts they are those of this case.
+    /// Contributions of the surfaces to the [loss](Self::loss) of a texture: their mean is the loss, and
+    /// their scatter gives its uncertainty. If the worst case counts, they are the contributions in that
+    /// case.
     pub(crate) fn loss_by_surface(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -295,8 +296,8 @@ impl Evaluator {
         (0..n_surfaces).map(of_surface).collect()
     }
 
-    /// Parts within the tolerance of the wish, each of which is a surface, in every case; none without a
-    /// tolerance.
+    /// Number of parts within the tolerance of the wish in every case, where each surface is a part; none
+    /// without a tolerance.
     pub(crate) fn within(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -310,7 +311,7 @@ impl Evaluator {
         for (number, subject) in self.subjects.iter().enumerate() {
             let deviations = self.deviations(number, texture, surfaces.clone(), fidelity, known);
             for (is_good, deviation) in is_good.iter_mut().zip(deviations) {
-                // A lost part has no deviation, and is none within.
+                // A lost part has no deviation, and does not count as within.
                 *is_good &= subject.wish.is_within(deviation) == Some(true);
             }
         }
@@ -318,8 +319,8 @@ impl Evaluator {
         Some(WithinTolerance { within, parts })
     }
 
-    /// Reason for which a texture is lost on some surfaces: that of the first run without a deviation from
-    /// the wish, with its case and seed where there are several.
+    /// Reason why a texture is lost on some surfaces: that of the first run without a deviation from the
+    /// wish, with its case and seed if there are several.
     pub(crate) fn lost(
         &self,
         texture: &Arc<Vec<bool>>,
@@ -348,7 +349,8 @@ impl Evaluator {
         })
     }
 
-    /// Refuses a slider without texture that has nothing to compare textures with; makes its runs.
+    /// Makes the runs of the slider without texture, and refuses it if it has no value to compare textures
+    /// with.
     ///
     /// # Errors
     /// The reason; when runs cannot be made or kept, and after a stop.
@@ -379,8 +381,8 @@ impl Evaluator {
     }
 }
 
-/// Root of the mean square of mu* less the wished values at some times of the drive, with mu* linear between
-/// its rows.
+/// Root mean square difference between mu* and the requested values at some times of the drive; mu* is
+/// interpolated linearly between the rows of the record.
 fn misfit(points: &[[f64; 2]], record: &RunData) -> f64 {
     let rows = &record.rows;
     let mut next = 0;
@@ -416,7 +418,7 @@ mod tests {
             [0.5 * (time[0] + mu[0]), 0.5 * (time[1] + mu[1])]
         });
         let points: Vec<[f64; 2]> = points.collect();
-        // The middle of two rows, rounded.
+        // The mean of two rows, up to rounding.
         assert!(misfit(&points, &record) < 1e-15);
         let raised: Vec<[f64; 2]> = points.iter().map(|[time, mu]| [*time, mu + 0.5]).collect();
         assert!((misfit(&raised, &record) - 0.5).abs() < 1e-15);

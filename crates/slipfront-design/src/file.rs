@@ -26,7 +26,7 @@ use slipfront_study::project_file::ProjectFile;
 use slipfront_study::project_folder::ProjectKind;
 use slipfront_study::work_memory::WorkMemory;
 
-/// Folders of designs. Their design file has the base case as a table in it:
+/// Folders of designs. Their design file contains the base case as a table:
 /// `slipfront design DIR/design.toml` repeats the design.
 pub(crate) static DESIGN: ProjectKind = ProjectKind {
     name: "design",
@@ -145,7 +145,7 @@ enum Number {
 }
 
 impl Number {
-    /// The number, a force in N, and whether it is one.
+    /// The number, in N for a force, and whether it is a force.
     fn number(&self) -> Result<(f64, bool), String> {
         match self {
             Self::Coefficient(number) => Ok((*number, false)),
@@ -204,7 +204,7 @@ impl DesignFile {
     /// Reads a design file called `file` in messages; a base case that it names is relative to `folder`.
     ///
     /// # Errors
-    /// When it is no TOML, has unknown keys, or values out of their bounds.
+    /// When it is not TOML, has unknown keys, or has values out of bounds.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let (project, keys): (_, DesignKeys) =
             ProjectFile::parse(&DESIGN, DesignKeys::KEYS, &[], text, file, name, folder)?;
@@ -212,10 +212,10 @@ impl DesignFile {
         Ok(Self { keys, project })
     }
 
-    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    /// Sets keys of the base case, each by a string such as `drive.v_star=0.05`.
     ///
     /// # Errors
-    /// When a text is no override.
+    /// When a string is not an override.
     pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
         self.project.set(overrides)
     }
@@ -249,7 +249,7 @@ impl DesignFile {
         self.keys.cases.iter().map(case).collect()
     }
 
-    /// Keys of each of several cases, as a text; nothing for the base alone.
+    /// Keys of each of several cases, as strings; empty for the base alone.
     pub(crate) fn case_keys(&self) -> Vec<String> {
         let keys = |set: &Table| {
             let set: Vec<String> = overrides(set).iter().map(ToString::to_string).collect();
@@ -286,7 +286,7 @@ impl DesignFile {
         Ok(case)
     }
 
-    /// The textured blocks of the base case with other textures, in place of its own.
+    /// The textured blocks of the base case with other textures instead of its own.
     fn textured(&self, key: &str, textures: &Value) -> Result<Vec<bool>, CaseError> {
         if !textures.is_array() {
             let sentence = format!(
@@ -302,16 +302,17 @@ impl DesignFile {
     /// The design that the file asks for.
     ///
     /// # Errors
-    /// When a case of it is not valid, or when its limits do not belong to its blocks.
+    /// When one of its cases is not valid, or when its limits do not fit its blocks.
     pub fn design(&self) -> Result<Design, StudyError> {
         self.design_up_to(self.keys.coverage[1])
     }
 
-    /// Refuses a design that is not valid, that has no memory for `threads` runs at once, or that asks for a
-    /// front although its search `is_timed`; `runs` is the number of runs of its search.
+    /// Refuses a design that is not valid, that needs too much memory for `threads` simultaneous runs, or
+    /// that asks for a front although its search `is_timed`. `runs` is the number of runs of its search.
     ///
     /// # Errors
-    /// As [`design`](Self::design), and with the number of runs at once that there is memory for.
+    /// As [`design`](Self::design); for memory, with the number of simultaneous runs that it is large enough
+    /// for.
     pub fn check(&self, runs: usize, threads: usize, is_timed: bool) -> Result<(), StudyError> {
         if is_timed && !self.keys.front.is_empty() {
             let sentence = "a search with a time limit has no time for a front: give a number of runs, or leave out `front`";
@@ -326,25 +327,25 @@ impl DesignFile {
     /// # Errors
     /// As [`design`](Self::design).
     pub fn memory(&self, runs: usize) -> Result<WorkMemory, StudyError> {
-        // A draft keeps its blocks, its patches, and its line of the table.
+        // A draft keeps its patches and its row of the table, in addition to its blocks.
         const DRAFT: f64 = 2048.0;
         let evaluator = self.design()?.evaluator;
-        // A mesh that has no room for a single run is left out of the verdict.
+        // The verdict skips a mesh if memory is too small for a single run on it.
         let finer = evaluator.on_finer_blocks().ok();
         let mut run = evaluator.bytes_of_run()?;
         if let Some(finer) = finer {
             run = run.max(finer.bytes_of_run()?);
         }
-        // Every design of a front keeps what it has tried until all are written.
+        // Every design of a front keeps its drafts until all designs are written.
         let drafts = runs.saturating_mul(1 + self.keys.front.len());
         Ok(WorkMemory {
-            // Masks, and cases that are made of them, take as much as 1.2 runs (measured).
+            // Masks, and the cases with them, take as much memory as 1.2 runs (measured).
             beside: PROGRAM + 1.25 * run + drafts as f64 * (DRAFT + evaluator.grid.n_blocks() as f64),
             pieces: vec![(run, usize::MAX)],
         })
     }
 
-    /// The designs of a front: every coverage in `front`, with the design of at most this coverage.
+    /// The designs of a front: every coverage in `front`, and the design with at most that coverage.
     ///
     /// # Errors
     /// As [`design`](Self::design).
@@ -419,7 +420,7 @@ impl DesignFile {
         let narrowest = grid.size()[0].min(grid.size()[1]);
         let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
             let of_length = |length: &Length| {
-                // A length that is a whole number of blocks up to rounding must not gain one.
+                // A length that equals a whole number of blocks up to rounding must not gain a block.
                 (length.si() / base.scales.block_size - 1e-6).ceil().max(1.0) as usize
             };
             let blocks =
@@ -554,7 +555,7 @@ impl DesignFile {
         }
     }
 
-    /// The curve of a table as mu* at times t* of the drive of a case.
+    /// The curve of a table, as mu* over the time t* of the drive of a case.
     fn curve(&self, keys: &CurveKeys, case: &Case, load: f64) -> Result<Wish, StudyError> {
         if case.model.drive.program.is_some() {
             let sentence =
@@ -585,7 +586,7 @@ impl DesignFile {
         } else {
             mu_s
         };
-        // The drive has gone X at t* = X/(V* l_x), with one unit l_x of displacement.
+        // The drive reaches the displacement X at t* = X/(V* l_x), where l_x is the unit of displacement.
         let path_of_time = case.groups.v_star * case.scales.displacement();
         let points = record.x.iter().zip(&record.y);
         Ok(Wish::Curve(
@@ -664,7 +665,7 @@ impl DesignKeys {
 mod tests {
     use super::*;
 
-    /// Memory counts runs as they are on blocks of half the size, and drafts with their blocks.
+    /// The memory includes runs on blocks of half the size, and drafts with their blocks.
     #[test]
     fn threads_are_held_against_the_memory() {
         let file = |blocks: usize| {
@@ -678,7 +679,7 @@ mod tests {
             panic!("{found:?}")
         };
         let fine = file(400).design().unwrap().evaluator.bytes_of_run().unwrap();
-        // Of as many blocks, but for the row of a step at which the onset is expected.
+        // The number of blocks is equal, except for the row of a step at which the onset is expected.
         assert!((run / fine - 1.0).abs() < 0.01);
         let drafts = file(200).memory(300).unwrap().beside - found.beside;
         assert!((drafts - 200.0 * (2048.0 + 200.0 * 200.0)).abs() < 1.0);

@@ -37,12 +37,11 @@ pub struct DesignFolder {
 }
 
 impl DesignFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works
-    /// in.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process uses.
     ///
     /// # Errors
-    /// When the folder holds other files, or some that were edited since they were written and may not be
-    /// replaced by `force`; when another process works in it, or it cannot be written to.
+    /// When the folder contains other files, or results that were edited afterwards, unless `force` is set;
+    /// when another process uses it, or it cannot be written to.
     pub fn open(path: &Path, file: &DesignFile, force: bool) -> Result<Self, StudyError> {
         DESIGN.is_used(path)?;
         let given = file.project.given()?;
@@ -64,7 +63,7 @@ impl DesignFolder {
         &self.path
     }
 
-    /// Path of the numbers that were found.
+    /// Path of the file with the results as numbers.
     pub fn numbers(&self) -> PathBuf {
         self.path.join(VERDICT[0])
     }
@@ -87,8 +86,8 @@ impl DesignFolder {
         self.known.len()
     }
 
-    /// Finds the design, and the designs of a front if the file asks for one, writes their results, and
-    /// returns the verdict as a text.
+    /// Finds the design, and the designs of a front if the file asks for one. Writes their results, and
+    /// returns the verdict as text.
     ///
     /// # Errors
     /// As [`run`](Self::run), and when the system refuses to write.
@@ -104,7 +103,7 @@ impl DesignFolder {
         let mut text = self.report(&mut batch).write(&design, &outcome)?;
         let designs = self.file.designs_of_front()?;
         if !designs.is_empty() {
-            // The results of the design stand, whatever becomes of its front.
+            // Keep the results of the design, even if its front fails.
             batch.place_so_far(Others::Go)?;
         }
         let mut front = Vec::new();
@@ -121,12 +120,12 @@ impl DesignFolder {
         Ok(text)
     }
 
-    /// Searches and judges, or goes on from an earlier call; every run is kept as soon as the runs that were
-    /// begun with it have ended.
+    /// Searches and judges, or continues an earlier call. Every run is kept as soon as all runs of its batch
+    /// have ended.
     ///
     /// # Errors
-    /// As [`Design::run`]. After a stop, the best texture so far stands in the folder without a verdict,
-    /// unless the folder has the verdict of an earlier search.
+    /// As [`Design::run`]. After a stop, the folder contains the best texture so far without a verdict,
+    /// unless it has the verdict of an earlier search.
     pub fn run(
         &mut self,
         design: &Design,
@@ -152,12 +151,12 @@ impl DesignFolder {
         found
     }
 
-    /// Whether a search in the folder was finished: its results stand there.
+    /// Whether a search in the folder was finished, so that its results are there.
     pub fn has_verdict(&self) -> bool {
         self.numbers().exists()
     }
 
-    /// Searches and judges with the runs of the journal, which new runs join.
+    /// Searches and judges with the runs of the journal, and appends new runs to it.
     fn judged(
         &mut self,
         design: &Design,
@@ -170,8 +169,7 @@ impl DesignFolder {
     }
 }
 
-/// Cost of the designs of a front beside that which is searched for, each of which costs about as much as the
-/// first.
+/// Cost of all designs of a front. Each of them costs about as much as the first.
 #[derive(Default)]
 struct FrontCost {
     /// Cost of the first design, once it is known.
@@ -192,7 +190,7 @@ impl FrontCost {
         }
     }
 
-    /// Goes on to the next design.
+    /// Continues with the next design.
     fn go_on(&mut self) {
         self.to_come -= 1;
         self.before += std::mem::take(&mut self.here);
@@ -225,10 +223,10 @@ struct Lost {
 }
 
 impl DesignFolder {
-    /// Refuses a verdict on textures that are all lost.
+    /// Refuses a verdict if all textures are lost.
     ///
     /// # Errors
-    /// A sentence that names the verdict; when the folder has none.
+    /// A sentence with the name of the verdict; when the folder has none.
     pub fn expect_verdict(&self) -> Result<(), StudyError> {
         let [numbers, words] = VERDICT.map(|name| self.path().join(name));
         match read_numbers::<Decided>(&numbers)?.design.lost {
@@ -238,10 +236,10 @@ impl DesignFolder {
     }
 }
 
-/// Length of the search whose results a folder holds.
+/// Length of the search that the results in a folder come from.
 ///
 /// # Errors
-/// When the file of the results cannot be read, or does not say.
+/// When the file of the results cannot be read, or does not contain the length.
 fn search_of(folder: &Path) -> Result<SearchLength, StudyError> {
     #[derive(Deserialize)]
     struct Found {
@@ -257,7 +255,7 @@ pub const DESIGNS: Derivation = Derivation {
     find_again,
 };
 
-/// Finds a design again in another folder from the runs in its journal.
+/// Repeats a design in another folder from the runs in its journal.
 fn find_again(
     folder: &Path,
     other: &Path,

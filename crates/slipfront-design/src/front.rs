@@ -25,8 +25,8 @@ const COLUMNS_OF_FRONT: [&str; 7] = [
 ];
 
 impl Report<'_> {
-    /// Writes a front as a table and a picture, and returns it as a text; of a coverage that no texture keeps
-    /// there is no design.
+    /// Writes a front as a table and a picture, and returns it as text. A coverage that no texture satisfies
+    /// has no design.
     ///
     /// # Errors
     /// When the system refuses to write, or the picture cannot be drawn.

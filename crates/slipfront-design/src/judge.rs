@@ -1,4 +1,4 @@
-//! Comparison of textures on fresh surfaces: their losses, and differences surface by surface.
+//! Comparison of textures on fresh surfaces: their losses, and paired differences on each surface.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub(crate) struct Contender {
     pub(crate) name: String,
     /// Blocks of the texture.
     pub(crate) texture: Arc<Vec<bool>>,
-    /// Shapes that the blocks were meshed from, if they were.
+    /// Shapes that the blocks were meshed from, if any.
     pub(crate) shapes: Option<Arc<Vec<Texture>>>,
 }
 
@@ -60,7 +60,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) evaluator: &'a Evaluator,
     /// Flag that ends all runs.
     pub(crate) stop: &'a AtomicBool,
-    /// Whether the answer is what was searched for, even where a named pattern is as good: it has no numbers.
+    /// Whether the answer must be a result of the search, even if a named pattern is as good: a pattern has
+    /// no numbers.
     pub(crate) asks_for_numbers: bool,
 }
 
@@ -77,7 +78,7 @@ impl Judge<'_> {
             .iter()
             .map(|found| Arc::clone(&found.texture))
             .collect();
-        // One surface after the other, so that no more of them are lost after a stop.
+        // One surface after the other, so that a stop loses the runs of at most one surface.
         for surface in surfaces {
             let wanted = self
                 .evaluator
@@ -92,12 +93,12 @@ impl Judge<'_> {
             .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
     }
 
-    /// The loss of a texture with the interval that follows from its scatter over surfaces.
+    /// The loss of a texture with the confidence interval from its scatter over surfaces.
     pub(crate) fn mean_loss(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> Mean {
         Mean::of(&self.loss_by_surface(contender, surfaces, known))
     }
 
-    /// The loss of one texture less that of another, surface by surface.
+    /// The loss of one texture minus that of another, paired by surface.
     pub(crate) fn difference(
         &self,
         one: &Contender,
@@ -110,7 +111,7 @@ impl Judge<'_> {
         Mean::of(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
     }
 
-    /// Reason for which a texture has no loss on some surfaces, if it has none.
+    /// Reason why a texture has no loss on some surfaces, if it has none.
     pub(crate) fn lost(
         &self,
         contender: &Contender,

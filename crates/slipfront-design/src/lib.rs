@@ -1,12 +1,12 @@
-//! From a wish to a texture: the search for a mask, or for the numbers of shapes, with the wished friction,
-//! within limits, and the verdict on it.
+//! From a wish to a texture: the search for a mask, or for the numbers of shapes, that gives the requested
+//! friction within limits; and the verdict on the result.
 //!
 //! ```text
 //! wish, limits -> drafts of patches, or numbers -> masks -> runs on one surface -> the best on several -> the verdict on fresh ones
 //! ```
 //!
-//! A search sees some surfaces, and its result is good on these. The values in a verdict are measured on
-//! fresh surfaces.
+//! A search uses a few surfaces, and its result may be good only on these. The verdict therefore measures its
+//! values on fresh surfaces.
 
 mod design;
 mod evaluate;

@@ -1,4 +1,4 @@
-//! Limits on the textures of a design, and the texture of a draft: legal as it is made.
+//! Limits on the textures of a design, and the conversion of a draft to a legal texture.
 
 use slipfront_base::number_format::{are, count as count_of};
 
@@ -27,7 +27,7 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// Limits that every texture keeps.
+    /// Limits that every texture satisfies.
     fn default() -> Self {
         Self {
             coverage: [0.0, 100.0],
@@ -41,7 +41,7 @@ impl Default for Limits {
     }
 }
 
-/// Reason for which a texture is not legal.
+/// Reason why a texture is not legal.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum Illegal {
@@ -72,7 +72,7 @@ impl Limits {
         if !(least..=most).contains(&found) {
             return Err(Illegal::Coverage { found, least, most });
         }
-        // Of many drafts, few are too narrow: by how much is looked for then.
+        // Few drafts have parts that are too narrow, so the width is determined only for those.
         let narrow = |set: &[bool], least| {
             if grid.lattice.opened(set, least) == set {
                 None
@@ -114,8 +114,8 @@ impl Limits {
         Ok(())
     }
 
-    /// The texture of a draft: the blocks inside its patches when these have grown, all alike, to the largest
-    /// legal texture within the coverage of the draft; none if there is none.
+    /// The texture of a draft: the blocks inside its patches, after all patches have grown by the same
+    /// distance to the largest legal texture within the coverage of the draft. None if no texture is legal.
     pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &PatchDraft) -> Option<Vec<bool>> {
         let growth = self.growth(grid, draft);
         let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
@@ -127,7 +127,7 @@ impl Limits {
             let held: Vec<bool> = growth.iter().map(|&growth| growth <= level).collect();
             self.smoothed(grid, &held)
         };
-        // What is covered rises with the growth.
+        // Bisection: the coverage increases with the growth.
         let (mut low, mut high) = (0, levels.len());
         let mut largest = None;
         while low < high {
@@ -143,8 +143,8 @@ impl Limits {
         largest.filter(|texture| texture.contains(&true) && self.check(grid, texture).is_ok())
     }
 
-    /// Growth by which a draft holds each block, in every cell and half alike; endless where a block must
-    /// touch.
+    /// Growth at which a draft contains each block, equal in all cells and mirrored halves; infinite where a
+    /// block must be in contact.
     fn growth(&self, grid: &SliderBlocks, draft: &PatchDraft) -> Vec<f64> {
         let of_draft = draft.growth(grid);
         let mut growth = vec![f64::INFINITY; of_draft.len()];
@@ -167,8 +167,8 @@ impl Limits {
         growth
     }
 
-    /// Blocks that no legal texture has: those that do not exist, those that must touch, and all that cells
-    /// and mirrors make equal to one of these.
+    /// Blocks that no legal texture contains: those that do not exist, those that must be in contact, and all
+    /// copies and mirror images of these.
     fn barred(&self, grid: &SliderBlocks) -> Vec<bool> {
         let n = grid.exists.len();
         let is_own = |block: usize| {
@@ -189,7 +189,7 @@ impl Limits {
         barred
     }
 
-    /// A set without parts that are too narrow, and without gaps that are.
+    /// A set after too narrow parts are removed and too narrow gaps are filled.
     fn smoothed(&self, grid: &SliderBlocks, set: &[bool]) -> Vec<bool> {
         let opened = grid.lattice.opened(set, self.feature);
         if self.gap <= 1 {
@@ -203,7 +203,7 @@ impl Limits {
         grid.lattice.opened(&closed, self.feature)
     }
 
-    /// The block at this place of the first cell.
+    /// The block at the same place in the first cell.
     fn in_first_cell(&self, grid: &SliderBlocks, block: usize) -> usize {
         let [nx, ny] = grid.size();
         let [columns, rows] = self.copies;
@@ -290,8 +290,8 @@ mod tests {
         assert!(search.ask(8, &|| false).is_empty());
     }
 
-    /// Textures that a search asks for are legal and new, whatever the limits, and it asks for the same after
-    /// the same losses.
+    /// Textures that a search proposes are legal and new, whatever the limits. The same losses lead to the
+    /// same proposals.
     #[test]
     fn what_is_asked_for_is_legal_and_new() {
         let [nx, ny] = [24, 18];
@@ -304,7 +304,7 @@ mod tests {
             &|limits| limits.mirror = [true, true],
             &|limits| limits.copies = [2, 3],
             &|limits| limits.forbidden = Some(corner.clone()),
-            // The mirror image of what is forbidden, and its place in every cell, are forbidden too.
+            // Mirror images and copies of forbidden blocks are forbidden, too.
             &|limits| (limits.forbidden, limits.mirror) = (Some(corner.clone()), [false, true]),
             &|limits| (limits.forbidden, limits.copies) = (Some(side.clone()), [2, 1]),
             &|limits| limits.max_features = Some(1),
@@ -338,7 +338,7 @@ mod tests {
                     assert_eq!(limits.check(&grid, &one.texture), Ok(()), "{limits:?}");
                     assert!(seen.insert(one.texture.clone()));
                 }
-                // A loss without any meaning: how far the texture lies to the left.
+                // An arbitrary loss: the position of the texture along x.
                 let rated: Vec<_> = asked
                     .into_iter()
                     .map(|proposal| {

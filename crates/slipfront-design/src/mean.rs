@@ -8,9 +8,9 @@ use slipfront_study::{CONFIDENCE, Sample};
 pub struct Mean {
     /// The mean.
     pub mean: f64,
-    /// Half the width of the 95 % interval of the mean; none where surfaces do not differ.
+    /// Half the width of the 95 % confidence interval of the mean; none if surfaces do not differ.
     pub half_width: Option<f64>,
-    /// Standard deviation from surface to surface; none where surfaces do not differ.
+    /// Standard deviation over surfaces; none if surfaces do not differ.
     pub deviation: Option<f64>,
 }
 
@@ -19,7 +19,7 @@ impl Mean {
     pub(crate) fn of(values: &[f64]) -> Self {
         let sample = Sample::of(values, CONFIDENCE);
         let mean = sample.map_or(f64::NAN, |sample| sample.mean);
-        // What differs by its rounding alone does not scatter.
+        // Differences that are due to rounding alone do not count as scatter.
         let scatters = |width: &f64| *width > 1e-12 * mean.abs();
         Self {
             mean,

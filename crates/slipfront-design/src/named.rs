@@ -1,4 +1,4 @@
-//! Named patterns: the drawings of a designer without a search, with which a search begins.
+//! Named patterns, such as a designer would draw without a search. A search begins with them.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -25,19 +25,19 @@ impl Named {
     }
 }
 
-/// The pattern with which others are compared first.
+/// Name of the pattern that serves as a reference.
 pub(crate) const GROOVE: &str = "groove across";
 
-/// Named patterns that are legal, each with its texture, which covers as much as the limits allow; fewer once
-/// `ends` returns true.
+/// Legal named patterns, each with a texture that covers as much as the limits allow; fewer once `ends`
+/// returns true.
 pub(crate) fn named(
     grid: &SliderBlocks,
     limits: &Limits,
     ends: &dyn Fn() -> bool,
 ) -> Vec<(Named, Vec<bool>)> {
     let percent = limits.coverage[1];
-    // A strip whose middle is that of a block has an odd number of blocks across, and one whose middle is an
-    // edge an even number.
+    // A strip has an odd number of blocks across if it is centred on a block, and an even number if it is
+    // centred on an edge.
     let [edges, middles] = [0.0, 0.5].map(|shift| shifted(grid, percent, shift));
     let textured = |named: Named| Some((limits.texture(grid, &named.draft)?, named));
     let larger = |(one, other): (Named, Named)| {
@@ -49,9 +49,9 @@ pub(crate) fn named(
     pairs.filter_map(larger).collect()
 }
 
-/// Named patterns whose strips and cavities are moved by `shift` blocks: grooves across and along it (x is
-/// the direction of the drive, unless that is turned), in the middle, in pairs and in threes, one that is
-/// tilted, a frame, a cross, and cavities, round and square, one or several.
+/// Named patterns with their strips and cavities shifted by `shift` blocks: one, two or three grooves across
+/// and along the sliding direction (x unless the drive is rotated), a tilted groove, a frame, a cross, and
+/// one or several round or square cavities.
 fn shifted(grid: &SliderBlocks, percent: f64, shift: f64) -> Vec<Named> {
     let size = grid.size().map(|n| n as f64);
     let strip = |axis: usize, place: f64, angle: f64| {

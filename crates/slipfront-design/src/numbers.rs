@@ -1,4 +1,4 @@
-//! The numbers of shapes that a design has found, for its results.
+//! Results of a design for the numbers of shapes.
 
 use serde::Serialize;
 use slipfront_base::number_format::exact;
@@ -7,7 +7,7 @@ use slipfront_study::text_table::table;
 use crate::design::Design;
 use crate::shapes::number;
 
-/// Share of its range by which a number is near an end of it.
+/// Distance from an end of the range, as a share of the range, below which a number is near that end.
 const NEAR_AN_END: f64 = 0.01;
 
 /// A number that was found.
@@ -89,7 +89,7 @@ pub(crate) fn numbers_at(design: &Design, shares: Option<&[f64]>) -> Vec<f64> {
         .collect()
 }
 
-/// The table of the numbers that were found; nothing for a mask.
+/// The table of the numbers that were found; empty for a mask.
 pub(crate) fn table_of_numbers(numbers: &[FoundNumber]) -> String {
     if numbers.is_empty() {
         return String::new();

@@ -1,15 +1,15 @@
-//! A search by asking and telling: the caller measures the loss of each texture.
+//! A search with an ask-and-tell interface: the caller measures the loss of each texture.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::search::{Proposal, RatedTexture, Search, hash};
 
-/// A search whose runs the caller makes.
+/// A search for which the caller makes the runs.
 #[derive(Debug)]
 pub struct OpenSearch {
     search: Search,
-    /// Textures that were asked for and whose losses are not known yet.
+    /// Textures that were proposed and have no known loss yet.
     asked: HashMap<[u8; 32], Proposal>,
 }
 
@@ -21,7 +21,7 @@ impl OpenSearch {
         }
     }
 
-    /// Up to `n` textures that were not asked for before; fewer where the limits leave few.
+    /// Proposes up to `n` new textures; fewer if the limits leave few.
     pub fn ask(&mut self, n: usize) -> Vec<Arc<Vec<bool>>> {
         let proposals = self.search.ask(n, &|| false);
         let textures = proposals
@@ -36,7 +36,7 @@ impl OpenSearch {
         textures
     }
 
-    /// Takes textures with their losses, the less the better; the textures may be asked for or others.
+    /// Takes textures with their losses, the lower the better. The textures need not be proposed ones.
     pub fn tell(&mut self, rated: Vec<(Vec<bool>, f64)>) {
         let found = rated.into_iter().map(|(texture, loss)| {
             let asked = self.asked.remove(&hash(&texture));

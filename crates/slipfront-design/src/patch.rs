@@ -18,17 +18,17 @@ pub(crate) enum Form {
 pub(crate) struct Patch {
     /// Centre of the patch.
     pub(crate) center: [f64; 2],
-    /// Half of the patch's length and of its width, before it grows.
+    /// Half length and half width of the patch, before it grows.
     pub(crate) half: [f64; 2],
-    /// Angle of the patch's length from x, radians.
+    /// Angle between x and the length of the patch, radians.
     pub(crate) angle: f64,
     /// Form of the patch.
     pub(crate) form: Form,
 }
 
 impl Patch {
-    /// Growth on every side by which the patch holds a point, in blocks; less than 0 inside of it. With (u,
-    /// v) the place of the point along length and width, and a and b their halves:
+    /// Growth at which the patch contains a point, in blocks on every side; negative inside the patch. With
+    /// (u, v) the position of the point along length and width, a the half length and b the half width:
     ///
     /// ```text
     /// rectangle  max(|u| - a, |v| - b);   ellipse  (sqrt((u/a)^2 + (v/b)^2) - 1) min(a, b)
@@ -45,7 +45,7 @@ impl Patch {
         }
     }
 
-    /// Lowers the growth of every block to that of this patch.
+    /// Reduces the growth of every block to that of this patch where it is smaller.
     fn lower(&self, grid: &SliderBlocks, growth: &mut [f64]) {
         let direction = [libm::cos(self.angle), libm::sin(self.angle)];
         let [nx, ny] = grid.size();
@@ -69,19 +69,19 @@ impl Patch {
     }
 }
 
-/// Rounds a growth to a millionth of a block: blocks beside a strip along an axis are equally far from it,
-/// whatever the cosine of its angle is rounded to.
+/// Rounds a growth to a millionth of a block, so that blocks along a strip parallel to an axis are at equal
+/// distances from it, despite the rounding of the cosine of its angle.
 fn rounded(growth: f64) -> f64 {
     (growth * 1e6).round() * 1e-6
 }
 
-/// A draft of a texture that patches make.
+/// A draft of a texture that consists of patches.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PatchDraft {
     /// Patches of the draft.
     pub(crate) patches: Vec<Patch>,
-    /// Growth by which a texture that was drawn block by block holds each block, in blocks, if the draft
-    /// begins with one.
+    /// Growth at which a texture that was drawn block by block contains each block, in blocks, if the draft
+    /// begins with such a texture.
     pub(crate) drawn: Option<Arc<Vec<f64>>>,
     /// Largest share of the slider that the draft covers, %.
     pub(crate) percent: f64,
@@ -97,7 +97,7 @@ impl PatchDraft {
         }
     }
 
-    /// Growth by which the draft holds each block.
+    /// Growth at which the draft contains each block.
     pub(crate) fn growth(&self, grid: &SliderBlocks) -> Vec<f64> {
         let n = grid.exists.len();
         let mut growth = match &self.drawn {
@@ -111,8 +111,8 @@ impl PatchDraft {
     }
 }
 
-/// Growth in blocks by which a set holds each block: the number of steps to it, straight or diagonal; for a
-/// block in the set, 1 less the number of steps out of it.
+/// Growth in blocks at which a set contains each block: the number of straight or diagonal steps to the set;
+/// for a block in the set, 1 minus the number of steps out of it.
 fn growth_of(grid: &SliderBlocks, set: &[bool]) -> Vec<f64> {
     let outwards = steps_to(grid, set);
     let inwards = steps_to(grid, &set.iter().map(|is_in| !is_in).collect::<Vec<_>>());
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(growth[8 * 7], rounded(expected(0.0, 7.0)));
     }
 
-    /// A drawn set is the set that has grown by at most 0.
+    /// The blocks with a growth of at most 0 are the drawn set.
     #[test]
     fn a_drawn_set_comes_back() {
         let grid = whole([6, 3], [false; 2]);

@@ -1,4 +1,4 @@
-//! Plans of designs: the search and its cost, before any run is made.
+//! Plans of designs: the search and its cost, without any run.
 
 use serde::Serialize;
 use slipfront_case::case_file::CaseError;
@@ -18,21 +18,21 @@ pub struct DesignPlan {
     pub name: String,
     /// Blocks along x and along y.
     pub blocks: [usize; 2],
-    /// Keys of shapes whose numbers are searched for, with the ends of their ranges; none if masks are.
+    /// Unknown keys of shapes, with the ends of their ranges; empty for a search for masks.
     pub unknowns: Vec<(String, [String; 2])>,
     /// Allowed share of textured blocks, %.
     pub coverage_percent: [f64; 2],
-    /// Names of the legal patterns with which the design is compared.
+    /// Names of the legal patterns that the design is compared with.
     pub patterns: Vec<String>,
     /// Cases in which every texture is tried.
     pub cases: usize,
-    /// Number of designs: one, and the others of the front.
+    /// Number of designs: one, and those of the front.
     pub designs: usize,
     /// Runs of each search.
     pub search_runs: usize,
     /// Largest number of runs of each verdict.
     pub verdict_runs: usize,
-    /// Largest cost of all runs, in steps times blocks, without steps in which a held drive stands.
+    /// Largest cost of all runs, in steps times blocks, without steps during which a held drive is stopped.
     pub block_steps: f64,
     /// Time of all runs, in s.
     #[serde(rename = "seconds")]
@@ -40,7 +40,7 @@ pub struct DesignPlan {
 }
 
 impl DesignFile {
-    /// The plan of the design with a search of so many runs, on `threads` threads of this machine.
+    /// The plan of the design with a search of `runs` runs, on `threads` threads of this machine.
     ///
     /// # Errors
     /// As [`design`](Self::design).
@@ -69,7 +69,7 @@ impl DesignFile {
 }
 
 impl Design {
-    /// Keys of shapes whose numbers are searched for, with the ends of their ranges.
+    /// Unknown keys of shapes, with the ends of their ranges.
     fn unknowns(&self) -> Vec<(String, [String; 2])> {
         let unknowns = self.shapes.iter().flat_map(|shapes| &shapes.unknowns);
         unknowns

@@ -10,20 +10,20 @@ use slipfront_study::draws::Draws;
 /// Numbers of a patch: its centre along x and y, half length, half width and angle.
 const OF_PATCH: usize = 5;
 
-/// PatchRanges of the numbers of a draft, each of which is told as a share of its range.
+/// Ranges of the numbers of a draft. Each number is given as a share of its range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchRanges {
     /// Blocks along x and y.
     size: [f64; 2],
     /// Largest half length and half width of a patch before it grows, in blocks: those of a strip across the
-    /// slider that covers all it may.
+    /// slider with the largest allowed coverage.
     half: [f64; 2],
     /// Least and largest coverage, %.
     coverage: [f64; 2],
 }
 
 impl PatchRanges {
-    /// PatchRanges within the limits of a design.
+    /// Ranges within the limits of a design.
     pub(crate) fn new(grid: &SliderBlocks, limits: &Limits) -> Self {
         let size = grid.size().map(|n| n as f64);
         let width = 0.01 * limits.coverage[1] * size[0].min(size[1]);
@@ -34,7 +34,7 @@ impl PatchRanges {
         }
     }
 
-    /// The longer side of the slider, in blocks: the range of which a share is the most blocks.
+    /// The longer side of the slider, in blocks: the largest of the ranges.
     pub(crate) fn side(&self) -> f64 {
         self.size[0].max(self.size[1])
     }
@@ -53,8 +53,8 @@ impl PatchRanges {
         }
     }
 
-    /// Numbers of a draft: those of its patches, then of its coverage unless it is the most. What lies
-    /// outside of its range counts as the nearest end.
+    /// Numbers of a draft: those of its patches, and then its coverage unless that is fixed to the largest. A
+    /// number outside of its range is clamped to it.
     pub(crate) fn numbers(&self, draft: &PatchDraft) -> Vec<f64> {
         let of_patch = |patch: &Patch| {
             let [x, y] = patch.center;
@@ -74,8 +74,8 @@ impl PatchRanges {
         draft.patches.iter().flat_map(of_patch).chain(covered).collect()
     }
 
-    /// A draft with the forms of another, and with other numbers; those outside of their ranges count as the
-    /// nearest end.
+    /// A draft with the forms of another and with these numbers; a number outside of its range is clamped to
+    /// it.
     pub(crate) fn draft(&self, from: &PatchDraft, numbers: &[f64]) -> PatchDraft {
         let held: Vec<f64> = numbers
             .iter()

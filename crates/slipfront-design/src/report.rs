@@ -30,13 +30,13 @@ use slipfront_study::StudyError;
 use slipfront_study::project_folder::Batch;
 use slipfront_study::text_table::table;
 
-/// A table of every draft that was tried.
+/// Table with every draft that was tried.
 const EVALUATIONS: &str = "evaluations.csv";
 
 /// The verdict, as numbers and as a text.
 pub(crate) const VERDICT: [&str; 2] = ["design.json", "design.txt"];
 
-/// Name of the mask, which is no picture of results, without an ending.
+/// Name of the mask without an ending; the mask is not a picture of results.
 pub(crate) const MASK_NAME: &str = "mask";
 /// Endings of the mask in other formats.
 const MASK_ENDINGS: [&str; 3] = ["svg", "dxf", "gsf"];
@@ -49,7 +49,7 @@ const PICTURE: &str = "mask.png";
 pub(crate) struct AsMeshed {
     /// Share of the blocks that are textured, %.
     pub coverage_percent: f64,
-    /// Number of features that touch nowhere along an edge of a block.
+    /// Number of features: pieces without a common edge of a block.
     pub features: usize,
     /// Smallest width of a feature, m.
     pub feature_m: Option<f64>,
@@ -66,7 +66,7 @@ struct DesignJson<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unknowns: Vec<FoundNumber>,
     as_meshed: &'a AsMeshed,
-    /// Unit in which friction is told, with one mu_s in it.
+    /// Unit of friction in the report, with the value of mu_s in it.
     unit: &'a FrictionUnit,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -128,8 +128,8 @@ impl Report<'_> {
         Ok(text)
     }
 
-    /// Writes a texture as a mask, and the cases that have it, with its shapes if their numbers are known by
-    /// the shares of their ranges; returns the first of these.
+    /// Writes a texture as a mask, and the cases with this texture; returns the first of these cases. If
+    /// `shares` of the ranges are given, the cases have the shapes with these numbers.
     pub(crate) fn write_texture(
         &mut self,
         design: &Design,
@@ -142,7 +142,7 @@ impl Report<'_> {
         let path = self.path.join(PICTURE);
         let picture = png_of_mask(nx, ny, texture).map_err(|source| StudyError::Write { path, source })?;
         self.batch.write(PICTURE, |to| to.write_all(&picture))?;
-        // A picture is laid over every mesh; an array belongs to its blocks.
+        // A picture can be applied to any mesh, while an array belongs to its blocks.
         let textures = match design.shapes.as_ref().zip(shares) {
             Some((shapes, shares)) => shapes.textures(shares)?,
             None => vec![masked(PICTURE)],
@@ -155,7 +155,7 @@ impl Report<'_> {
                 .write(&case_name(k), |to| to.write_all(text.as_bytes()))?;
             first.get_or_insert(text);
         }
-        // As it will be read from the folder.
+        // The case as it will be read from the folder.
         let in_memory = FilesInMemory::from([(PICTURE.to_owned(), picture.into())]);
         let files = Files {
             folder: self.path,
@@ -185,8 +185,8 @@ impl Report<'_> {
         }
     }
 
-    /// Writes curves of the design and of the textures in its comparison, on a fresh surface, and maps of
-    /// their first slips.
+    /// Writes curves and maps of the first slips of the design and of the textures it is compared with, on a
+    /// fresh surface.
     fn write_pictures(&mut self, design: &Design, outcome: &Outcome) -> Result<(), StudyError> {
         let subject = &design.evaluator.subjects[0];
         let [nx, ny] = design.evaluator.grid.size();
@@ -194,7 +194,7 @@ impl Report<'_> {
         for (name, texture) in &outcome.compared {
             let texture = texture.as_ref().map(|texture| texture.as_slice());
             let case = Arc::new(subject.case(texture, outcome.verdict.first_surface, Fidelity::Verdict)?);
-            // Its verdict was found on this surface among others, so that it does not diverge.
+            // The verdict includes this surface, so only the run of a lost texture can fail.
             let Ok(record) = running::run(&case, 1) else {
                 continue;
             };
@@ -343,8 +343,8 @@ fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Resul
     Ok(table.flush()?)
 }
 
-/// Sentences about everything that counts as lost: drafts of the search, textures on fresh surfaces, and the
-/// design under changes.
+/// Notes on everything that counts as lost: drafts of the search, textures on fresh surfaces, and the design
+/// under changes.
 fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
     let drafts = tried
         .iter()
@@ -397,7 +397,7 @@ fn headline(design: &Design, verdict: &Verdict) -> String {
             verdict.design.name
         );
     }
-    // Only where numbers are the answer can a pattern be better than the design.
+    // A pattern can be better than the design only if the search was for numbers.
     let better = verdict.others.iter().filter_map(|other| {
         let by = other.design_is_better_by?;
         (by.mean + by.half_width.unwrap_or(0.0) < 0.0).then_some((&other.name, by))
@@ -412,19 +412,20 @@ fn headline(design: &Design, verdict: &Verdict) -> String {
     text + wish.missed(loss)
 }
 
-/// The scatter of the design from part to part in the unit of the wish, for a sentence, where parts differ.
+/// The scatter of the design over parts in the unit of the wish, for a sentence; none if parts do not differ.
 fn scatter(unit: &FrictionUnit, verdict: &Verdict) -> Option<String> {
     let mean = verdict.design.cases[0].wished_star?;
     let deviation = unit.scatter_text(mean.deviation?);
     Some(format!("parts scatter by {deviation} (1 s.d.)"))
 }
 
-/// The parts of the design within the tolerance of the wish, and the tolerance as told.
+/// The parts of the design within the tolerance of the wish, and the tolerance as text.
 fn design_within(wish: &Wish, verdict: &Verdict) -> Option<(WithinTolerance, String)> {
     Some((verdict.design.within_tolerance?, wish.tolerance_text()?))
 }
 
-/// A line on the friction of the design in the unit of the wish, for a wish whose headline does not say it.
+/// A line on the friction of the design in the unit of the wish, for a wish with a headline that does not
+/// give it.
 fn friction_of_parts(unit: &FrictionUnit, wish: &Wish, verdict: &Verdict) -> Option<String> {
     let [one] = verdict.design.cases.as_slice() else {
         return None;
@@ -440,7 +441,7 @@ fn friction_of_parts(unit: &FrictionUnit, wish: &Wish, verdict: &Verdict) -> Opt
     ))
 }
 
-/// Rows of the table: one for every texture that was judged, and every case.
+/// Rows of the table: one for every judged texture in every case.
 fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
     let within = wish
         .tolerance_text()
@@ -463,7 +464,7 @@ fn on_fresh(wish: &Wish, verdict: &Verdict) -> String {
             } else {
                 format!("{}, case {}", found.name, k + 1)
             };
-            // A mean over those surfaces alone on which a texture is not lost would flatter it.
+            // If a texture is lost on some surfaces, a mean over the others would be too good.
             let is_whole = given.surfaces == verdict.surfaces;
             let mean = |mean: Mean| {
                 if is_whole {
@@ -525,7 +526,7 @@ fn optimism(wish: &Wish, verdict: &Verdict) -> String {
     )
 }
 
-/// Rows of the table of changes; the friction under each is that of the one case, if there is one.
+/// Rows of the table of changes; the friction under each change is given if there is only one case.
 fn under_changes(design: &Design, verdict: &Verdict) -> String {
     let (wish, subjects) = (design.evaluator.wish(), &design.evaluator.subjects);
     let unit = match subjects.as_slice() {
@@ -544,7 +545,7 @@ fn under_changes(design: &Design, verdict: &Verdict) -> String {
     let row = |changed: &Changed| {
         let mut row = vec![changed.change.clone()];
         if let Some(unit) = unit {
-            // A mean over those surfaces alone on which the design is not lost would flatter it.
+            // If the design is lost on some surfaces, a mean over the others would be too good.
             let found = changed.wished_star.filter(|_| changed.lost.is_none());
             let deviation = found.and_then(|mean| mean.deviation);
             row.push(found.map_or("-".to_owned(), |mean| unit.mean_text(&mean)));

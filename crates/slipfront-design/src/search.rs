@@ -1,12 +1,12 @@
-//! The search for a texture: starts, one after another or some beside each other.
+//! The search for a texture from several starts, one after another or some in parallel.
 //!
 //! ```text
 //! ask: named patterns first, then drafts of the starts -> their textures, legal and none asked for before
 //! tell: their losses -> the drafts of each start move towards its better ones; what has ended makes room for another start
 //! ```
 //!
-//! Starts begin by turns with patches anywhere and with one of the best textures so far. The textures asked
-//! for depend only on the start number and on the losses so far.
+//! Starts begin alternately with random patches and with one of the best textures so far. The proposed
+//! textures depend only on the start number and on the losses so far.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -16,16 +16,16 @@ use crate::space::{Draft, Space};
 use crate::start::{GENERATION, Start};
 use slipfront_study::draws::Draws;
 
-/// Number of drafts that are tried for every texture asked for.
+/// Largest number of drafts that are generated for every texture asked for.
 const TRIES: usize = 50;
 
-/// Deviation of drafts of a start anywhere, as a share of the range of every number.
+/// Standard deviation of drafts from a random start, as a share of the range of every number.
 const WIDE: f64 = 0.2;
 
-/// Deviation of drafts of a start with a good texture.
+/// Standard deviation of drafts from a good texture.
 const NEAR: f64 = 0.05;
 
-/// A texture that was asked for.
+/// A proposed texture.
 #[derive(Clone, Debug)]
 pub(crate) struct Proposal {
     /// Origin of the texture: the name of a pattern, or the number of a start.
@@ -33,7 +33,7 @@ pub(crate) struct Proposal {
     /// Blocks of the texture.
     pub(crate) texture: Arc<Vec<bool>>,
     draft: Draft,
-    /// Number of the start that drew the draft, with the standard normal numbers that made it.
+    /// Number of the start that drew the draft, and the standard normal numbers that it was made from.
     drawn: Option<(usize, Vec<f64>)>,
 }
 
@@ -60,12 +60,12 @@ pub(crate) struct RatedTexture {
 #[derive(Debug)]
 pub(crate) struct Search {
     space: Space,
-    /// Smallest width of a feature in blocks, by which the best textures must differ.
+    /// Smallest width of a feature in blocks, for the least difference between the best textures.
     feature: usize,
     draws: Draws,
     /// Patterns that were not proposed yet, the next one last.
     named: Vec<Named>,
-    /// Every texture that was asked for, as hashes.
+    /// Hashes of all proposed textures.
     seen: HashSet<[u8; 32]>,
     /// The best textures of all starts, the best first.
     best: Vec<RatedTexture>,
@@ -80,7 +80,7 @@ pub(crate) struct Search {
 impl Search {
     /// A search that begins with named patterns.
     pub(crate) fn new(space: Space, feature: usize, start: u64, mut named: Vec<Named>) -> Self {
-        // Taken from the end.
+        // Patterns are taken from the end.
         named.reverse();
         Self {
             space,
@@ -95,8 +95,8 @@ impl Search {
         }
     }
 
-    /// Up to `n` textures that were not asked for before, a generation of every start; fewer where the limits
-    /// leave few or once `ends` returns true, and none where the limits leave none.
+    /// Proposes up to `n` new textures, a generation of every start; fewer if the limits leave few or once
+    /// `ends` returns true, and none if the limits leave none.
     pub(crate) fn ask(&mut self, n: usize, ends: &dyn Fn() -> bool) -> Vec<Proposal> {
         let mut asked = Vec::new();
         let mut in_vain = 0;
@@ -117,8 +117,8 @@ impl Search {
                     drawn,
                 });
             } else {
-                // A start whose drafts are all illegal or known has narrowed down on what there is: another
-                // takes its place.
+                // If all drafts of a start are illegal or known, the start has converged: another takes its
+                // place.
                 in_vain += 1;
                 if in_vain == TRIES && place < self.starts.len() {
                     self.starts[place] = self.new_start();
@@ -129,14 +129,14 @@ impl Search {
         asked
     }
 
-    /// Takes the losses of textures that were asked for, in their order.
+    /// Takes the losses of proposed textures, in their order.
     pub(crate) fn tell(&mut self, found: &[RatedTexture]) {
         let finite: Vec<RatedTexture> = found
             .iter()
             .filter(|found| found.loss.is_finite())
             .cloned()
             .collect();
-        // Lost textures teach a start where not to go, but no start begins with one.
+        // Lost textures guide a start away from them, but no start begins with one.
         merge(&mut self.best, &finite, self.feature);
         for RatedTexture { proposal, loss } in found {
             let Some((number, normal)) = &proposal.drawn else {
@@ -149,7 +149,8 @@ impl Search {
         self.starts.retain(|start| !start.has_ended(&self.space));
     }
 
-    /// A proposal for a texture of the caller, whose loss may be told as if it had been asked for.
+    /// A proposal for a texture of the caller; its loss can be passed to [`tell`](Self::tell) as if the
+    /// search had proposed it.
     pub(crate) fn of_other(&self, texture: Vec<bool>) -> Proposal {
         Proposal {
             origin: "another search".to_owned(),
@@ -159,19 +160,19 @@ impl Search {
         }
     }
 
-    /// The best textures so far, which differ, the best first.
+    /// The best textures so far, distinct and sorted by loss.
     pub(crate) fn best(&self) -> &[RatedTexture] {
         &self.best
     }
 
-    /// Number of textures that were asked for.
+    /// Number of proposed textures.
     pub(crate) fn n_asked(&self) -> usize {
         self.seen.len()
     }
 
-    /// Returns the best textures, the best first, and forgets all losses, because later ones are measured
-    /// otherwise. The start of the best texture goes on if it has not ended; others begin with the best
-    /// textures. What was asked for is not asked for again.
+    /// Returns the best textures, the best first, and discards all losses, because later ones are measured
+    /// differently. The start of the best texture continues if it has not ended; others begin with the best
+    /// textures. No texture is proposed twice.
     pub(crate) fn refine(&mut self) -> Vec<Proposal> {
         let best = std::mem::take(&mut self.best);
         let drawn = best.first().and_then(|found| found.proposal.drawn.as_ref());
@@ -181,15 +182,15 @@ impl Search {
         self.starts.iter_mut().for_each(Start::forget_losses);
         self.is_refining = true;
         let proposals = best.into_iter().map(|found| Proposal {
-            // The start draws around another mean by now.
+            // The mean of the start has moved since the draft was drawn.
             drawn: None,
             ..found.proposal
         });
         proposals.collect()
     }
 
-    /// A new draft, the next named one or of the start in this place, its origin, and how the start has drawn
-    /// it.
+    /// A new draft, the next named pattern or one of the start at this place; its origin; and how the start
+    /// has drawn it.
     fn draft(&mut self, place: usize) -> (String, Draft, Option<(usize, Vec<f64>)>) {
         if let Some(Named { name, draft }) = self.named.pop() {
             return (name, Draft::Patches(draft), None);
@@ -213,7 +214,8 @@ impl Search {
         let is_near = n > 0 && (self.is_refining || self.n_starts.is_multiple_of(2));
         let near = is_near.then(|| {
             let draws = &mut self.draws;
-            // The best of three places: good textures more often, and every one at times.
+            // The best of three random places: good textures are chosen more often, but every one has a
+            // chance.
             let index = draws.below(n).min(draws.below(n)).min(draws.below(n));
             self.space.near(&self.best[index].proposal.draft, draws)
         });
@@ -225,11 +227,11 @@ impl Search {
     }
 }
 
-/// Number of textures that a search hands on.
+/// Number of best textures that a search keeps.
 const FINALISTS: usize = 24;
 
-/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by more than a
-/// square of `feature` blocks.
+/// Adds to the finalists, sorted by loss, and keeps the best that differ from every better one by at least
+/// the number of blocks in a square of `feature` blocks along a side, or by 9 if that is less.
 fn merge(list: &mut Vec<RatedTexture>, found: &[RatedTexture], feature: usize) {
     let mut all = std::mem::take(list);
     all.extend_from_slice(found);

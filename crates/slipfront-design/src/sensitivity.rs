@@ -1,4 +1,4 @@
-//! Sensitivity of a design to deviations in making or using it.
+//! Sensitivity of a design to deviations in manufacturing and use.
 
 use serde::Serialize;
 use slipfront::Lattice;
@@ -23,15 +23,15 @@ pub struct Changed {
     pub change: String,
     /// Loss of the design under the change, the mean over surfaces; infinite if the design is lost.
     pub loss: Mean,
-    /// The quantity of the wish in the first case under the change, in units of mu_s, where runs have it.
+    /// The quantity of the wish in the first case under the change, in units of mu_s, if the runs have it.
     pub wished_star: Option<Mean>,
     /// Parts within the tolerance of the wish under the change, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub within_tolerance: Option<WithinTolerance>,
-    /// Reason for which the design is lost, if it is: a run of it has not the numbers of the wish.
+    /// Reason why the design is lost, if it is: one of its runs does not have the numbers of the wish.
     pub lost: Option<String>,
-    /// The loss of the other texture under this change less that of the design, surface by surface: above 0
-    /// where the design is better.
+    /// The loss of the other texture under this change minus that of the design, paired by surface: above 0
+    /// if the design is better.
     pub better_by: Option<Mean>,
 }
 
@@ -66,8 +66,8 @@ impl Sensitivity {
     }
 }
 
-/// Changes of the texture itself: misplaced by one block to every side; parts that leave a slider with edges
-/// are lost.
+/// Changes of the texture itself: a shift by one block to every side. Parts beyond a free edge of the slider
+/// are cut off.
 const SHIFTS: [(&str, [isize; 2]); 4] = [
     ("one block towards +x", [1, 0]),
     ("one block towards -x", [-1, 0]),
@@ -82,7 +82,7 @@ const SPEEDS: [(&str, f64); 2] = [
 ];
 
 impl Judge<'_> {
-    /// Every change, with the design beside another texture.
+    /// All changes, for the design and another texture.
     pub(crate) fn sensitivity(
         &self,
         design: &Contender,
@@ -115,7 +115,7 @@ impl Judge<'_> {
             Ok(evaluator) => {
                 let size = self.evaluator.grid.size();
                 let finer = |contender: &Contender| -> Result<Contender, CaseError> {
-                    // Finer blocks come nearer to a shape; a mask stays as it is.
+                    // Shapes are meshed again on finer blocks; a mask keeps its outline.
                     let texture = match &contender.shapes {
                         Some(shapes) => evaluator.subjects[0].textured(shapes)?,
                         None => doubled(size, &contender.texture),
@@ -140,7 +140,7 @@ impl Judge<'_> {
         Judge { evaluator, ..*self }
     }
 
-    /// A texture beside another under a change.
+    /// A texture and another one under a change.
     fn under(
         &self,
         change: &str,
@@ -175,7 +175,8 @@ fn surfaces(evaluator: &Evaluator) -> std::ops::Range<u64> {
 pub(crate) fn most_runs(evaluator: &Evaluator) -> (usize, f64) {
     let surfaces = surfaces(evaluator);
     let at_once = evaluator.subjects.len() * (surfaces.end - surfaces.start) as usize;
-    // Of a design that is moved, the slider without texture and the other texture have been judged.
+    // A shift needs only runs of the shifted design: the slider without texture and the other texture have
+    // been judged.
     let moved = SHIFTS.len() * at_once;
     let changed = SPEEDS.iter().map(|(_, factor)| evaluator.at_speed(*factor));
     let changed = changed.chain([evaluator.on_finer_blocks()]);
@@ -207,11 +208,11 @@ impl Evaluator {
         Ok(self.with_subjects(subjects.collect::<Result<_, _>>()?, self.grid.clone()))
     }
 
-    /// The cases on blocks of half the size, as
-    /// [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks) puts them there.
+    /// The cases on blocks of half the size, by
+    /// [`Case::on_other_blocks`](slipfront_case::case::Case::on_other_blocks).
     ///
     /// # Errors
-    /// When a case cannot be put there.
+    /// When a case cannot be put on such blocks.
     pub(crate) fn on_finer_blocks(&self) -> Result<Self, CaseError> {
         let subjects = self.subjects.iter().map(Subject::on_finer_blocks);
         let subjects = subjects.collect::<Result<_, _>>()?;
@@ -224,7 +225,7 @@ impl Evaluator {
     }
 }
 
-/// Moves a set; parts that leave a slider with edges are lost.
+/// Shifts a set. Parts beyond a free edge of the slider are cut off.
 fn moved(grid: &SliderBlocks, set: &[bool], shift: [isize; 2]) -> Vec<bool> {
     let at = |block: usize| {
         let from = grid.neighbour(block, shift.map(|step| -step));

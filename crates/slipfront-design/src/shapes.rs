@@ -1,5 +1,4 @@
-//! Shapes of the base case whose numbers are designed: the unknown keys, their values and the textures of
-//! these.
+//! Shapes of the base case with unknown numbers: the keys, their values and the resulting textures.
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile, Override, Texture};
@@ -10,11 +9,11 @@ use crate::limits::Limits;
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::Subject;
 
-/// Keys of a texture whose values are whole numbers.
+/// Keys of a texture with whole-number values.
 const WHOLE: [&str; 2] = ["s", "array"];
 
-/// Share of a range that is still told apart: values are rounded to the power of ten below it, so that a file
-/// has `"7.93 um"` and not sixteen digits.
+/// Resolution of numbers, as a share of their range: values are rounded to the power of ten below it, so a
+/// file has `"7.93 um"` and not sixteen digits.
 const RESOLVED: f64 = 1e-3;
 
 /// The textures of a base case with unknown numbers.
@@ -23,7 +22,7 @@ pub(crate) struct Shapes {
     pub(crate) unknowns: Vec<Unknown>,
     /// The base case with every default filled in.
     base: String,
-    /// The base case, on whose blocks shapes are meshed.
+    /// The base case; shapes are meshed on its blocks.
     subject: Subject,
     grid: SliderBlocks,
     limits: Limits,
@@ -104,7 +103,7 @@ pub(crate) fn number(unknown: &Unknown, share: f64) -> f64 {
     let step = (unknown.at(beside) - exact).abs();
     let digits = -libm::floor(libm::log10(step)) as i32;
     let rounded = if digits > 0 {
-        // A text is rounded as it is written, and read as the nearest number.
+        // Formatting rounds the number, and parsing returns the nearest one.
         format!("{exact:.0$}", digits as usize).parse().unwrap_or(exact)
     } else {
         let tens = libm::pow(10.0, f64::from(-digits));
@@ -113,8 +112,8 @@ pub(crate) fn number(unknown: &Unknown, share: f64) -> f64 {
     rounded.clamp(unknown.at(0.0), unknown.at(1.0))
 }
 
-/// The value of an unknown at a share of its range, as a file has it. Columns and rows of an array that is
-/// named as a whole are equal.
+/// The value of an unknown at a share of its range, as written in a file. If an array is unknown as a whole,
+/// its numbers of columns and rows are equal.
 pub(crate) fn value(unknown: &Unknown, share: f64) -> Value {
     let number = number(unknown, share);
     if !is_whole(unknown.key()) {
@@ -128,7 +127,7 @@ pub(crate) fn value(unknown: &Unknown, share: f64) -> Value {
     }
 }
 
-/// Whether a key of a texture counts something.
+/// Whether the value of a key of a texture is a whole number.
 fn is_whole(key: &str) -> bool {
     let is_index = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
     let name = key.rsplit('.').find(|part| !is_index(part));
@@ -162,12 +161,12 @@ mod tests {
         assert_eq!(of("texture.0.array.1", 2.0, 8.0, "", 0.3), "4");
         assert_eq!(of("texture.0.repeat.array", 1.0, 3.0, "", 1.0), "[3, 3]");
         assert_eq!(of("texture.0.s", 1.0, 3.0, "", 0.0), "1");
-        // An end that is no round number is not left.
+        // Rounding must not leave the range if an end is not a round number.
         assert_eq!(of("texture.0.w", 0.0, 1.0 / 3.0, "", 1.0), "0.3333");
         assert!(of("texture.0.w", 1.0 / 3.0, 1.0, "", 0.0).starts_with("0.33333"));
     }
 
-    /// A whole number of a shape whose name is not known here would be set to a fraction.
+    /// A whole-number key that is missing in the list here would be set to a fraction.
     #[test]
     fn all_whole_numbers_of_shapes_are_known() {
         let shapes = SECTIONS.iter().filter(|section| section.is_shape);

@@ -45,7 +45,7 @@ impl SliderBlocks {
         count(&self.exists)
     }
 
-    /// Share of a set in the blocks that exist, %.
+    /// Size of a set as a share of the blocks that exist, %.
     pub fn percent(&self, set: &[bool]) -> f64 {
         100.0 * count(set) as f64 / self.n_blocks() as f64
     }
@@ -66,7 +66,7 @@ pub(crate) fn count(set: &[bool]) -> usize {
 pub(crate) mod tests {
     use super::*;
 
-    /// A grid all of whose blocks exist.
+    /// A grid in which all blocks exist.
     pub(crate) fn whole([nx, ny]: [usize; 2], periodic: [bool; 2]) -> SliderBlocks {
         let edges = periodic.map(|is_periodic| if is_periodic { Edges::Periodic } else { Edges::Free });
         SliderBlocks {
@@ -75,7 +75,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// A grid, and a set drawn with `#`, the largest y first.
+    /// A grid, and a set that is drawn with `#`, with the largest y first.
     pub(crate) fn drawn(rows: &[&str], periodic: [bool; 2]) -> (SliderBlocks, Vec<bool>) {
         let set: Vec<bool> = rows
             .iter()

@@ -19,19 +19,19 @@ pub(crate) enum Draft {
     Shapes(Vec<f64>),
 }
 
-/// Numbers of patches of drafts anywhere, in turn.
+/// Numbers of patches of random drafts, in turn.
 const PATCHES: [usize; 4] = [2, 3, 1, 4];
 
-/// Number of times that shapes are drawn until they are legal, for a start anywhere.
+/// Largest number of draws until shapes are legal, for a random start.
 const TRIES: usize = 50;
 
-/// Deviation, as a share of the ranges of unknowns, below which drafts hardly differ.
+/// Standard deviation, as a share of the ranges of unknowns, below which drafts hardly differ.
 const NARROW_SHARE: f64 = 1e-3;
 
-/// Deviation in blocks below which drafts of patches hardly differ.
+/// Standard deviation in blocks below which drafts of patches hardly differ.
 const NARROW_BLOCKS: f64 = 0.1;
 
-/// The numbers that a search varies, and the textures that they make.
+/// The numbers that a search varies, and the textures that they define.
 #[derive(Debug)]
 pub(crate) enum Space {
     /// Patches within limits.
@@ -78,8 +78,8 @@ impl Space {
         }
     }
 
-    /// A draft to begin with a known one: for patches with at least one patch; none if the known draft has no
-    /// numbers to vary.
+    /// A draft for a start from a known one: a draft of patches has at least one; none if the known draft has
+    /// no numbers to vary.
     pub(crate) fn near(&self, draft: &Draft, draws: &mut Draws) -> Option<Draft> {
         match (self, draft) {
             (Self::Patches { ranges, .. }, Draft::Patches(patches)) => {
@@ -94,8 +94,8 @@ impl Space {
         }
     }
 
-    /// A draft anywhere. Of patches, strips that cover the most come first; later there are cavities among
-    /// them, and less coverage at times. Of shapes the middle of all ranges comes first.
+    /// A random draft. The first drafts of patches are strips with the largest coverage; later ones include
+    /// cavities, and sometimes a smaller coverage. The first draft of shapes is the middle of all ranges.
     pub(crate) fn anywhere(&mut self, draws: &mut Draws) -> Draft {
         match self {
             Self::Patches {
@@ -106,7 +106,7 @@ impl Space {
             } => {
                 let is_first = *n_anywhere == 0;
                 let most = limits.max_features.unwrap_or(usize::MAX);
-                // Limits that allow no feature allow no texture; a draft has numbers all the same.
+                // Limits without any feature allow no texture, but a draft still needs numbers.
                 let n = PATCHES[*n_anywhere % PATCHES.len()].min(most).max(1);
                 *n_anywhere += 1;
                 let patches = (0..n).map(|_| {
@@ -148,7 +148,7 @@ impl Space {
         }
     }
 
-    /// A draft like another, with other numbers; those outside of their ranges count as the nearest end.
+    /// A draft like another, with these numbers; a number outside of its range is clamped to it.
     pub(crate) fn draft(&self, from: &Draft, numbers: &[f64]) -> Draft {
         match (self, from) {
             (Self::Patches { ranges, .. }, Draft::Patches(patches)) => {
@@ -158,8 +158,8 @@ impl Space {
         }
     }
 
-    /// Whether numbers lie within their ranges. Angles of patches have none: an angle and half a turn more
-    /// are one.
+    /// Whether numbers are within their ranges. Angles of patches have no range, since they are periodic with
+    /// half a turn.
     pub(crate) fn holds(&self, numbers: &[f64]) -> bool {
         let has_range = |k: usize| match self {
             Self::Patches { .. } => !is_angle(k),
@@ -169,7 +169,7 @@ impl Space {
         all.all(|(k, x)| !has_range(k) || (0.0..=1.0).contains(x))
     }
 
-    /// Whether drafts that deviate by this share of their ranges hardly differ.
+    /// Whether drafts with this standard deviation, as a share of their ranges, hardly differ.
     pub(crate) fn is_narrow(&self, deviation: f64) -> bool {
         match self {
             Self::Patches { ranges, .. } => deviation * ranges.side() < NARROW_BLOCKS,
@@ -181,7 +181,7 @@ impl Space {
     pub(crate) fn drawn(&self, textured: &[bool]) -> Draft {
         match self {
             Self::Patches { grid, .. } => Draft::Patches(PatchDraft::drawn(grid, textured)),
-            // No numbers are known of it.
+            // The numbers of such a texture are not known.
             Self::Shapes { .. } => Draft::Shapes(Vec::new()),
         }
     }

@@ -13,14 +13,14 @@ use crate::start::GENERATION;
 use crate::subject::Fidelity;
 use slipfront_study::StudyError;
 
-/// Number of runs of a search for each of the starts that go on beside each other, so that many threads have
-/// something to do. The drafts depend on the number of starts, and not on that of threads.
+/// Number of runs of a search for each of its parallel starts, which keep many threads busy. The drafts
+/// depend on the number of starts, and not on the number of threads.
 const RUNS_OF_START: usize = 2500;
 
-/// Largest number of starts that go on beside each other.
+/// Largest number of parallel starts.
 const MAX_STARTS: usize = 4;
 
-/// Share of the runs that go to drafts on one surface.
+/// Share of the runs for drafts on one surface.
 const EXPLORED: f64 = 0.7;
 
 /// Number of surfaces of the second stage.
@@ -40,7 +40,7 @@ pub(crate) struct Tried {
     pub(crate) shares: Option<Vec<f64>>,
     /// Loss of the draft, a mean over surfaces.
     pub(crate) loss: f64,
-    /// Reason for which the loss is infinite, if it is.
+    /// Reason why the loss is infinite, if it is.
     pub(crate) lost: Option<String>,
 }
 
@@ -86,8 +86,8 @@ pub struct RunCost {
 }
 
 impl RunCost {
-    /// Cost of what remains of a search that has cost `here` in this share of its time, as far as the time
-    /// allows.
+    /// Limits the remaining cost to what the time allows, for a search that has cost `here` in this share of
+    /// its time.
     pub(crate) fn left_within(self, share_of_time: f64, here: f64) -> f64 {
         if share_of_time > 0.0 {
             self.left.min(here * (1.0 / share_of_time - 1.0).max(0.0))
@@ -101,17 +101,16 @@ impl RunCost {
 pub struct Bounds<'a> {
     /// Runs of the search, without those of the verdict.
     pub runs: usize,
-    /// Share of the allowed time that has passed; never 1 without such a bound.
+    /// Share of the allowed time that has passed; stays below 1 without such a bound.
     pub share_of_time: &'a dyn Fn() -> f64,
     /// Flag that ends all runs.
     pub stop: &'a AtomicBool,
-    /// Place at which an earlier search ended for lack of time, to make that search again; none for a new
-    /// one.
+    /// Point at which an earlier search ran out of time, to repeat that search; none for a new one.
     pub cut: Option<Cut>,
 }
 
-/// Numbers of runs after which each stage of a search that ran out of time had ended: with them the search
-/// can be made again.
+/// Number of runs at the end of each stage of a search that ran out of time. With it, the search can be
+/// repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cut {
     /// Number of runs after the stage on one surface.
@@ -121,8 +120,8 @@ pub struct Cut {
 }
 
 impl Bounds<'_> {
-    /// Share of a time that has passed, in seconds; 1 where the time is no number of more than 0, and 0
-    /// without a bound.
+    /// Share of a time limit, in seconds, that has passed, at most 1; 1 if the limit is not positive, and 0
+    /// without a limit.
     pub fn share_of(passed: f64, most: Option<f64>) -> f64 {
         match most {
             Some(most) if passed < most => passed / most,
@@ -137,31 +136,31 @@ impl Bounds<'_> {
 pub(crate) struct SearchLength {
     /// Number of runs of the search.
     pub(crate) runs: usize,
-    /// Whether the allowed time was over first, so that the drafts tried depend on the speed of the machine.
+    /// Whether the allowed time ended first, so that the drafts depend on the speed of the machine.
     pub(crate) is_cut_short: bool,
-    /// Place at which the allowed time was over.
+    /// Point at which the allowed time ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) cut: Option<Cut>,
 }
 
-/// A search, with what it has tried.
+/// A search, with the drafts that it has tried.
 pub(crate) struct Stages<'a> {
     evaluator: &'a Evaluator,
     search: Search,
     /// Runs of the search.
     runs: usize,
-    /// Whether surfaces differ by their seeds.
+    /// Whether surfaces with different seeds differ.
     scatters: bool,
     /// Number of runs after the first stage.
     explored: usize,
-    /// Whether the allowed time was over before the runs.
+    /// Whether the allowed time ended before all runs were made.
     is_cut_short: bool,
     /// All drafts that were tried, in their order.
     pub(crate) tried: Vec<Tried>,
 }
 
 impl<'a> Stages<'a> {
-    /// The stages of a search that has asked for nothing yet.
+    /// The stages of a new search.
     pub(crate) fn new(evaluator: &'a Evaluator, search: Search) -> Self {
         Self {
             evaluator,
@@ -191,11 +190,11 @@ impl<'a> Stages<'a> {
             }
         }
         self.explored = self.runs;
-        // Losses on one surface with a coarse step say which drafts are good, and not how good: they are
-        // measured again.
+        // Losses on one surface with a coarse step only rank the drafts, so the best are measured again.
         let best = self.search.refine();
         let surfaces = self.stage(true).0.count();
-        // Each draft takes as many runs as there are surfaces: about as many runs at once as before.
+        // Each draft takes as many runs as there are surfaces, so fewer drafts keep the number of
+        // simultaneous runs about equal.
         let refined_batch = (batch(bounds) / surfaces).max(GENERATION);
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
         while goes_on && self.runs < bounds.runs && self.has_time(bounds, true) {
@@ -206,7 +205,7 @@ impl<'a> Stages<'a> {
         Ok(best.map(|found| found.proposal.clone()).collect())
     }
 
-    /// Textures to try, unless the search ends: on a large lattice they take seconds to be drawn.
+    /// Textures to try, unless the search ends: on a large lattice, drawing them takes seconds.
     fn ask(&mut self, n: usize, bounds: &Bounds) -> Result<Vec<Proposal>, StudyError> {
         let ends = || bounds.stop.load(Ordering::Relaxed);
         let asked = self.search.ask(n, &ends);
@@ -216,11 +215,11 @@ impl<'a> Stages<'a> {
         Ok(asked)
     }
 
-    /// Whether there is time for more runs of a stage, or were more of them in the search that is made again.
+    /// Whether there is time for more runs of a stage; in a repeated search, whether the earlier search made
+    /// more.
     fn has_time(&mut self, bounds: &Bounds, is_refined: bool) -> bool {
         let has_time = match bounds.cut {
-            // A search that is made again must end where the clock ended it, which the clock would not do
-            // twice.
+            // A repeated search must end at the same run; the clock would not reproduce that.
             Some(cut) if is_refined => self.runs < cut.refined,
             Some(cut) => self.runs < cut.explored,
             None => (bounds.share_of_time)() < if is_refined { 1.0 } else { EXPLORED },
@@ -246,7 +245,8 @@ impl<'a> Stages<'a> {
         }
     }
 
-    /// Makes the runs of some textures, and tells the search their losses; returns whether there were any.
+    /// Makes the runs of some textures, and passes their losses to the search; returns whether there were
+    /// any.
     fn try_out(
         &mut self,
         proposals: Vec<Proposal>,
@@ -260,8 +260,7 @@ impl<'a> Stages<'a> {
         let textures: Vec<_> = proposals.iter().map(|found| Arc::clone(&found.texture)).collect();
         let wanted = self.evaluator.wanted(&textures, surfaces.clone(), fidelity);
         self.evaluator.run(&wanted, known, bounds.stop, keep)?;
-        // Runs that are known already count alike, so that a search that goes on is the one that never
-        // stopped.
+        // Runs that are known already count, too, so a continued search equals one that never stopped.
         self.runs += wanted.len();
         let found: Vec<RatedTexture> = proposals
             .into_iter()
@@ -288,7 +287,7 @@ impl<'a> Stages<'a> {
                 lost,
             });
         }
-        // Limits may leave no texture that was not tried: then no later batch has one.
+        // The limits may leave no new texture: then later batches have none, either.
         let has_any = !found.is_empty();
         self.search.tell(&found);
         watch(&self.progress(bounds, is_refined));
@@ -333,21 +332,21 @@ impl<'a> Stages<'a> {
         }
     }
 
-    /// The first surface that the search has not seen.
+    /// The first surface that the search has not used.
     pub(crate) const UNSEEN: u64 = REFINED_SURFACES;
 }
 
-/// Number of drafts that are asked for at once: a generation of every start.
+/// Number of drafts in a batch: a generation of every start.
 fn batch(bounds: &Bounds) -> usize {
     GENERATION * (bounds.runs / RUNS_OF_START).clamp(1, MAX_STARTS)
 }
 
-/// Number of runs, of all `runs` of a search, after which drafts are tried on several surfaces.
+/// Number of runs, out of `runs` of a search, after which drafts are tried on several surfaces.
 fn explored(runs: usize) -> usize {
     (EXPLORED * runs as f64) as usize
 }
 
-/// Largest cost of a search of `runs` once `made` of them have been made, in steps times blocks.
+/// Largest remaining cost of a search of `runs` runs after `made` of them, in steps times blocks.
 pub(crate) fn most_work(evaluator: &Evaluator, runs: usize, made: usize) -> f64 {
     let explored = explored(runs);
     let coarse = explored.saturating_sub(made);

@@ -1,20 +1,20 @@
-//! A start of a search: drafts drawn around a mean that moves towards the better ones.
+//! A start of a search: drafts that are drawn around a mean, which moves towards the better ones.
 
 use crate::space::{Draft, Space};
 use slipfront_study::adaptation::Adaptation;
 use slipfront_study::draws::Draws;
 
-/// Number of drafts whose losses adapt the distribution of the next ones. More would tell the better
-/// directions more exactly, in fewer steps.
+/// Number of drafts in a generation, after which the distribution adapts to their losses. With more drafts,
+/// the direction of each step is more accurate, but there are fewer steps.
 pub(crate) const GENERATION: usize = 8;
 
-/// Generations without a loss that is lower by [`PROGRESS`] after which a start ends.
+/// Number of generations without a decrease of the loss by [`PROGRESS`] after which a start ends.
 const PATIENCE: usize = 25;
 
-/// Loss by which drafts must become better.
+/// Least decrease of the loss that counts as progress.
 const PROGRESS: f64 = 1e-4;
 
-/// Number of times that numbers are drawn until all lie within their ranges.
+/// Largest number of draws until all numbers are within their ranges.
 const TRIES: usize = 50;
 
 /// A start of a search.
@@ -22,19 +22,20 @@ const TRIES: usize = 50;
 pub(crate) struct Start {
     /// Number of the start.
     pub(crate) number: usize,
-    /// Draft whose numbers change.
+    /// Draft that provides everything except the numbers.
     from: Draft,
     adaptation: Adaptation,
-    /// Losses since the distribution was adapted, each with the standard normal numbers that made the draft.
+    /// Losses since the last adaptation of the distribution, each with the standard normal numbers of the
+    /// draft.
     losses: Vec<(f64, Vec<f64>)>,
-    /// Generations since drafts have become better.
+    /// Number of generations since the last progress.
     idle: usize,
-    /// Least loss when drafts last became better.
+    /// Least loss at the last progress.
     reached: f64,
 }
 
 impl Start {
-    /// Drafts around one, of which every number deviates by this share of its range.
+    /// A start around a draft, with this standard deviation of every number as a share of its range.
     pub(crate) fn new(number: usize, from: Draft, spread: f64, space: &Space) -> Self {
         Self {
             number,
@@ -46,7 +47,8 @@ impl Start {
         }
     }
 
-    /// A draft, and the standard normal numbers that made it. Numbers that leave their ranges are drawn anew.
+    /// Draws a draft, and returns it with its standard normal numbers. If numbers are out of their ranges,
+    /// all are drawn again.
     pub(crate) fn draw(&self, space: &Space, draws: &mut Draws) -> (Draft, Vec<f64>) {
         let mut drawn = self.adaptation.draw(draws);
         for _ in 1..TRIES {
@@ -62,8 +64,8 @@ impl Start {
     /// Takes the loss of a draft of this start.
     pub(crate) fn tell(&mut self, loss: f64, normal: &[f64]) {
         self.losses.push((loss, normal.to_vec()));
-        // Adaptation compares drafts of one distribution, so that it stays until all of a generation are
-        // told.
+        // Adaptation compares drafts of one distribution, which therefore stays fixed until all losses of a
+        // generation are known.
         if self.losses.len() < GENERATION {
             return;
         }
@@ -78,13 +80,13 @@ impl Start {
         self.adaptation.adapt(&normal);
     }
 
-    /// Forgets losses, because later ones are measured otherwise; the distribution stays as it is.
+    /// Discards losses, because later ones are measured differently; the distribution is unchanged.
     pub(crate) fn forget_losses(&mut self) {
         self.losses.clear();
         (self.reached, self.idle) = (f64::INFINITY, 0);
     }
 
-    /// Whether there is little more to find.
+    /// Whether the start has converged or makes no more progress.
     pub(crate) fn has_ended(&self, space: &Space) -> bool {
         self.idle > PATIENCE || space.is_narrow(self.adaptation.step())
     }
@@ -98,7 +100,7 @@ mod tests {
     use crate::ranges::PatchRanges;
     use crate::slider_blocks::tests::whole;
 
-    /// A draft is that of its own numbers, and what is drawn from it lies within the limits.
+    /// The numbers of a draft give the same draft, and drafts that are drawn around it are within the limits.
     #[test]
     fn a_draft_comes_back_from_its_numbers() {
         let grid = whole([40, 20], [false; 2]);
@@ -142,8 +144,8 @@ mod tests {
         }
     }
 
-    /// The loss is the distance of a patch from a place. The last draft lies within half a block of it, since
-    /// a start ends when drafts deviate by a tenth of a block.
+    /// The loss is the distance of a patch from a given position. The last draft is within half a block of
+    /// it, since a start ends when the standard deviation of drafts is a tenth of a block.
     #[test]
     fn drafts_become_better_until_the_start_ends() {
         let grid = whole([40, 40], [false; 2]);

@@ -1,4 +1,4 @@
-//! A case in which designs are tried: its runs with a texture, their steps and their ends.
+//! A case in which designs are tried: its runs with a texture, their time steps and durations.
 
 use std::path::Path;
 
@@ -14,19 +14,19 @@ use slipfront_case::texture_file::textured_blocks;
 use crate::wish::{FrictionUnit, Wish};
 use slipfront_study::identity::physics;
 
-/// The step with which designs are tried: it orders reductions as a quarter of the step does, at a third of
-/// the cost.
+/// Time step with which designs are tried: it ranks reductions in the same order as a quarter of this step,
+/// at a third of the cost.
 const COARSE_STEP: f64 = 0.4;
 
-/// Ratio of two times: up to the first the largest mu* of a design counts as its static friction; the second
-/// is that of the slider without texture times the load factor of as much texture as the limits allow. The
-/// second is twice the time of the onset (Eq. 12), so that the first is 1.2 times the latest onset that is
-/// expected. A block that only its own drive spring pulls until it slips, without its neighbours, slips at
-/// 2.67/2.5 = 1.07 of the onset.
+/// Duration of a run in the search, over `onset_end_star` of the slider without texture times the load factor
+/// of the largest allowed coverage. The largest mu* within this duration counts as static friction.
+/// `onset_end_star` is twice the onset time (Eq. 12), so the duration is 1.2 times the latest expected onset.
+/// A block that is pulled only by its own drive spring, without its neighbours, slips at 2.67/2.5 = 1.07 of
+/// the onset time.
 const SEARCHED: f64 = 0.6;
 
-/// Multiple of the time of a search up to which verdicts run, so that no design is good only because the
-/// search has ended.
+/// Duration of a run of a verdict, as a multiple of that in the search, so that no design is good only
+/// because the run ends early.
 const JUDGED: f64 = 2.0;
 
 /// Accuracy of a run of a design.
@@ -36,7 +36,7 @@ pub(crate) enum Fidelity {
     Coarse,
     /// With the step of the case.
     Fine,
-    /// With the step of the case, for longer.
+    /// With the step of the case, for a longer time.
     Verdict,
 }
 
@@ -46,25 +46,25 @@ pub(crate) struct Subject {
     /// The case, without textures.
     file: CaseFile,
     name: String,
-    /// The files that the case names, with a place for the mask: no run reads the disk.
+    /// The files that the case names, and the mask, in memory: no run reads from disk.
     files: FilesInMemory,
     /// Steps dt*: the coarse one, and the step of the case.
     steps: [f64; 2],
-    /// Ends of runs, t*: in the search, and in verdicts.
+    /// Durations of runs, t*: in the search, and in verdicts.
     ends: [f64; 2],
     /// The wish, in units of this case.
     pub(crate) wish: Wish,
-    /// Unit in which friction is told: that of the wish.
+    /// Unit of friction in the report: that of the wish.
     pub(crate) unit: FrictionUnit,
     /// Path of the drive in one unit of time, m.
     path_per_time: f64,
-    /// Hash of all that decides its numbers but texture, seed, step and end.
+    /// Hash of everything that determines the numbers of its runs, except texture, seed, step and duration.
     pub(crate) physics: blake3::Hash,
     /// Seed of the subject's surface in the search.
     pub(crate) seed: u64,
-    /// Whether surfaces differ by their seeds.
+    /// Whether surfaces with different seeds differ.
     pub(crate) scatters: bool,
-    /// Largest share of texture, %.
+    /// Largest coverage, %.
     most: f64,
 }
 
@@ -101,14 +101,14 @@ impl Subject {
             file,
         };
         let bare = subject.case(None, 0, Fidelity::Fine)?;
-        // When a drive at some blocks alone makes the others slip is not known before.
+        // If the drive acts on some blocks only, the time at which the others slip is not known in advance.
         let is_on_all = bare.file.drive.attached == Attached::At(AttachedEdge::All);
         let is_short = is_on_all && !subject.wish.needs_sliding() && bare.model.drive.program.is_none();
         if let Wish::Curve(points) = &subject.wish {
             let last = points.last().map_or(whole, |&[time, _]| time);
             (subject.file.time.kinetic_from_star, subject.ends) = (AutoOr::Auto, [last; 2]);
         } else if is_short {
-            // No window of kinetic friction may begin after the end.
+            // The window of kinetic friction must not begin after the end of the run.
             subject.file.time.kinetic_from_star = AutoOr::Auto;
             let load_factor = 1.0 / (1.0 - 0.01 * most);
             let onset_end = bare.expected.onset_end_star * load_factor;
@@ -141,7 +141,7 @@ impl Subject {
         self.changed_to(CaseFile::parse(&self.file.to_toml()?, &self.name, &set)?)
     }
 
-    /// A case of another file, with the wish of this one: a curve has the same path of the drive.
+    /// A case of another file with the wish of this one; a curve keeps the path of the drive.
     fn changed_to(&self, file: CaseFile) -> Result<Self, CaseError> {
         let case = self.made_of(file, &self.files)?;
         let times = self.path_per_time / (case.groups.v_star * case.scales.displacement());
@@ -157,7 +157,7 @@ impl Subject {
         Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
     }
 
-    /// Steps times blocks of a run, the measure of its cost, but for steps in which a held drive stands.
+    /// Cost of a run in steps times blocks, without steps during which a held drive is stopped.
     pub(crate) fn work(&self, fidelity: Fidelity) -> f64 {
         let [step, end] = self.step_and_end(fidelity);
         let [nx, ny] = self.file.slider.blocks.map(f64::from);
@@ -201,7 +201,7 @@ impl Subject {
         };
         file.texture.push(masked(MASK));
         let columns = file.slider.blocks[0] as usize;
-        // Copies of the case stand in a folder of their own, where no file has the name of the mask.
+        // Copies of the input files are in their own folder, where no file has the name of the mask.
         let mut files = self.files.clone();
         files.insert(MASK.to_owned(), npy_of_mask(columns, texture).into());
         self.made_of(file, &files)
@@ -211,7 +211,7 @@ impl Subject {
 /// Name of the mask of a design, in cases and in its folder.
 pub(crate) const MASK: &str = "mask.npy";
 
-/// The texture of a case whose mask is a file.
+/// The texture of a case with a mask in a file.
 pub(crate) fn masked(file: &str) -> Texture {
     Texture {
         shape: Shape::Mask(Mask {
@@ -232,9 +232,9 @@ mod tests {
         Subject::new(&case, Wish::Least(Quantity::StaticFriction), 10.0).unwrap()
     }
 
-    /// A ripple before the peak is no reduction: bars that a search once placed so that mu* ripples at
-    /// 0.5005, just above the level of sliding, before it rises on to 0.59, do not count for the ripple, with
-    /// either step.
+    /// A ripple before the peak does not count as static friction. A search once placed bars so that mu*
+    /// ripples at 0.5005, just above the level of sliding, and then rises to 0.59; the result must be the
+    /// latter, with either step.
     #[test]
     fn a_ripple_before_the_peak_is_no_reduction() {
         let subject = subject(
@@ -256,20 +256,20 @@ mod tests {
         }
     }
 
-    /// A search runs until every block in contact has slipped, as far as its own drive spring alone can make
-    /// it.
+    /// A run of a search lasts until every block in contact has slipped, even if only its own drive spring
+    /// pulls it.
     #[test]
     fn a_search_looks_until_every_block_has_slipped() {
         let subject = subject("slider.blocks = [4, 4]\ndrive.v_star = 0.1\ntime.kinetic_from_star = 70");
         let [searched, judged] = subject.ends;
-        // A tenth of the blocks bears nothing; the others bear it by springs of 3/8.
+        // A tenth of the blocks carries no load; the others carry it, and are pulled by springs of 3/8.
         assert!(searched > 1.0 / 0.9 / (0.375 * 0.1) && judged == 2.0 * searched);
         assert_eq!(subject.steps, [0.4, 0.1]);
         let case = subject.case(None, 3, Fidelity::Coarse).unwrap();
         assert_eq!((case.time_plan.dt_star, case.file.friction.seed), (0.4, 4));
         assert_eq!(case.time_plan.last_step, (searched / 0.4).ceil() as u64);
-        // A verdict has a quarter of the step and twice the time. Where a block gives the material its
-        // lengths, a run on blocks of half the size has as many steps.
+        // A verdict has a quarter of the step and twice the time. If the lengths of the material are
+        // multiples of the block, a run on blocks of half the size has the same number of steps.
         let work = [Fidelity::Coarse, Fidelity::Verdict].map(|fidelity| subject.work(fidelity));
         let finer = subject.on_finer_blocks().unwrap().work(Fidelity::Verdict);
         let ratios = [work[1] / work[0], finer / work[1]];
@@ -277,17 +277,17 @@ mod tests {
             (ratios[0] - 8.0).abs() < 1e-9 && (ratios[1] - 4.0).abs() < 1e-9,
             "{ratios:?}"
         );
-        // Adhesion as large as the load delays the onset to twice the time.
+        // An adhesion equal to the load doubles the onset time.
         let adhesive = self::subject(
             "slider.blocks = [4, 4]\ndrive.v_star = 0.1\nfriction.adhesion = '100 kPa'\nload.pressure = '100 kPa'",
         );
         assert!((adhesive.ends[0] / searched - 2.0).abs() < 1e-12);
-        // A drive at an edge pulls as long as the case says.
+        // With a drive at an edge, runs last as long as the case says.
         let edge = self::subject(
             "slider.blocks = [4, 4]\ndrive = { attach = 'left', v_star = 0.1 }\ntime.duration_star = 300",
         );
         assert_eq!(edge.ends, [300.0; 2]);
-        // A curve is followed to its end, however long the case is.
+        // A curve is followed to its end, whatever the duration of the case.
         let case = Case::parse("slider.blocks = [4, 4]", "case", "", &[]).unwrap();
         let curve = Wish::Curve(vec![[0.0, 0.0], [500.0, 0.5]]);
         assert_eq!(Subject::new(&case, curve, 10.0).unwrap().ends, [500.0; 2]);

@@ -1,22 +1,23 @@
-//! The tolerance of a wish, and the parts that keep it.
+//! The tolerance of a wish, and the parts within it.
 
 use serde::Serialize;
 
 /// Share of parts that must be within the tolerance for a design to pass: that within two standard deviations
-/// of a normal scatter, as sure as the intervals of a report. Of 64 surfaces 61 must be, of 8 all.
+/// of a normal distribution, as for the intervals of a report. At least 61 of 64 surfaces must be within it,
+/// or all of 8.
 const PASSING_SHARE: f64 = 0.95;
 
-/// Parts within the tolerance of a wish.
+/// Number of parts within the tolerance of a wish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WithinTolerance {
     /// Number of parts within it.
     pub within: usize,
-    /// Number of parts, each with a surface of its own.
+    /// Number of parts, each with its own surface.
     pub parts: usize,
 }
 
 impl WithinTolerance {
-    /// Whether so many parts are within the tolerance that the design passes.
+    /// Whether enough parts are within the tolerance for the design to pass.
     pub fn passes(self) -> bool {
         self.within as f64 >= PASSING_SHARE * self.parts as f64
     }
@@ -28,7 +29,7 @@ impl WithinTolerance {
         format!("{within} of {parts}{end}")
     }
 
-    /// An end of a sentence on the parts, for a tolerance as it is told.
+    /// The end of a sentence on the parts, for a tolerance as text.
     pub(crate) fn in_words(self, tolerance: &str) -> String {
         let Self { within, parts } = self;
         let verdict = if self.passes() {

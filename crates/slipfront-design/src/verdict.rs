@@ -1,4 +1,5 @@
-//! The verdict on a design: its values on surfaces that the search has not seen, beside named patterns.
+//! The verdict on a design: its values on surfaces that the search has not used, compared with named
+//! patterns.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -25,13 +26,13 @@ const NAMED_FINALISTS: usize = 4;
 pub struct FreshValues {
     /// Number of surfaces over which the means are taken: all, unless the texture is lost on some.
     pub surfaces: u64,
-    /// The quantity of the wish in units of mu_s, where runs have it; for a curve the largest mu*.
+    /// The quantity of the wish in units of mu_s, if the runs have it; for a curve, the largest mu*.
     pub wished_star: Option<Mean>,
     /// The largest mu*.
     pub static_friction_star: Mean,
     /// The first peak of mu*.
     pub first_peak_star: Mean,
-    /// Kinetic friction mu_k*, where runs are long enough.
+    /// Kinetic friction mu_k*, if runs are long enough.
     pub kinetic_friction_star: Option<Mean>,
 }
 
@@ -48,15 +49,15 @@ pub struct OnFresh {
     pub loss: f64,
     /// Half the width of the interval of the loss, due to the scatter over surfaces.
     pub loss_half_width: Option<f64>,
-    /// Standard deviation of the loss from surface to surface.
+    /// Standard deviation of the loss over surfaces.
     pub loss_deviation: Option<f64>,
     /// Parts within the tolerance of the wish, if it has one and there is a texture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub within_tolerance: Option<WithinTolerance>,
-    /// Reason for which the texture is lost, if it is: a run of it has not the numbers of the wish.
+    /// Reason why the texture is lost, if it is: one of its runs does not have the numbers of the wish.
     pub lost: Option<String>,
-    /// The loss of this texture less that of the design, surface by surface: above 0 where the design is
-    /// better; none for the design itself.
+    /// The loss of this texture minus that of the design, paired by surface: above 0 if the design is better;
+    /// none for the design itself.
     pub design_is_better_by: Option<Mean>,
 }
 
@@ -72,12 +73,13 @@ pub struct Verdict {
     /// Whether the design is a named pattern, because no searched texture is better on fresh surfaces than
     /// the best of them.
     pub is_named: bool,
-    /// The slider without texture, the groove across, and the best named pattern, as far as there are such;
-    /// and the best of the search if it was not better.
+    /// The slider without texture, the groove across and the best named pattern, if they exist; and the best
+    /// of the search if it was not better.
     pub others: Vec<OnFresh>,
-    /// The loss on fresh surfaces less that on the surfaces that the search chose by.
+    /// The loss on fresh surfaces minus the loss on the surfaces of the search.
     pub optimism: f64,
-    /// The design under changes of itself, of the speed and of the mesh, beside the best named pattern.
+    /// The design under changes of its texture, of the speed and of the mesh, compared with the best named
+    /// pattern.
     pub sensitivity: Sensitivity,
 }
 
@@ -92,13 +94,13 @@ pub(crate) struct Judged {
 }
 
 impl Judge<'_> {
-    /// Largest number of runs of a verdict on so many `named` patterns, and their cost in steps times blocks;
-    /// `beside` textures are judged whether they are good or not.
+    /// Largest number of runs of a verdict on `named` patterns, and their cost in steps times blocks.
+    /// `beside` is the number of textures that are judged in any case.
     pub(crate) fn most_runs(evaluator: &Evaluator, named: usize, beside: usize) -> (usize, f64) {
         let Surfaces { compared, judged } = Surfaces::of(evaluator);
         let n = |surfaces: Range<u64>| (surfaces.end - surfaces.start) as usize;
         let [cases, compared, judged] = [evaluator.subjects.len(), n(compared), n(judged)];
-        // With the slider without texture, the best named pattern, and the design.
+        // The judged textures include the slider without texture, the best named pattern and the design.
         let finalists = MOST_FINALISTS + NAMED_FINALISTS + 1;
         // The shortlist of named patterns is made on one surface, with the slider without texture.
         let runs = cases * (named + 1 + finalists * compared + (3 + beside) * judged);
@@ -108,8 +110,8 @@ impl Judge<'_> {
     }
 
     /// Compares the finalists of a search with the best of the named patterns, and returns the winner with
-    /// the verdict on it; none if there is no texture. Textures `beside` them are judged whether they are
-    /// good or not, the groove first if it is legal.
+    /// the verdict on it; none if there is no texture. The textures `beside` them are judged in any case; the
+    /// groove is the first of them if it is legal.
     pub(crate) fn verdict(
         &self,
         searched: &[Contender],
@@ -135,7 +137,7 @@ impl Judge<'_> {
         };
         let to_judge: Vec<&Contender> = winner.iter().chain(&best_named).chain(beside).collect();
         self.run(&to_judge, judged.clone(), known, keep)?;
-        // Where both are lost, neither is better.
+        // If both are lost, neither is better.
         let is_better = |named: &Contender| self.difference(named, &first, judged.clone(), known).low() > 0.0;
         let is_named =
             !self.asks_for_numbers && (winner.is_none() || !best_named.as_ref().is_none_or(is_better));

@@ -10,7 +10,7 @@ use slipfront_study::statistics::mean;
 
 use crate::mean::Mean;
 
-/// Distance from a value above which it is reported as missed, %.
+/// Largest distance from a value that is not reported as missed, %.
 const MISSED_PERCENT: f64 = 0.5;
 
 /// A number of a run that a wish is about.
@@ -21,7 +21,7 @@ pub enum Quantity {
     StaticFriction,
     /// Kinetic friction mu_k*.
     KineticFriction,
-    /// The largest mu* less mu_k*.
+    /// The largest mu* minus mu_k*.
     FrictionDrop,
 }
 
@@ -38,25 +38,25 @@ pub enum Wish {
     Curve(Vec<[f64; 2]>),
 }
 
-/// A value that is wished for.
+/// A target value of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// Quantity that is to have the value.
+    /// Quantity that should have the value.
     pub quantity: Quantity,
     /// The value, in units of mu_s.
     pub star: f64,
-    /// Largest distance from the value at which a part is good, in units of mu_s; none if any is.
+    /// Largest distance from the value at which a part is good, in units of mu_s; none without a tolerance.
     pub tolerance_star: Option<f64>,
     /// Unit of the wish.
     pub unit: FrictionUnit,
 }
 
-/// Unit in which friction is wished for and told.
+/// Unit of friction in the wish and in the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrictionUnit {
     /// One mu_s in this unit.
     pub mu_s: f64,
-    /// Name of the unit behind a number, such as ` mN`; nothing for a coefficient.
+    /// Suffix for the unit after a number, such as ` mN`; empty for a coefficient.
     pub name: String,
 }
 
@@ -77,7 +77,7 @@ impl FrictionUnit {
         }
     }
 
-    /// Forces of about the size of `force` in N, where mu_s is the force `of_mu_s`.
+    /// Forces of the order of `force` in N, where mu_s corresponds to the force `of_mu_s`.
     pub fn force(force: f64, of_mu_s: f64) -> Self {
         let (factor, prefix) = si_prefix(force);
         Self {
@@ -86,35 +86,35 @@ impl FrictionUnit {
         }
     }
 
-    /// A number of mu_s in this unit.
+    /// A number in units of mu_s, converted to this unit, as text.
     pub(crate) fn text(&self, star: f64) -> String {
         four_digits(star * self.mu_s) + &self.name
     }
 
-    /// A scatter of numbers of mu_s in this unit, to its second digit.
+    /// A standard deviation in units of mu_s, converted to this unit, to two digits, as text.
     pub(crate) fn scatter_text(&self, star: f64) -> String {
         let scatter = star * self.mu_s;
         let digits = (1.0 - libm::floor(libm::log10(scatter))).clamp(0.0, 12.0);
         format!("{scatter:.0$}{1}", digits as usize, self.name)
     }
 
-    /// A mean of numbers of mu_s in this unit, with its interval.
+    /// A mean in units of mu_s with its interval, converted to this unit, as text.
     pub(crate) fn mean_text(&self, mean: &Mean) -> String {
         let half_width = mean.half_width.map(|half| half * self.mu_s);
         with_half_width(mean.mean * self.mu_s, half_width) + &self.name
     }
 }
 
-/// Numbers of a run from which the loss of a design is found.
+/// Numbers of a run that determine the loss of a design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The largest mu* of the run.
     pub(crate) largest_star: f64,
     /// Static friction mu_s*: the first peak of the run.
     pub(crate) first_peak_star: f64,
-    /// Kinetic friction mu_k*, for runs that are long enough.
+    /// Kinetic friction mu_k*, if the run is long enough.
     pub(crate) kinetic_star: Option<f64>,
-    /// Root of the mean square of the difference of mu* from the curve of the wish, if it has one.
+    /// Root mean square difference of mu* from the curve of the wish, if it has one.
     pub(crate) misfit: Option<f64>,
 }
 
@@ -129,7 +129,7 @@ impl Measured {
         }
     }
 
-    /// A quantity; NaN where the run has none.
+    /// A quantity; NaN if the run does not have it.
     pub(crate) fn get(&self, quantity: Quantity) -> f64 {
         let kinetic = || self.kinetic_star.unwrap_or(f64::NAN);
         match quantity {
@@ -144,7 +144,7 @@ impl Quantity {
     /// The quantity of this name in a design file, such as `static_friction`.
     ///
     /// # Errors
-    /// The names that there are, as the end of a sentence.
+    /// A list of the valid names, as the end of a sentence.
     pub(crate) fn of_name(name: &str) -> Result<Self, String> {
         let found: Result<Self, ValueError> = Self::deserialize(name.into_deserializer());
         found.map_err(|_| match names_of::<Self>() {
@@ -164,7 +164,7 @@ impl Quantity {
 }
 
 impl Wish {
-    /// The quantity of the wish; for a curve its largest value.
+    /// The quantity of the wish; static friction for a curve.
     pub fn quantity(&self) -> Quantity {
         match self {
             Self::Least(quantity) | Self::Largest(quantity) => *quantity,
@@ -178,7 +178,7 @@ impl Wish {
         self.quantity() != Quantity::StaticFriction
     }
 
-    /// The wish for a drive that goes as far in one unit of time as the drive of this wish in `times` units.
+    /// The wish for a drive that takes `times` times as long for the same path as the drive of this wish.
     pub(crate) fn with_times(&self, times: f64) -> Self {
         match self {
             Self::Curve(points) => Self::Curve(points.iter().map(|[time, mu]| [time * times, *mu]).collect()),
@@ -191,15 +191,16 @@ impl Wish {
         matches!(self, Self::Least(_) | Self::Largest(_))
     }
 
-    /// Deviation of a run with a texture from the wish, given the run of the same surface without it if the
-    /// wish [is relative](Self::is_relative):
+    /// Deviation of a run with a texture from the wish. `without` is the run on the same surface without
+    /// texture, for a wish that [is relative](Self::is_relative):
     ///
     /// ```text
     /// least  q/q_0;   largest  -q/q_0;   value  q/q_wanted - 1;   curve  root of the mean square of the differences of mu*
     /// ```
     ///
     /// # Errors
-    /// A sentence, when a run does not have the quantity, or has none of it to compare with.
+    /// A sentence, when a run does not have the quantity, or the run without texture has no value to compare
+    /// with.
     pub(crate) fn deviation(&self, with: &Measured, without: Option<&Measured>) -> Result<f64, String> {
         let quantity = self.quantity();
         let reference = without.map_or(f64::NAN, |without| without.get(quantity));
@@ -225,12 +226,12 @@ impl Wish {
         })
     }
 
-    /// The loss of deviations on several surfaces, the less the better: their mean; where the wish is a value
-    /// its size; with a tolerance the root of the mean of their squares.
+    /// The loss for deviations on several surfaces, the lower the better: their mean; for a wish for a value,
+    /// the magnitude of their mean; with a tolerance, their root mean square.
     ///
-    /// A part is good within a tolerance if bias and scatter together are small, which is what the mean of
-    /// squares holds, `bias^2 + deviation^2`. It is smooth, so that a search sees which of two drafts is
-    /// better although no part of either is within the tolerance, as the share of parts does not tell.
+    /// Parts are within a tolerance if bias and scatter are both small. The mean square contains both:
+    /// `bias^2 + deviation^2`. It is smooth, so a search can rank two drafts even if no part of either is
+    /// within the tolerance; the share of parts within the tolerance could not.
     pub(crate) fn loss(&self, deviations: &[f64]) -> f64 {
         match self {
             Self::Value(target) if target.tolerance_star.is_some() => {
@@ -241,8 +242,8 @@ impl Wish {
         }
     }
 
-    /// Parts of the [loss](Self::loss) of deviations, one for each: their mean is the loss, and their scatter
-    /// is that which makes the loss uncertain. A root is linear in the squares around their mean.
+    /// Contributions of the deviations to the [loss](Self::loss): their mean is the loss, and their scatter
+    /// gives its uncertainty. The root of the mean square is linearised in the squares around their mean.
     pub(crate) fn parts_of_loss(&self, deviations: &[f64]) -> Vec<f64> {
         let loss = self.loss(deviations);
         match self {
@@ -272,7 +273,7 @@ impl Wish {
         }
     }
 
-    /// The tolerance of the wish in its unit, as a text.
+    /// The tolerance of the wish in its unit, as text.
     pub(crate) fn tolerance_text(&self) -> Option<String> {
         match self {
             Self::Value(target) => Some(target.unit.text(target.tolerance_star?)),
@@ -309,8 +310,8 @@ impl Wish {
         }
     }
 
-    /// A sentence on the loss of a design as reported, with half the width of its interval; `found` is the
-    /// quantity of the design if there is one case, and empty over several.
+    /// A sentence on the loss of a design as reported, with half the width of its interval. `found` is the
+    /// quantity of the design if there is one case, and empty for several.
     pub(crate) fn headline(&self, loss: f64, half_width: Option<f64>, found: &str) -> String {
         let of = self.quantity().name();
         match self {
@@ -342,7 +343,7 @@ impl Wish {
         }
     }
 
-    /// An end of the headline for a design that misses its wish.
+    /// The end of the headline for a design that misses its wish.
     pub(crate) fn missed(&self, loss: f64) -> &'static str {
         match self {
             Self::Value(target) if target.tolerance_star.is_none() && loss > MISSED_PERCENT => {
@@ -352,7 +353,7 @@ impl Wish {
         }
     }
 
-    /// A difference of losses as reported: in points of %; for a curve as it is.
+    /// A difference of losses as reported: in percentage points; unchanged for a curve.
     pub(crate) fn reported_difference(&self, difference: f64) -> f64 {
         match self {
             Self::Curve(_) => difference,
@@ -384,7 +385,8 @@ mod tests {
         assert_eq!(value(2.0, None).loss(&deviations), mean(&deviations));
         let parts = tolerant.parts_of_loss(&deviations);
         assert!((mean(&parts) - squares.sqrt()).abs() < 1e-15);
-        // Of deviations that change, the root changes as the mean of the parts does.
+        // For a small change of the deviations, the root mean square changes as the mean of the contributions
+        // does.
         let step = 1e-6;
         let moved = tolerant.loss(&[-0.05, 0.05, 0.1 + step]) - tolerant.loss(&deviations);
         let slope = 0.1 * 2.0 * step / 3.0 / (2.0 * squares.sqrt());

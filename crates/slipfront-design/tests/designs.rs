@@ -1,4 +1,4 @@
-//! Designs: the results of the search, and that they are equal however it is run.
+//! Designs: the results of the search, and their independence of how the search is run.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -21,10 +21,10 @@ use slipfront_study::verify::verify;
 
 use crate::reference_page::{expect_page, with_keys};
 
-/// A small slider whose named patterns cover less than the limits allow.
+/// A small slider; its named patterns cover less than the limits allow.
 const BASE: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n[design]\n";
 
-/// Surfaces that do not differ by their seeds, so that a verdict takes one of them.
+/// A base with equal surfaces for all seeds, so that a verdict uses one of them.
 const SMOOTH: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
     friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n[design]\n";
 
@@ -127,7 +127,7 @@ fn the_reference_has_the_keys_of_the_struct() {
     });
 }
 
-/// The files of a folder, without the journal, whose lines are in the order in which runs were begun.
+/// The files of a folder without the journal, which has its lines in the order in which runs were begun.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<_> = fs::read_dir(folder)
         .unwrap()
@@ -145,8 +145,8 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// A search to the end on three threads, and one on a single thread that is stopped again and again and whose
-/// journal loses its end.
+/// Compares a complete search on three threads with one on a single thread that is stopped repeatedly and
+/// loses the end of its journal.
 #[test]
 fn a_search_that_was_stopped_leaves_the_same_bytes() {
     let file = file(LEAST);
@@ -191,7 +191,7 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
         }
         assert!(round > 3 || stopped.join("mask.npy").exists(), "the best is kept");
         drop(folder);
-        // What a kill can leave: a line cut short.
+        // A kill can leave an incomplete line.
         let journal = stopped.join("design.jsonl");
         let mut bytes = fs::read(&journal).unwrap();
         bytes.truncate(bytes.len() - 30);
@@ -204,7 +204,7 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
     assert!(files(in_one_go) == files(stopped), "the folders differ");
 }
 
-/// The design is at least as good as every named pattern, and the gains are those of paired runs.
+/// The design is at least as good as every named pattern, and the gains come from paired runs.
 #[test]
 fn the_design_is_not_worse_than_named_patterns() {
     let outcome = run(&file(LEAST).design().unwrap(), 300);
@@ -212,19 +212,19 @@ fn the_design_is_not_worse_than_named_patterns() {
     assert!(verdict.design.loss < 0.9, "{verdict:?}");
     for other in verdict.others.iter().skip(1) {
         let better = other.design_is_better_by.unwrap();
-        // The mean of differences is the difference of means, but for rounding.
+        // The mean of differences is the difference of means, up to rounding.
         assert!((better.mean - (other.loss - verdict.design.loss)).abs() < 1e-12);
         assert!(better.mean >= 0.0, "{other:?}");
     }
-    // Without a search, the best named pattern is what remains.
+    // Without a search, the design is the best named pattern.
     let named = found(LEAST, 1);
     assert!(named.verdict.is_named, "{:?}", named.verdict);
     assert!(named.verdict.design.loss >= found(LEAST, 300).verdict.design.loss);
     assert!(named.verdict.optimism.abs() < 0.05);
 }
 
-/// A search alone finds the texture that a run judges, and on fresh surfaces the texture has the values of
-/// the verdict.
+/// A search without a verdict finds the same texture as a complete run, and on fresh surfaces the texture has
+/// the values of the verdict.
 #[test]
 fn a_search_alone_finds_what_is_judged() {
     let design = file_of(SMOOTH, LEAST).design().unwrap();
@@ -233,7 +233,7 @@ fn a_search_alone_finds_what_is_judged() {
     let best = design
         .search(&bounds(150, &stop), &mut |now| tried = now.textures)
         .unwrap();
-    // Every texture takes a run, and so does the slider without.
+    // Every texture takes a run, and so does the slider without texture.
     assert!((50..150).contains(&tried), "{tried}");
     let outcome = run(&design, 150);
     let fresh = |design: &Design, texture: &Arc<Vec<bool>>| {
@@ -243,15 +243,15 @@ fn a_search_alone_finds_what_is_judged() {
     // Surfaces do not differ: there is one.
     assert_eq!(fresh(&design, &outcome.texture), [outcome.verdict.design.loss]);
     assert!(best.iter().all(|texture| design.check(texture).is_ok()));
-    // A block is pulled by a drive spring of 3/8, and bears more where 15 % bear nothing; the search looks
-    // 1.2/1.07 times as long, in steps of 0.4, of which there is a whole number.
+    // A block is pulled by a drive spring of 3/8, and carries more load if 15 % of the blocks carry none. The
+    // runs of a search are 1.2/1.07 times as long as the time to slip, in a whole number of steps of 0.4.
     let steps = design.block_steps_per_texture().unwrap() / 256.0;
     let expected = 1.2 / 1.07 / (0.85 * 0.375 * 0.1) / 0.4;
     assert!(
         (steps - expected).abs() < 0.01 * expected + 1.0,
         "{steps} {expected}"
     );
-    // Where they differ, each has its own loss.
+    // If surfaces differ, each has its own loss.
     let losses = fresh(&file(LEAST).design().unwrap(), &best[0]);
     assert!(losses.len() == 3 && losses[0] != losses[1], "{losses:?}");
     stop.store(true, Ordering::Relaxed);
@@ -273,7 +273,7 @@ fn a_value_is_found_or_told_as_out_of_reach() {
     };
     let (least, _) = value(0.05);
     let (reached, verdict) = value(0.78);
-    // Between the smallest and the largest that there is, within the 0.5 % that a report calls found.
+    // A value between the smallest and the largest possible one is met within 0.5 %, the limit of the report.
     assert!(
         least > 0.5 && (reached / 0.78 - 1.0).abs() < 0.005,
         "{least} {verdict:?}"
@@ -281,8 +281,8 @@ fn a_value_is_found_or_told_as_out_of_reach() {
     assert!(verdict.design.loss < 0.005);
 }
 
-/// The share of parts within a tolerance is a count of parts by hand, in the unit of the wish, here a force;
-/// so are the mean and the scatter.
+/// The number of parts within a tolerance equals an independent count in the unit of the wish, here a force;
+/// the mean and the scatter agree, too.
 #[test]
 fn parts_within_a_tolerance_are_counted() {
     // mu_s is 0.5, and the load 100 kPa on (16 um)^2, 25.6 uN.
@@ -296,7 +296,7 @@ fn parts_within_a_tolerance_are_counted() {
     let searched = design(&keys);
     let outcome = run(&searched, 60);
     let verdict = &outcome.verdict;
-    // Distances of every part from a wish for a value alone, which have the sign of their mean for one part.
+    // Distance of every part from a wish without tolerance: the magnitude of its deviation.
     let alone = keys.replace(&format!("\ntolerance = '{tolerance} uN'"), "");
     let distances =
         design(&alone).losses_on_fresh(&[Arc::clone(&outcome.texture)], 16 + 64, &AtomicBool::new(false));
@@ -316,7 +316,7 @@ fn parts_within_a_tolerance_are_counted() {
     assert!((verdict.design.loss - (squares / 64.0).sqrt()).abs() < 1e-12);
     let wished = verdict.design.cases[0].wished_star.unwrap();
     assert_eq!(wished, verdict.design.cases[0].static_friction_star);
-    // One number in three units.
+    // The same value in three units.
     let folder = tempfile::tempdir().unwrap();
     let file = file_of(&base, &keys);
     let mut opened = DesignFolder::open(folder.path(), &file, false).unwrap();
@@ -361,7 +361,7 @@ fn parts_within_a_tolerance_are_counted() {
     assert!(third.contains(" of 8, fails   "), "{third}");
 }
 
-/// With a tolerance the loss has the scatter of parts beside their mean.
+/// With a tolerance, the loss includes the scatter of parts in addition to their mean.
 #[test]
 fn a_tolerance_weighs_scatter() {
     let keys = "wish = { value = 0.8, of = 'static_friction_star' }\ncoverage = [0, 15]\nfeature_blocks = 2";
@@ -378,7 +378,7 @@ fn a_tolerance_weighs_scatter() {
         );
         losses.unwrap().remove(0).unwrap()
     };
-    // Of one part both are its distance; of several, the mean and the scatter together.
+    // For one part, both losses are its distance; for several, the one with a tolerance includes the scatter.
     assert_eq!(losses(&plain, 1), losses(&tolerant, 1));
     let [mean, both] = [losses(&plain, 8), losses(&tolerant, 8)];
     let parts: Vec<f64> = tolerant
@@ -388,13 +388,13 @@ fn a_tolerance_weighs_scatter() {
     assert!(both > mean && parts[0] != parts[1], "{mean} {both} {parts:?}");
 }
 
-/// A disc of the base whose size is unknown, on surfaces that do not differ.
+/// A base with a disc of unknown size, on surfaces that do not differ.
 const DISC: &str = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\n\
     friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n\
     texture = [{ shape = 'cavity', lambda = '2 um' }]\n[design]\n";
 
-/// The best of a scan over the sizes of a disc, in steps that make every texture there is, is what a search
-/// for the size finds; the case in the folder has the disc, and the outline is a circle.
+/// A search for the size of a disc finds the best size of a scan that includes every possible texture. The
+/// case in the folder has the disc, and the outline is a circle.
 #[test]
 fn the_number_of_a_shape_is_found() {
     let folder = tempfile::tempdir().unwrap();
@@ -439,7 +439,7 @@ fn the_number_of_a_shape_is_found() {
     assert_eq!(textured_blocks(&case), disc(value));
     let drawn = fs::read_to_string(out.join("mask.svg")).unwrap();
     let radius = drawn.split(" r=\"").nth(1).unwrap().split('"').next().unwrap();
-    // In mm. No laser places an outline within a millionth of its radius; what is off here is rounding.
+    // In mm. The tolerance is for rounding: no laser places an outline within a millionth of its radius.
     let off = radius.parse::<f64>().unwrap() / (value * 1e-3) - 1.0;
     assert!(off.abs() < 1e-6, "{drawn}");
     let tried = fs::read_to_string(out.join("evaluations.csv")).unwrap();
@@ -453,8 +453,8 @@ fn the_number_of_a_shape_is_found() {
     );
 }
 
-/// Counts are whole numbers and limits hold, also those of every design of a front, which has its own
-/// numbers; a search that was stopped goes on to the same bytes.
+/// Counts are whole numbers, and limits hold, also for every design of a front, which has its own numbers. A
+/// search that was stopped continues to the same bytes.
 #[test]
 fn numbers_keep_the_limits_and_survive_stops() {
     let keys = "wish = { least = 'static_friction' }\ncoverage = [0, 30]\ngap_blocks = 2\nfront = [12]\n\
@@ -529,7 +529,7 @@ fn stopped_at(round: usize, stage: DesignStage) -> bool {
     }
 }
 
-/// A curve of a texture is met by a texture.
+/// A texture reproduces the curve of a texture.
 #[test]
 fn a_curve_is_followed() {
     let folder = tempfile::tempdir().unwrap();
@@ -555,12 +555,12 @@ fn a_curve_is_followed() {
     );
     let file = DesignFile::parse(&text, "design.toml", "design", folder.path()).unwrap();
     let outcome = run(&file.design().unwrap(), 200);
-    // The groove itself is one of the textures that it begins with; its curve is rounded in the table.
+    // The search begins with the groove itself, among others; its curve is rounded in the table.
     assert!(outcome.verdict.design.loss < 1e-9, "{:?}", outcome.verdict);
 }
 
-/// A base that names files is searched from where it stands and from its copies alike; a copy that has
-/// changed is refused.
+/// A base that names files gives the same result from its own folder and from copies. A design keeps the
+/// content of files that change later.
 #[test]
 fn a_base_may_name_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -578,7 +578,7 @@ fn a_base_may_name_files() {
     let written: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
     assert_eq!(written["design"]["loss"], found.verdict.design.loss);
-    // Finer blocks have no coefficients.
+    // The field has no coefficients for finer blocks.
     let [left_out] = found.verdict.sensitivity.left_out.as_slice() else {
         panic!("{:?}", found.verdict.sensitivity);
     };
@@ -599,7 +599,7 @@ fn a_base_may_name_files() {
     assert_eq!(again.design, found.verdict.design, "it keeps what it was made of");
 }
 
-/// A change that a program of speeds rules out is named.
+/// The verdict names the changes that are impossible with a program of speeds.
 #[test]
 fn a_program_of_speeds_has_no_other_speed() {
     let base = "[base]\nslider.blocks = [8, 8]\ndrive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.05 }]\n\
@@ -619,9 +619,9 @@ fn a_program_of_speeds_has_no_other_speed() {
     assert_eq!(sensitivity.changed.len(), 5);
 }
 
-/// A texture that leaves only blocks of next to no friction in contact never comes to rest under a held
-/// drive: it is lost, and told with the reason in the table, the verdict and its text, before and after a
-/// stop. A slider all of whose blocks are such has nothing to compare with.
+/// A texture that leaves only blocks with almost no friction in contact never comes to rest while the drive
+/// is held. It is lost, and the table, the verdict and its text report the reason, also in a repeated call. A
+/// slider with only such blocks has no value to compare with.
 #[test]
 fn what_never_comes_to_rest_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -634,8 +634,8 @@ fn what_never_comes_to_rest_is_told() {
         fs::write(folder.path().join("mu_k.csv"), row).unwrap();
         DesignFile::parse(base, "design.toml", "design", folder.path()).unwrap()
     };
-    // Alone, the second block, once weakened, swings longer than a held drive waits for it; the first takes
-    // its energy where it touches.
+    // Once weakened, the second block alone oscillates longer than a held drive waits for it. If the first
+    // block is in contact, it dissipates the energy.
     let file = of("0.5,1e-4");
     let out = folder.path().join("out");
     let find = || {
@@ -682,8 +682,8 @@ fn what_never_comes_to_rest_is_told() {
     );
 }
 
-/// Each case has the wish in its own units: a force is another share of mu_s under another load, and a share
-/// of mu_s another force.
+/// Each case has the wish in its own units: under another load, a force is another share of mu_s, and a share
+/// of mu_s is another force.
 #[test]
 fn every_case_has_the_wish_in_its_own_units() {
     let least = |of: &str| {
@@ -696,7 +696,8 @@ fn every_case_has_the_wish_in_its_own_units() {
         let stars: Vec<f64> = stars.map(|given| given.static_friction_star.mean).collect();
         (outcome.verdict.design.loss, stars)
     };
-    // Dimensionless, the two loads are one case. 256 um^2 under 1 MPa with mu_s = 1 hold 256 uN.
+    // In dimensionless form, the two loads are the same case. With mu_s = 1, 256 um^2 under 1 MPa resist 256
+    // uN.
     let newtons = 256.0 * 0.8;
     let (loss, stars) = least(&format!("'{newtons} uN', of = 'static_friction'"));
     let distance = |star: f64, wanted: f64| (star / wanted - 1.0).abs();
@@ -707,8 +708,8 @@ fn every_case_has_the_wish_in_its_own_units() {
     assert!((loss - expected).abs() < 1e-9, "{loss} {expected} {stars:?}");
 }
 
-/// The files of cases are those of the verdict, not the base; a front that is stopped leaves the design
-/// alone.
+/// The written cases are those of the verdict, not the base. A front that is stopped leaves the design
+/// unchanged.
 #[test]
 fn the_folder_has_the_cases_of_the_verdict() {
     let file = file_of(
@@ -723,7 +724,7 @@ fn the_folder_has_the_cases_of_the_verdict() {
     let stopped = opened.find(&bounds(60, &stop), &mut |now| {
         work.push((now.stage, now.work));
         is_judged |= now.stage == DesignStage::Judging;
-        // Nothing covers a thousandth of 256 blocks: what follows is the search up to 10 %.
+        // No texture covers at most a thousandth of 256 blocks, so the next search is the one up to 10 %.
         stop.store(is_judged && now.best_texture.is_some(), Ordering::Relaxed);
     });
     assert!(matches!(stopped, Err(StudyError::Interrupted)), "{stopped:?}");
@@ -749,7 +750,7 @@ fn the_folder_has_the_cases_of_the_verdict() {
     let judged: Vec<RunCost> = judged.map(|(_, work)| *work).collect();
     let falls = |pair: &[RunCost]| pair[0].here <= pair[1].here && pair[0].left >= pair[1].left;
     assert!(judged.len() > 5 && judged.windows(2).all(falls), "{judged:?}");
-    // The runs of the second design of the front remain, too.
+    // The remaining cost includes the second design of the front.
     assert!(judged.iter().all(|work| work.left > 0.0));
     let text = opened
         .find(&bounds(60, &AtomicBool::new(false)), &mut |_| {})
@@ -757,7 +758,7 @@ fn the_folder_has_the_cases_of_the_verdict() {
     assert!(text.contains("no texture satisfies the limits"), "{text}");
 }
 
-/// A slider that is thick for the features of the design is told to be no sheet.
+/// A note warns of a slider that is too thick for a sheet, compared with the features of the design.
 #[test]
 fn a_thick_slider_is_told() {
     for (thickness, is_told) in [("0.6 um", false), ("4 um", true)] {
@@ -776,7 +777,7 @@ fn a_thick_slider_is_told() {
     }
 }
 
-/// Textures from which the search begins are judged, and told where they break a limit.
+/// Textures that the search begins with are judged, and a note names those that break a limit.
 #[test]
 fn drawings_are_judged() {
     let groove = |percent: f64, offset: i32| {
@@ -824,8 +825,8 @@ fn drawings_are_judged() {
     );
 }
 
-/// A folder whose files have changed belongs to another design, and a longer search that is stopped leaves
-/// the results of the shorter one.
+/// A folder with changed files belongs to another design. A longer search that is stopped leaves the results
+/// of the shorter one.
 #[test]
 fn results_belong_to_one_search() {
     let folder = tempfile::tempdir().unwrap();
@@ -877,7 +878,7 @@ fn limits_are_kept_and_cases_are_all_looked_at() {
         let [x, y] = [block % 16, block / 16];
         assert_eq!(textured, outcome.texture[y * 16 + 15 - x]);
         assert_eq!(textured, outcome.texture[(15 - y) * 16 + x]);
-        // The cavity that is forbidden reaches 4.04 blocks from the middle.
+        // The forbidden cavity reaches 4.04 blocks from the middle.
         let from_middle = (x as f64 - 7.5).hypot(y as f64 - 7.5);
         assert!(!textured || from_middle > 4.0);
     }
@@ -997,7 +998,7 @@ fn what_cannot_be_is_told_with_its_place() {
             "{keys}\n{said}"
         );
     }
-    // Limits that no texture keeps.
+    // Limits that no texture satisfies.
     let file = file("wish = { least = 'static_friction' }\ncoverage = [1, 3]\nfeature_blocks = 4");
     let never = AtomicBool::new(false);
     let error = file.design().unwrap().run(
@@ -1009,8 +1010,8 @@ fn what_cannot_be_is_told_with_its_place() {
     assert!(matches!(error, Err(StudyError::NoDesign)));
 }
 
-/// A search draws textures without a pitch, within which a bulk body would bear the load: the base says how
-/// near.
+/// Textures of a search have no pitch, within which a bulk body would redistribute the load, so the base must
+/// give a distance.
 #[test]
 fn a_bulk_body_says_how_near_load_is_borne() {
     let base = "[base]\nslider = { blocks = [16, 16], body = 'bulk' }\ndrive.v_star = 0.1\n\

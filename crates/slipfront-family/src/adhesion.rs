@@ -32,8 +32,8 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         ));
     }
     for adhesion in STRENGTHS {
-        // Five columns of twenty are a groove across the drive; nothing is left of the lag of the waves at
-        // this speed.
+        // Five columns of twenty are a groove across the drive. At this speed, the lag of the waves is
+        // negligible.
         let text = format!(
             "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nfriction.adhesion = \"{} kPa\"\n\
              slider.blocks = [20, 20]\nslider.edges = \"periodic\"\nslider.omega_star = 0.3\ndrive.v_star = 1e-3\n\

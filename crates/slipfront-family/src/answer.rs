@@ -13,7 +13,7 @@ pub struct Chapter {
     pub text: &'static str,
     /// The answers.
     pub answers: Vec<Answer>,
-    /// A picture with its caption, where one helps.
+    /// A picture with its caption, if the chapter has one.
     pub picture: Option<(&'static str, Responses)>,
 }
 
@@ -35,14 +35,15 @@ pub struct Answer {
 pub struct Tolerance {
     /// The largest distance.
     pub distance: f64,
-    /// The largest distance of a value that is too small: less than the other where errors only add.
+    /// The largest distance of a value that is too small: less than `distance` if errors only increase the
+    /// value.
     pub below: f64,
     /// Reason for the distance, in one clause.
     pub reason: &'static str,
 }
 
 impl Answer {
-    /// An answer with the largest distance from the exact value that is allowed.
+    /// An answer with the largest allowed distance from the exact value.
     pub fn new(
         quantity: impl Into<String>,
         [exact, found]: [f64; 2],
@@ -60,7 +61,7 @@ impl Answer {
         }
     }
 
-    /// An answer that is exact but for being seen up to a `step` late, or with what one step adds.
+    /// An exact answer that is read up to one `step` late, or includes the increment of one step.
     pub fn seen_late(
         quantity: impl Into<String>,
         [exact, found]: [f64; 2],
@@ -69,13 +70,13 @@ impl Answer {
         Self::new(quantity, [exact, found], (step * (1.0 + 1e-9), reason)).at_most_below(rounding(exact))
     }
 
-    /// The answer with a smaller distance that is allowed for a value below the exact one.
+    /// The answer with a smaller allowed distance for a value below the exact one.
     pub fn at_most_below(mut self, distance: f64) -> Self {
         self.tolerance.below = distance;
         self
     }
 
-    /// The distance that is allowed on the side of the exact value on which the computed one lies.
+    /// The allowed distance on the side of the exact value where the computed one is.
     pub fn most(&self) -> f64 {
         if self.found < self.exact {
             self.tolerance.below
@@ -90,7 +91,7 @@ impl Answer {
     }
 }
 
-/// Distance by which rounding may take a value below the exact one that errors only raise.
+/// Distance by which rounding may reduce a value below the exact one, if other errors only increase it.
 pub(crate) fn rounding(exact: f64) -> f64 {
     1e-12 * exact.abs().max(1.0)
 }

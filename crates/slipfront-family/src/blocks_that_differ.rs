@@ -1,4 +1,4 @@
-//! Heterogeneous sliders: grades, outlines, dampers beside the springs.
+//! Heterogeneous sliders: grades, outlines, dampers in parallel to the springs.
 
 use std::sync::Arc;
 
@@ -43,7 +43,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         answers.push(Answer::new(
             format!("decay rate of two blocks in antiphase, τ_v = {viscosity_time}, for Δt* = {dt}"),
             [lagged_decay_rate(against.omega_squared, viscosity_time, dt), rate],
-            // Four amplitudes, of which each step rounds the last digit one way or the other.
+            // Each step rounds the last digit of four amplitudes in a random direction.
             (
                 4.0 * (2.8_f64 / dt).sqrt() * f64::EPSILON,
                 "rounding of four amplitudes: a random walk of 280 steps of ε",

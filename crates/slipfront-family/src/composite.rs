@@ -18,7 +18,7 @@ const DT_STAR: f64 = 0.1;
 const WEAK: f64 = 0.5;
 const R_STAR: f64 = 0.5;
 
-/// Largest mu* of 10 x 10 blocks apart from each other, of which some rows are weak.
+/// Largest mu* of 10 x 10 uncoupled blocks with some weak rows.
 fn largest(weak_rows: usize) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(20, 20);
     let exists = (0..400).map(|b| (b % 20) % 2 == 0 && (b / 20) % 2 == 0);

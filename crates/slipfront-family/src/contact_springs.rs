@@ -28,10 +28,11 @@ const CHAIN_DAMPING: f64 = 0.5;
 /// Time step of the chain, t*.
 const CHAIN_DT_STAR: f64 = 0.2;
 
-/// First peak over the mean of sliding of a rigid slider whose thresholds are spread over 1 - w to 1 + w.
+/// Ratio of the first peak to the mean during sliding, for a rigid slider with thresholds spread from 1 - w
+/// to 1 + w.
 fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, FamilyError> {
     let lattice = Lattice::free(20, 20);
-    // 7 and 400 have no common factor, so that each of 400 places is taken once.
+    // 2401 and 400 are coprime, so each of the 400 thresholds occurs once.
     let threshold = |b: usize| 1.0 + w * ((2 * ((2401 * b + 3) % 400) + 1) as f64 / 400.0 - 1.0);
     let given = Coefficients::given((0..400).map(threshold).collect(), vec![0.0; 400]);
     let surface = Surface::new(given, vec![false; 400], Load::Redistributed, 1.0)?;
@@ -50,17 +51,18 @@ fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, FamilyError> {
     let length = (1.0 / stiffness / v_star / dt_star) as usize;
     let run = experiment.run("springs in contact", 50 * length as u64)?;
     let force = |row: &slipfront::observe::CurveRow| row.point.mu_star - damping * v_star;
-    // The slider begins at rest and is at its speed long before the first spring breaks.
+    // The slider begins at rest, and reaches its speed long before the first spring breaks.
     let peak = run.rows[length / 2..].iter().map(force).fold(0.0, f64::max);
     let sliding = &run.rows[10 * length..];
     Ok(peak / (sliding.iter().map(force).sum::<f64>() / sliding.len() as f64))
 }
 
-/// Largest allowed distance of the ratio from the exact one: the pull lags behind the rise of friction by
-/// `Omega/k_s`, and is read once a step; the weakest of 400 springs lies `w/400` within their range. After
-/// ten cycles the phases of springs that keep their thresholds are spread over `20 w` cycles: the mean of 40
-/// sawteeth, 1/(4 40) off if all were cut at once, is off by an eighth of that over `20 w`. With thresholds
-/// that are drawn anew, 16000 of them scatter, by three standard deviations at most.
+/// Largest allowed distance of the ratio from the exact one. For the peak: the drive force lags behind the
+/// rise of friction by `Omega/k_s` and is read once per step, and the weakest of the 400 springs is `w/400`
+/// inside their range. For the mean: after ten cycles, the phases of springs that keep their thresholds are
+/// spread over `20 w` cycles. If all springs were at the same phase, an incomplete last cycle would change
+/// the mean of 40 sawteeth by 1/(4 40); the spread reduces this to an eighth, divided by `20 w`. Thresholds
+/// that are drawn again scatter; three standard deviations of 16000 of them are allowed.
 fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
     let rise = SOFTNESS * V_STAR;
     let peak = rise * (scales::damping(OMEGA_STAR) + K_DRIVE * DT_STAR) + w / 400.0;
@@ -79,8 +81,8 @@ fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
     }
 }
 
-/// Pull at which the first spring of a chain breaks that is driven at its first block; NaN if another one
-/// breaks.
+/// Drive force at which the first spring of a chain breaks; NaN if another one breaks. The chain is driven at
+/// its first block.
 fn pull(n: usize, stiffness: f64) -> f64 {
     let lattice = Lattice::free(n, 1);
     let law = Friction::ContactSprings(ContactSprings {
@@ -120,9 +122,9 @@ fn pull(n: usize, stiffness: f64) -> f64 {
 /// Time step of the chain in which a front runs, t*.
 const FRONT_DT_STAR: f64 = 5e-3;
 
-/// Speed over that of sound of a front in a chain whose contacts yield and slide, by their stiffness over
-/// that of the chain and the prestress, found by integrating the equations of motion in another program with
-/// a quarter of this time step.
+/// Fronts in a chain with contacts that yield and slide: stiffness of the contacts over that of the chain,
+/// prestress, and speed of the front over that of sound. Another program has computed the speeds by
+/// integrating the equations of motion with a quarter of this time step.
 const FRONTS: [[f64; 3]; 7] = [
     [16.0, 0.7, 1.28479],
     [4.0, 0.4, 1.04359],

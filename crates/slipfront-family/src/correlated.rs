@@ -15,7 +15,7 @@ const LENGTH: f64 = 2.0;
 /// Number of blocks in a row for the measured correlations.
 const BLOCKS: u8 = 6;
 
-/// The field itself, as static coefficients of mean 0 and deviation 1.
+/// The field itself, as static coefficients with a mean of 0 and a standard deviation of 1.
 fn drawn(lattice: &Lattice, length: f64, seed: u64) -> Vec<f64> {
     let unit = Distribution {
         mean: 0.0,
@@ -32,7 +32,7 @@ fn covariance(n: f64) -> f64 {
     twice(n + 1.0) - 2.0 * twice(n) + twice(n - 1.0)
 }
 
-/// Largest difference of a block from the mean of its four parts, on a slider of 12 x 10 blocks.
+/// Largest difference between a block and the mean of its four parts, on a slider of 12 x 10 blocks.
 fn apart(length: f64) -> f64 {
     let (nx, ny) = (12, 10);
     let parents = drawn(&Lattice::free(nx, ny), length, 1);

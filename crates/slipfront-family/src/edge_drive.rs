@@ -37,20 +37,21 @@ const CHAINS: [Chain; 2] = [
     },
 ];
 
-/// An event that is longer than all before, and does not cross the chain.
+/// An event that is longer than all earlier ones, but does not cross the chain.
 struct Longer {
     length: f64,
     /// Load `F_T/F_N` after the event.
     load: f64,
-    /// Largest allowed distance of the load from the exact one while the drive adds little during an event.
+    /// Largest allowed distance of the load from the exact one if the drive adds little load during the
+    /// event.
     bound: f64,
     /// Load that the drive has added during the event.
     added: f64,
 }
 
 impl Longer {
-    /// Relative error of the load, and its largest allowed sizes without and with the load that the drive has
-    /// added.
+    /// Relative error of the load, and its largest allowed values without and with the load that the drive
+    /// has added.
     fn error(&self, slope: f64) -> [f64; 3] {
         let exact = precursor_load(self.length, KINETIC, slope);
         [self.load - exact, self.bound, self.bound + self.added].map(|load| load.abs() / exact)
@@ -58,12 +59,12 @@ impl Longer {
 }
 
 impl Chain {
-    /// Events that are longer than all before, and the largest load, of a run that ends when an event has
-    /// crossed the chain; the load is infinite if none crosses it.
+    /// Events that are longer than all earlier ones, and the largest load, of a run that ends when an event
+    /// has crossed the chain; the load is infinite if none crosses it.
     fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), FamilyError> {
         let (n, v_star) = (f64::from(self.blocks), self.v_star);
-        // Until the springs would pull with 1.3 times the kinetic friction of the whole chain, were it at
-        // rest.
+        // Until the drive force would be 1.3 times the kinetic friction of the whole chain if the chain
+        // stayed at rest.
         let duration = 1.3 * KINETIC / STATIC * n * n / (KAPPA * v_star);
         let text = format!(
             "[slider]\nblocks = [{n}, 1]\nomega_star = 0\nviscosity_time_star = 0.365\n\
@@ -115,7 +116,7 @@ impl Chain {
         Ok((longer, largest))
     }
 
-    /// Answers for the chain's runs under one profile of pressure; and the events of the run of the finest
+    /// Answers for the chain's runs under one pressure profile, and the events of the run with the finest
     /// step.
     fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), FamilyError> {
         let runs = self
@@ -145,7 +146,7 @@ impl Chain {
                 ),
             ));
             for error in errors {
-                // An error beyond its own bound is shown in place of the largest.
+                // An error that exceeds its own bound takes precedence over the largest error.
                 if (error[0] > error[2], error[0]) > (largest[0] > largest[2], largest[0]) {
                     largest = error;
                 }

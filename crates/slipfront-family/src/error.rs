@@ -6,7 +6,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
 use thiserror::Error;
 
-/// Reason for which a chapter could not be computed, or its page not be written.
+/// Reason why a chapter could not be computed, or its page could not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FamilyError {

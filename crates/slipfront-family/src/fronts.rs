@@ -16,8 +16,8 @@ const KINETIC: f64 = 0.5;
 const DT_STAR: f64 = 5e-3;
 const PRESTRESSES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
-/// Speed over that of sound of a front in a chain with drive springs of `kappa` times its own stiffness,
-/// under a dead load.
+/// Speed of a front over that of sound, in a chain under a dead load with drive springs of `kappa` times the
+/// stiffness of the chain.
 pub(crate) fn front_speed_in_a_chain(
     kappa: f64,
     prestress: f64,

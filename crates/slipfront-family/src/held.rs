@@ -1,4 +1,4 @@
-//! A drive that stands while blocks slide.
+//! A drive that stops while blocks slide.
 
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Drive, Execution, FrictionLaw, Lattice, Loading, Model, Simulation, Surface};
@@ -24,7 +24,7 @@ fn equal_blocks(blocks: [usize; 2], v_star: f64) -> Simulation {
     Simulation::new(model.with_loading(loading), DT_STAR, None, Execution::default())
 }
 
-/// Path of the drive and mu* at the moment at which blocks begin to slide, or have come to rest.
+/// Path of the drive and mu* at the instant when blocks begin to slide, or have come to rest.
 fn step_until(simulation: &mut Simulation, slides: bool) -> [f64; 2] {
     while (simulation.snapshot().totals.n_slipping > 0) != slides {
         simulation.step();
@@ -40,8 +40,8 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let name = |what: &str| format!("{what}, {nx} x {ny} blocks at V* = {v_star}");
         let mut simulation = equal_blocks(blocks, v_star);
         let [path, peak] = step_until(&mut simulation, true);
-        // Leapfrog swings about K, from rest to a step in which it stops: of the order of (sqrt(k_s) dt)^2 of
-        // the fall.
+        // The leapfrog solution oscillates about K, from rest until the step in which it stops. The relative
+        // error of the fall is of the order of (sqrt(k_s) dt)^2.
         let of_the_step = K_DRIVE * DT_STAR * DT_STAR;
         let step = v_star * DT_STAR;
         answers.push(Answer::new(

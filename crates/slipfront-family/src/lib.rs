@@ -1,9 +1,9 @@
-//! The models around the paper's: for every option of the engine the exact answers, and what it computes.
+//! Models beyond the paper's: exact and computed answers for every option of the engine.
 //!
-//! Each chapter builds its sliders from the physics alone and compares their motion with a closed form or
-//! with the integration of an equation that is derived in its text; or, of benchmarks that others set, with
-//! their reference. The command is `slipfront family`; its pages are `docs/validation/family.md`,
-//! `rupture.md` and `transition.md`.
+//! Each chapter builds its sliders from the physics alone, and compares their motion with a closed form or
+//! with the integration of an equation that its text derives. Published benchmarks are compared with their
+//! reference. The command is `slipfront family`; its pages are `docs/validation/family.md`, `rupture.md` and
+//! `transition.md`.
 
 mod adhesion;
 mod ageing;
@@ -62,7 +62,7 @@ const OPTIONS: &[Compute] = &[
     fronts::chapter,
 ];
 
-/// Chapters of benchmarks that others set, in the order of their page.
+/// Chapters of published benchmarks, in the order of their page.
 const BENCHMARKS: &[Compute] = &[
     nucleation::chapter,
     rupture::chapter,
@@ -74,8 +74,8 @@ const BENCHMARKS: &[Compute] = &[
 /// Chapters that take half an hour, in the order of their page.
 const LONG: &[Compute] = &[transition::chapter];
 
-/// Computes all chapters of all pages, on as many threads as there are workers; those of the page that takes
-/// half an hour if it is asked for.
+/// Computes all chapters of all pages on the threads of rayon's pool, including the page that takes half an
+/// hour if `long` is set.
 ///
 /// # Errors
 /// When a run diverges.

@@ -1,4 +1,4 @@
-//! Pressure that is not the same everywhere.
+//! Non-uniform pressure.
 
 use slipfront::scales;
 
@@ -17,7 +17,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
              [time]\nduration_star = 100\nstep = 0.01"
         );
         let run = AnswerRun::of_case("load", &text)?;
-        // The least pressure is that of the outermost blocks, half a block from the edge.
+        // The outermost blocks, half a block from the edge, have the least pressure.
         let least: f64 = 1.0 - f64::abs(slope) * (1.0 - 1.0 / 25.0);
         answers.push(Answer::seen_late(
             format!("t* of the first slip, slope {slope} along {along}"),

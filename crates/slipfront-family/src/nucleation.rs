@@ -1,4 +1,4 @@
-//! Nucleation of slip on a line of contacts across the middle of a sheet, under a load that hardly rises.
+//! Nucleation of slip on a line of contacts across the middle of a sheet, under a slowly rising load.
 
 use std::sync::Arc;
 
@@ -18,34 +18,34 @@ const BLOCKS: [usize; 2] = [201, 101];
 const ROW: usize = 50;
 /// Stiffness of the drive springs of the line, in units of `E h`.
 const SPRINGS: f64 = 1e-4;
-/// Blocks to each side of the middle whose first slips are watched.
+/// Number of blocks on each side of the middle with recorded first slips.
 const WATCHED: usize = 30;
-/// Loads over 1 at which the patch of n blocks grows for W = 0.1, quasi-static on this lattice: from the
-/// Schur complement of its stiffness on the line.
+/// Numbers of blocks n, and the excess of the load over 1 at which a patch of n blocks grows for W = 0.1,
+/// quasi-static on this lattice, from the Schur complement of the stiffness on the line.
 const QUASI_STATIC: [(usize, f64); 3] = [(9, 1.56e-3), (17, 3.95e-3), (21, 4.93e-3)];
-/// Fall of strength per slip, the largest quasi-static load over 1, and the number of blocks of which the
-/// least eigenvalue of the stiffness on the line is W, from the same Schur complement.
+/// Fall of strength per slip W, excess of the largest quasi-static load over 1, and number of blocks for
+/// which the least eigenvalue of the stiffness on the line is W, from the same Schur complement.
 const CRITICAL: [[f64; 3]; 4] = [
     [0.07, 1.050e-2, 36.1],
     [0.1, 5.29e-3, 25.5],
     [0.14, 2.758e-3, 18.4],
     [0.2, 1.365e-3, 12.8],
 ];
-/// Time within which the next block follows when slip has run away.
+/// Time within which the next block follows once slip is unstable.
 const RUNAWAY: f64 = 40.0;
 
-/// A line whose strength rises from its middle as `1 + (x/60)^2/2` and falls with slip.
+/// A line with a strength that rises from its middle as `1 + (x/60)^2/2`, and falls with slip.
 struct Line {
     /// Fall of strength per slip, `W`.
     weakening: f64,
-    /// The largest quasi-static load over 1.
+    /// Excess of the largest quasi-static load over 1.
     largest: f64,
 }
 
 impl Line {
-    /// Loads over 1 at which the blocks of one half of the line slip first, from the middle on, and these
-    /// times. The load rises fast to 0.15 of the largest, slowly to 0.83 of it, and from there on by 5e-7 a
-    /// unit of time, or less where the largest load is less.
+    /// Excess of the load over 1 and time of the first slip of each block in one half of the line, from the
+    /// middle on. The load rises fast to 0.15 of the largest, slowly to 0.83 of it, and then by 5e-7 per unit
+    /// of time, or less if the largest load is smaller.
     fn loads(&self) -> Result<Vec<[f64; 2]>, FamilyError> {
         let [nx, ny] = BLOCKS;
         let lattice = Lattice::free(nx, ny);
@@ -104,8 +104,8 @@ impl Line {
             .collect())
     }
 
-    /// Number of blocks that slip, and the load over 1, when the next block follows within 40 t*, among
-    /// patches of at least half the critical size.
+    /// Number of slipping blocks and excess of the load over 1 when the next block first follows within 40
+    /// t*, for patches of at least half the critical size.
     fn runaway(loads: &[[f64; 2]], critical: f64) -> [f64; 2] {
         let pairs = loads.windows(2).enumerate();
         let sizes = pairs.map(|(k, pair)| (2 * k + 1, pair[1][1] - pair[0][1], pair[0][0]));

@@ -16,13 +16,13 @@ const IMAGES: &str = "images";
 
 /// A page of the documentation, with its chapters.
 pub struct Book {
-    /// The first line of the page, by which a page of an earlier call is recognised.
+    /// The first line of the page, which identifies a page of an earlier call.
     title: &'static str,
-    /// Name of the page and its file without the ending, with which the names of its pictures begin.
+    /// Name of the page and its file without the ending; the names of its pictures begin with it.
     name: &'static str,
     /// The first paragraphs of the page, below its title.
     about: &'static str,
-    /// Heading of the column of the values that the computed ones are compared with.
+    /// Heading of the column with the reference values.
     compared: &'static str,
     /// The chapters of the page.
     pub chapters: Vec<Chapter>,
@@ -165,7 +165,7 @@ pub fn summary(books: &[Book]) -> String {
     text
 }
 
-/// The page of another origin that [`write_docs`] would replace in a folder.
+/// The first foreign page that [`write_docs`] would replace in a folder.
 pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     let foreign = |book: &Book| {
         let page = folder.join(book.file());
@@ -175,10 +175,10 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     BOOKS.iter().find_map(foreign)
 }
 
-/// Writes the pages and their pictures, as they stand in `docs/validation`.
+/// Writes the pages and their pictures, as in `docs/validation`.
 ///
 /// # Errors
-/// When a picture cannot be drawn or a file not be written.
+/// When a picture cannot be drawn or a file cannot be written.
 pub fn write_docs(books: &[Book], folder: &Path) -> Result<(), FamilyError> {
     let write_file =
         |path: PathBuf, bytes: &[u8]| write_with_folders(&path, bytes).map_err(FolderError::write(&path));

@@ -23,7 +23,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     for (width, offset) in grooves {
         textures += &groove(width, offset);
     }
-    // A groove inside another one adds nothing.
+    // A groove inside another one has no effect.
     textures += &groove(2.0, 0.0);
     let mut answers = Vec::new();
     for (redistribute, load, what) in [

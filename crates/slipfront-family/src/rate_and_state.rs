@@ -1,4 +1,4 @@
-//! Friction of rate and state.
+//! Rate-and-state friction.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ const DT_STAR: f64 = 0.05;
 /// Stiffness of the drive over the critical one.
 const RATIOS: [f64; 6] = [0.7, 0.85, 0.95, 1.05, 1.2, 1.5];
 
-/// Growth rate of a small perturbation of steady sliding of blocks that move as one.
+/// Growth rate of a small perturbation of steady sliding, for blocks that move together.
 fn computed(k_drive: f64, damping: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let drive = Drive {
@@ -36,28 +36,28 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
     growth_of_perturbation(model, DT_STAR, 60.0, 36.0)
 }
 
-/// Mass of a block in steps of [`DT_STAR`]: friction is that of the speed half a step later,
+/// Effective mass of a block with steps of [`DT_STAR`]: friction depends on the speed half a step later,
 /// `mu(v + dt v'/2)`, as if the mass were larger by `sigma a dt/(2 V)`.
 const MASS: f64 = 1.0 + LAW.a * DT_STAR / (2.0 * V_STAR);
 
-/// The law over this mass.
+/// The friction law, divided by this mass.
 const HEAVIER: RateAndState = RateAndState {
     a: LAW.a / MASS,
     b: LAW.b / MASS,
     ..LAW
 };
 
-/// V* before the step of speed.
+/// V* before the velocity step.
 const V_1: f64 = 0.01;
-/// Time t* from the step of speed to the reading of friction.
+/// Time t* from the velocity step to the reading of friction.
 const AFTER: f64 = 10.0;
 /// Stiffness of the drive springs that hold blocks at the speed of the drive.
 const STIFF: f64 = 2500.0;
-/// Damping Omega, with which the swing about the speed of the drive decays to exp(-Omega t/2) = exp(-50).
+/// Damping Omega: oscillations about the speed of the drive decay to exp(-Omega t/2) = exp(-50).
 const STIFF_DAMPING: f64 = 10.0;
 
-/// `mu - mu_ss` of blocks that slid steadily at [`V_1`] until a drive took them to `v_2`, a time [`AFTER`]
-/// later. Springs are so stiff that the blocks follow it.
+/// `mu - mu_ss` at a time [`AFTER`] after a velocity step of the drive from [`V_1`], with steady sliding, to
+/// `v_2`. The springs are so stiff that the blocks follow the drive.
 fn after_step(v_2: f64) -> f64 {
     let law = RateAndState {
         theta_0: LAW.d_c / V_1,
@@ -101,7 +101,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let v_2 = V_1 * ratio;
         let slip = v_2 * AFTER;
         let left = (ratio - 1.0) * libm::exp(-slip / LAW.d_c);
-        // Size of d mu/dx at this slip.
+        // Magnitude of d mu/dx at this slip.
         let slope = LAW.b * left.abs() / (LAW.d_c * (1.0 + left));
         answers.push(Answer::new(
             format!("μ - μ_ss after a velocity step by a factor of {ratio} and a slip of {slip}"),

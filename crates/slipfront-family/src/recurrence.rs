@@ -1,5 +1,5 @@
-//! Benchmarks of repeated slip: the cycle of one block under rate and state with inertia, and the catalogue
-//! of a train of blocks.
+//! Benchmarks of repeated slip: the stick-slip cycle of one block with rate-and-state friction and inertia,
+//! and the catalogue of events of a train of blocks.
 
 use slipfront::observe::Event;
 use slipfront_plot::{Response, Responses};
@@ -11,7 +11,7 @@ use crate::runs::Experiment;
 /// Period, largest speed, and largest and least force of a stick-slip cycle.
 type Cycle = [f64; 4];
 
-/// The last of the cycles of a block in steps of `dt_star`, by which they repeat.
+/// The last cycle of a block with steps of `dt_star`, when the cycles repeat.
 fn cycle(dt_star: f64) -> Result<Cycle, FamilyError> {
     const STIFFNESS: f64 = 0.1;
     const V_STAR: f64 = 1e-3;
@@ -23,7 +23,7 @@ fn cycle(dt_star: f64) -> Result<Cycle, FamilyError> {
     );
     let (experiment, last_step) = Experiment::of_case("recurrence", &text)?;
     let mut simulation = experiment.begin();
-    /// Speed at which a slip is timed: fast against the drive, slow against the slip.
+    /// Speed that defines the time of a slip: fast compared with the drive, slow compared with the slip.
     const TIMED: f64 = 0.01;
     let (mut times, mut before) = (Vec::new(), 0.0);
     const NONE: [f64; 3] = [0.0, 0.0, f64::INFINITY];
@@ -49,8 +49,8 @@ fn cycle(dt_star: f64) -> Result<Cycle, FamilyError> {
     Ok([period, fastest, largest, least])
 }
 
-/// Integration in displacement and the logarithms of speed and state by Radau's method to a relative error of
-/// 1e-9.
+/// Reference cycle: integration in displacement and the logarithms of speed and state by the Radau method
+/// with a relative error of 1e-9.
 const RADAU: Cycle = [2481.2248, 0.368_505, 0.670_089_9, 0.427_003_4];
 
 pub(crate) fn cycle_chapter() -> Result<Chapter, FamilyError> {
@@ -88,12 +88,12 @@ fn catalogue(duration_star: f64) -> Result<Vec<Event>, FamilyError> {
     experiment.events("catalogue", last_step)
 }
 
-/// Edges of the bins of the logarithm of the moment over F/k_p, from which the exponent is taken.
+/// Range of the logarithm of the moment over F/k_p with the bins for the exponent.
 const WINDOW: [f64; 2] = [-7.0, -2.0];
 const BINS: usize = 10;
 
-/// Exponent with which the number of events in bins of the logarithm of the moment falls, by least squares,
-/// and the logarithms of moment and number.
+/// Exponent of the decrease of the number of events with the moment, by least squares over bins of the
+/// logarithm of the moment; and the logarithms of moment and number.
 fn exponent(moments: &[f64]) -> (f64, [Vec<f64>; 2]) {
     let [low, high] = WINDOW;
     let width = (high - low) / BINS as f64;
@@ -114,7 +114,7 @@ fn exponent(moments: &[f64]) -> (f64, [Vec<f64>; 2]) {
 
 pub(crate) fn catalogue_chapter() -> Result<Chapter, FamilyError> {
     let events = catalogue(20_000.0)?;
-    // Of the first fifth, in which the train comes from rest, nothing counts. F/k_p is F/(k_s*).
+    // The first fifth of the events is left out, because the train starts from rest. F/k_p is F/(k_s*).
     let later = &events[events.len() / 5..];
     let moments: Vec<f64> = later
         .iter()

@@ -13,7 +13,7 @@ use slipfront_case::case_file::CaseFile;
 
 use crate::error::FamilyError;
 
-/// A run that has ended.
+/// A finished run.
 pub(crate) struct AnswerRun {
     /// The simulation at the end of the run.
     pub(crate) simulation: Simulation,
@@ -22,7 +22,7 @@ pub(crate) struct AnswerRun {
     pub(crate) model: Arc<Model>,
 }
 
-/// A slider that no case describes.
+/// A slider that a case file cannot describe.
 pub(crate) struct Experiment {
     pub(crate) model: Arc<Model>,
     pub(crate) dt_star: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Experiment {
 }
 
 impl AnswerRun {
-    /// Runs a case given as a user would write it.
+    /// Runs a case from the text of a case file.
     pub(crate) fn of_case(name: &str, text: &str) -> Result<Self, FamilyError> {
         let (experiment, last_step) = Experiment::of_case(name, text)?;
         experiment.run(name, last_step)
@@ -132,7 +132,7 @@ impl Experiment {
         )
     }
 
-    /// Values of `value` at these times, which follow one another.
+    /// Results of `value` at these times, in ascending order.
     pub(crate) fn values<const N: usize>(
         &self,
         times: [f64; N],
@@ -153,14 +153,14 @@ impl Experiment {
 /// of 0.1.
 pub(crate) const ROUNDING: &str = "rounding of displacements by ε X/2 per step within the decay time 2/Ω; the initial oscillation has decayed";
 
-/// Rounding of mu* in steady sliding with Omega* = 1, in steps of 0.1, when the far ends have gone this far:
-/// `k_s (eps X/2)` of each of the last `2/(Omega dt)` steps.
+/// Rounding error of mu* in steady sliding with Omega* = 1 and steps of 0.1, after this path of the far ends:
+/// `k_s (eps X/2)` from each of the last `2/(Omega dt)` steps.
 pub(crate) fn rounding(path: f64) -> f64 {
     K_DRIVE * f64::EPSILON * path / (scales::damping(1.0) * 0.1)
 }
 
-/// Growth rate of a small perturbation of steady sliding of blocks that move as one, from `t* = first` on, as
-/// for [`oscillation_growth`].
+/// Growth rate of a small perturbation of steady sliding, for blocks that move together, from `t* = first`
+/// on, as for [`oscillation_growth`].
 pub(crate) fn growth_of_perturbation(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
     let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
     let behind = model.steady_level(&Alone) / model.drive.k_drive;

@@ -21,12 +21,12 @@ const C_R: f64 = 0.9194;
 const KINETIC: f64 = 0.5;
 pub(crate) const STEP: f64 = 0.25;
 
-/// Place of the contacts of a rupture.
+/// Position of the contacts of a rupture.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Place {
     /// Lower edge of an upright sheet, along which friction acts.
     Edge,
-    /// Line across the middle of a sheet that lies on its substrate, all other blocks of which are textured.
+    /// Line across the middle of a sheet that lies on its substrate; all other blocks are textured.
     Line,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Rupture {
     pub(crate) blocks: [usize; 2],
     /// Fall of strength per slip, `W`.
     pub(crate) weakening: f64,
-    /// Strength left over the fall of strength, `S = (S - F_0)/(F_0 - K)`, of the seismologists.
+    /// Strength excess over stress drop, the seismic parameter `S = (S - F_0)/(F_0 - K)`.
     pub(crate) strength_excess: f64,
 }
 
@@ -50,8 +50,8 @@ impl Rupture {
         }
     }
 
-    /// Length from which a shear crack under the prestress grows, `L_c = mu* (1 + S)^2/(pi W)` with the
-    /// stiffness `mu*` of the sheet at the contacts, 1.1 or 2.25 (Andrews, 1976).
+    /// Critical length of a shear crack under the prestress, `L_c = mu* (1 + S)^2/(pi W)`, where `mu*` is the
+    /// stiffness of the sheet at the contacts, 1.1 or 2.25 (Andrews, 1976).
     pub(crate) fn critical_length(&self) -> f64 {
         let stiffness = match self.place {
             Place::Edge => 1.1,
@@ -92,7 +92,7 @@ impl Rupture {
             interface,
             ..falling_strength((1.0 - KINETIC) / self.weakening)
         };
-        // The prestress drives; the springs hold the sheet by next to nothing.
+        // The prestress drives the rupture; the force of the springs is negligible.
         let drive = Drive {
             k_drive: 1e-9,
             ..Drive::along_x(1e-6)
@@ -118,8 +118,8 @@ impl Rupture {
         })
     }
 
-    /// Distances from the middle in blocks, and over the 25 blocks from there on the speed of the front over
-    /// that of shear waves.
+    /// Distances from the middle in blocks, and the speed of the front over that of shear waves, averaged
+    /// over the 25 blocks from there on.
     fn speeds(&self, duration: f64) -> Result<Vec<[f64; 2]>, FamilyError> {
         let mut simulation = self.experiment()?.begin();
         for _ in 0..(duration / STEP) as u64 {
@@ -136,13 +136,13 @@ impl Rupture {
     }
 }
 
-/// Speeds that NumPy found for ruptures along an edge, by loops of its own over whole arrays.
+/// Values of S, and speeds of ruptures along an edge from an independent NumPy program.
 const NUMPY: [(f64, &[f64]); 3] = [
     (2.0, &[0.682, 0.825, 0.852, 0.866]),
     (1.4, &[0.757, 0.852, 0.871, 0.881]),
     (0.9, &[0.968, 1.340, 1.507, 1.552, 1.584, 1.616]),
 ];
-/// Speeds that NumPy found for ruptures along a line.
+/// Values of S, and speeds of ruptures along a line from the same NumPy program.
 const NUMPY_LINE: [(f64, &[f64]); 2] = [
     (0.9, &[0.881, 1.234, 1.340, 1.412, 1.479, 1.537, 1.568]),
     (2.0, &[0.661, 0.992, 1.066, 1.089]),
@@ -165,7 +165,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         .into_iter()
         .chain(lines)
         .collect();
-    // Until waves come back from the upper edge.
+    // Until waves return from the upper edge.
     let mut found: Vec<Vec<[f64; 2]>> = all
         .par_iter()
         .map(|&(place, excess)| at(place, excess).speeds(300.0))

@@ -10,9 +10,9 @@ use crate::runs::Experiment;
 const CASE: &str = include_str!("../cases/vertical_slider.toml");
 const PUSHED: &[u8] = include_bytes!("../cases/vertical_slider_push.png");
 const PUSHED_NAME: &str = "vertical_slider_push.png";
-/// mu* at which the first block slips, and the column of that block, quasi-static on this lattice: with the
-/// lowest row held along x, on its foundation, and the pushed block on its drive spring, from one solution of
-/// the linear equations.
+/// mu* at which the first block slips, and the column of that block, quasi-static on this lattice. They come
+/// from one solution of the linear equations: the lowest row is held along x and rests on its foundation, and
+/// the drive spring acts on the pushed block.
 const FIRST_SLIP: (f64, f64) = (0.112095, 2.0);
 /// Static and kinetic coefficient of the case.
 const COEFFICIENTS: [f64; 2] = [0.4, 0.17];

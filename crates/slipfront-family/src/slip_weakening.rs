@@ -14,11 +14,11 @@ use crate::error::FamilyError;
 
 /// Difference `S - K` of thresholds 1 and 0.5.
 const DROP: f64 = 0.5;
-/// Speed with which the drive comes to the threshold.
+/// Speed of the drive up to the threshold.
 const FAST: f64 = 1e-3;
 const DT_STAR: f64 = 0.05;
 
-/// Eq. 4 with strength that falls over a slip of `length` and does not heal.
+/// Eq. 4 with a strength that falls over a slip of `length` and does not heal.
 pub(crate) fn falling_strength(length: f64) -> Coulomb {
     Coulomb {
         slip_weakening: Some(SlipWeakening {
@@ -42,8 +42,8 @@ fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
     Simulation::new(model, DT_STAR, None, Execution::default())
 }
 
-/// Place where a block that has jumped without damping comes to rest, with the drive standing at its
-/// threshold, and the energy of weakening; NaN if it still slides.
+/// Position where a block comes to rest after it has jumped without damping, while the drive is stopped at
+/// the threshold; and the energy of weakening. NaN if the block still slides.
 fn jumped(weakening: f64) -> [f64; 2] {
     let until = (1.0 / K_DRIVE / FAST / DT_STAR).ceil() * DT_STAR + DT_STAR;
     let mut simulation = block(weakening, 0.0, &[(FAST, until), (0.0, f64::INFINITY)]);
@@ -57,7 +57,7 @@ fn jumped(weakening: f64) -> [f64; 2] {
     [now.block(0).displacement[0], now.weakening_energy()]
 }
 
-/// Slip of a block that does not jump, when the drive has gone a path.
+/// Slip of a block that does not jump, after a path of the drive.
 fn followed(weakening: f64, damping: f64, speed: f64, path: f64) -> f64 {
     let near = (0.97 / K_DRIVE / FAST).round();
     let mut simulation = block(weakening, damping, &[(FAST, near), (speed, f64::INFINITY)]);

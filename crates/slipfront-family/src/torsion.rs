@@ -31,18 +31,18 @@ const STUCK: [f64; 6] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
 const V_STAR: f64 = 1e-3;
 const OMEGA_STAR: f64 = 2.0;
 const DT_STAR: f64 = 0.8;
-/// Torque that the springs gain in half a step.
+/// Increase of the torque of the springs in half a step.
 const HALF_A_STEP: f64 = 0.5 * (K_DRIVE * V_STAR) * DT_STAR;
 
-/// Excess that the torque may have over that of blocks at their kinetic friction while those within `stuck`
-/// of the radius stick: by the drag of sliding blocks, `Omega V* r/r_max` each; by the rest of `1 - R*` of
-/// each block a time t after its slip, which is found up to a step late: at most
+/// Largest excess of the torque over that of blocks at their kinetic friction, while those within `stuck` of
+/// the radius stick. It has three parts. The drag of sliding blocks is `Omega V* r/r_max` each. At a time t
+/// after the slip of a block, which is detected up to a step late, its remaining part of `1 - R*` is at most
 ///
 /// ```text
 /// s_2/(s_2 - s_1) exp(-s_1 t),   s_1,2 = Omega/2 -+ sqrt(Omega^2/4 - k_s)
 /// ```
 ///
-/// and by the pull of half a step, since the torque is read at whole steps.
+/// The third part is the drive torque of half a step, since the torque is read at whole steps.
 fn excess(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
     let damping = scales::damping(OMEGA_STAR);
     let root = (0.25 * damping * damping - K_DRIVE).sqrt();
@@ -58,8 +58,8 @@ fn excess(radii: &[f64], stuck: f64, r_star: f64) -> f64 {
     sliding.map(of_block).sum::<f64>() / radii.iter().sum::<f64>() + HALF_A_STEP
 }
 
-/// A disc of 40 blocks across that are driven each on its own: their springs to each other are a million
-/// times softer.
+/// A disc of 40 blocks across that are driven independently: the springs between them are a million times
+/// softer.
 fn decoupled(r_star: f64) -> Experiment {
     let lattice = Lattice::free(40, 40);
     let outline = Outline::new(Outline::disc(&lattice, 0..40), &Alone);
@@ -141,7 +141,7 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
 mod tests {
     use super::*;
 
-    /// The torque of blocks on their own is largest at the first slip where R* < 3/4, else at the end.
+    /// The torque of uncoupled blocks is largest at the first slip if R* < 3/4, otherwise at the end.
     #[test]
     fn the_largest_torque_is_that_of_the_first_slip_or_of_the_end() {
         for r_star in [0.3, 0.9] {
@@ -152,7 +152,7 @@ mod tests {
             let [largest] = experiment.values([time], |now| now.peak.largest.mu_star);
             let at_the_end = torsion_of_decoupled_blocks(&radii, end, r_star);
             let above = largest - at_the_end.max(torsion_first_slip(&radii));
-            // A slip is seen up to a step late.
+            // A slip is detected up to a step late.
             let most = excess(&radii, end, r_star) + 2.0 * HALF_A_STEP;
             assert!(-2.0 * HALF_A_STEP < above && above < most, "{above} of {most}");
         }

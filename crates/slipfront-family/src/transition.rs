@@ -1,4 +1,4 @@
-//! The distance at which a rupture along an edge outruns shear waves.
+//! The distance at which a rupture along an edge becomes faster than shear waves.
 
 use rayon::prelude::*;
 use slipfront::Simulation;
@@ -8,9 +8,9 @@ use crate::answer::{Answer, Chapter};
 use crate::error::FamilyError;
 use crate::rupture::{C_S_SQUARE, Place, Rupture, STEP};
 
-/// Fall of strength per slip, for a cohesive zone of some 20 blocks: `mu*/W` with `mu* = 1.1`.
+/// Fall of strength per slip `W`, for a cohesive zone of `mu*/W`, some 20 blocks with `mu* = 1.1`.
 const WEAKENING: f64 = 0.055;
-/// Blocks over which a speed is taken.
+/// Number of blocks over which a speed is averaged.
 const WINDOW: usize = 20;
 /// Largest distance of a front from the middle, over L_c.
 const FARTHEST: f64 = 40.0;
@@ -21,7 +21,7 @@ const C_P_SQUARE: f64 = 9.0 / 8.0;
 
 /// The front of a rupture to the right of its weak patch.
 struct Front {
-    /// Time at which any block at least as far from the middle has slipped first, block by block.
+    /// For every block, the first time at which it or a block farther from the middle has slipped.
     reached: Vec<f64>,
     /// Distance of the first of these blocks from the middle.
     from: usize,
@@ -46,14 +46,14 @@ impl Front {
         self.from + self.reached.len()
     }
 
-    /// Speeds over that of shear waves, from the distances on at which they stand.
+    /// Distances, and the speeds from there on over that of shear waves.
     fn speeds(&self) -> impl DoubleEndedIterator<Item = (usize, f64)> {
         let windows = self.reached.windows(WINDOW + 1).enumerate();
         let speed = |times: &[f64]| WINDOW as f64 / (times[WINDOW] - times[0]).max(STEP) / C_S_SQUARE.sqrt();
         windows.map(move |(at, times)| (self.from + at, speed(times)))
     }
 
-    /// Distance from which on the front is faster than shear waves, if it stays so over this many blocks.
+    /// Distance at which the front becomes faster than shear waves, if it stays faster over this many blocks.
     fn transition(&self, sustained: usize) -> Option<usize> {
         let faster: Vec<usize> = self
             .speeds()
@@ -65,7 +65,7 @@ impl Front {
     }
 }
 
-/// Runs a rupture until it has outrun shear waves, or is 40 L_c from the middle.
+/// Runs a rupture until it is faster than shear waves, or 40 L_c from the middle.
 fn run(strength_excess: f64) -> Result<(Rupture, Front), FamilyError> {
     let mut rupture = Rupture {
         place: Place::Edge,
@@ -74,7 +74,7 @@ fn run(strength_excess: f64) -> Result<(Rupture, Front), FamilyError> {
         strength_excess,
     };
     let way = FARTHEST * rupture.critical_length();
-    // A front at 0.8 c_S takes so long, and waves that the edges send back must not meet it before.
+    // Time of a front at 0.8 c_S; waves that the edges reflect must not reach it earlier.
     let time = way / (0.8 * C_S_SQUARE.sqrt());
     let waves = C_P_SQUARE.sqrt() * time;
     rupture.blocks = [(way + waves) as usize + 100, (0.5 * waves) as usize];
@@ -92,7 +92,7 @@ fn run(strength_excess: f64) -> Result<(Rupture, Front), FamilyError> {
     }
 }
 
-/// Values of S, all of which are below the limit of 1.77.
+/// Values of S, all below the limit of 1.77.
 const EXCESSES: [f64; 3] = [0.5, 0.8, 1.2];
 
 pub(crate) fn chapter() -> Result<Chapter, FamilyError> {

@@ -17,7 +17,7 @@ const V_STAR: f64 = 0.2;
 const DT_STAR: f64 = 0.01;
 const DAMPINGS: [f64; 5] = [0.0, 0.2, 0.3, 0.4, 0.6];
 
-/// Growth rate of a small perturbation of steady sliding of blocks that move as one.
+/// Growth rate of a small perturbation of steady sliding, for blocks that move together.
 fn computed(damping: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let friction = Friction::Coulomb(Coulomb {

@@ -1,4 +1,4 @@
-//! Every exact answer of the models around the paper's, and the page of the documentation that shows them.
+//! Every exact answer of the models beyond the paper's, and the page of the documentation that shows them.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn all_answers_are_within_their_tolerance_and_stand_in_the_book() {
     };
     assert!(answers().all(slipfront_family::Answer::holds), "{summary}");
     assert!(answers().count() > 160, "{summary}");
-    // The same bits on every machine, and so the same page.
+    // The results have the same bits on every machine, and so the page is the same.
     for book in &books {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/validation");
         let page = std::fs::read_to_string(folder.join(book.file())).unwrap();

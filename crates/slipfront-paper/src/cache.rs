@@ -1,8 +1,8 @@
-//! The data of figures, stored as soon as they are measured, so that a call that was stopped does not measure
+//! The data of figures, stored as soon as they are measured, so that a call after a stop need not measure
 //! them again.
 //!
-//! A file holds the data of a figure under a step rule, and a checksum. A damaged file, and one that was made
-//! by another program, with other cases or with other options, is ignored.
+//! A file contains the data of a figure under a step rule, and a checksum. A file that is damaged, or was
+//! made by another program, with other cases or with other options, is ignored.
 
 use std::path::{Path, PathBuf};
 
@@ -17,20 +17,20 @@ use slipfront_run::folder_error::FolderError;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
 
-/// Most bytes of a file; the data of a figure take some megabytes.
+/// Largest size of a file in bytes; the data of a figure take some megabytes.
 pub(crate) const MAX_BYTES: u64 = 1 << 28;
 
 /// The stored data of figures in a results folder.
 #[derive(Debug)]
 pub struct FigureCache {
     folder: PathBuf,
-    /// Hash of the program, its cases and the options: all that the data depend on besides figure and step
-    /// rule.
+    /// Hash of the program, its cases and the options: everything that the data depend on besides figure and
+    /// step rule.
     origin: blake3::Hash,
 }
 
 impl FigureCache {
-    /// The data below the results folder `folder` that this build of the program has stored.
+    /// The data that this build of the program has stored in the results folder `folder`.
     ///
     /// # Errors
     /// When the folder cannot be made.
@@ -40,7 +40,7 @@ impl FigureCache {
             path: folder.clone(),
             source,
         })?;
-        // The figures of this call may be others than those of one that was killed.
+        // This call may run other figures than a call that was killed.
         clear_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
         hasher.update(program::this_build().as_bytes());

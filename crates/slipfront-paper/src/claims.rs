@@ -16,7 +16,7 @@ pub(super) const NUMBERING: &str = "Claims keep their numbers. 2 and 62 are not 
 pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} marks a claim with a wording or criterion that was fixed only after a measurement. Such a claim counts as \
                                   not reproduced as stated; the measured number supports the part of the claim that holds.";
 
-/// A claim of the paper, and the rule by which it is judged.
+/// A claim of the paper, and the rule that decides on it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Claim {
@@ -33,16 +33,15 @@ pub struct Claim {
     /// Unit of the number; may be empty.
     #[serde(default)]
     pub unit: String,
-    /// Digits after the point with which the number is shown.
+    /// Number of decimal places of the printed number.
     #[serde(default = "three")]
     pub digits: usize,
     /// Bounds of the number within which the claim holds, ends included.
     pub within: [f64; 2],
-    /// A second number: where it is out of its bounds, the claim holds only with a condition, which its words
-    /// name.
+    /// A second number: if it is out of its bounds, the claim holds only under the condition in its words.
     pub condition: Option<Reading>,
-    /// The number that follows when a slip of the print is corrected: where it is within its bounds, a claim
-    /// that does not hold as printed is a misprint, which its words correct.
+    /// The number after the correction of a misprint. If it is within its bounds, a claim that does not hold
+    /// as printed counts as a misprint; the words give the correction.
     pub correction: Option<Reading>,
     /// Expected verdict; another one points to a fault of the program or to a change of the model.
     pub expected: ClaimVerdict,
@@ -51,7 +50,7 @@ pub struct Claim {
     /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
-    /// Part of the claim's wording or criterion that was settled only after a measurement, and that
+    /// Part of the claim's wording or criterion that was fixed only after a measurement, and that
     /// measurement; empty if there is none. A claim with such a part counts as [`ClaimVerdict::NotAsStated`],
     /// not as one that holds.
     #[serde(default)]
@@ -61,7 +60,7 @@ pub struct Claim {
     pub reduced: bool,
 }
 
-/// Another reading of a claim than the plain one of its text.
+/// An alternative reading of a claim.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reading {
@@ -89,10 +88,10 @@ pub enum ClaimVerdict {
     Holds,
     /// The claim holds under a condition that the paper does not state.
     HoldsWithCondition,
-    /// The claim was not reproduced by the criterion that was fixed before measuring; by one that was settled
-    /// afterwards a part of it holds.
+    /// The claim was not reproduced by the criterion that was fixed before measuring; a part of it holds by a
+    /// criterion that was fixed afterwards.
     NotAsStated,
-    /// The claim does not hold as printed; with a slip of print or algebra corrected it does.
+    /// The claim does not hold as printed, but does after the correction of an error in print or algebra.
     Misprint,
     /// The claim does not hold.
     DoesNotHold,
@@ -155,7 +154,7 @@ struct List {
 /// All claims, in order.
 ///
 /// # Errors
-/// When the file is no list of claims.
+/// When the file is not a list of claims.
 pub fn claims() -> Result<Vec<Claim>, PaperError> {
     let list: List = toml::from_str(CLAIMS)?;
     Ok(list.claim)
@@ -313,7 +312,7 @@ mod tests {
             verdict(claim([0.0, 1.0], None), 1.001, 9.0),
             ClaimVerdict::DoesNotHold
         );
-        // A claim whose number could not be measured does not hold.
+        // A claim does not hold if its number could not be measured.
         assert_eq!(
             verdict(claim([0.0, f64::INFINITY], None), f64::NAN, 9.0),
             ClaimVerdict::DoesNotHold
@@ -407,14 +406,15 @@ mod tests {
     fn the_list_of_claims_is_complete() {
         let claims = claims().unwrap();
         let mut numbers: Vec<u32> = claims.iter().map(|claim| claim.number).collect();
-        // Those of the first list stand in its order.
+        // The claims of the first list are in its order.
         assert!(numbers.iter().filter(|&&number| number <= 81).is_sorted());
         numbers.sort_unstable();
         let last = numbers[numbers.len() - 1];
         let unused: Vec<u32> = (1..=last).filter(|number| !numbers.contains(number)).collect();
         assert_eq!(unused, [2, 62]);
         assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?}");
-        // Worded or changed after measuring, as the history of the list tells: the ledger says so.
+        // The history of the list shows that these claims were worded or changed after measuring, so the list
+        // must say so.
         let reworded = [16, 38, 40, 46, 51, 56, 58, 80, 81];
         for claim in claims.iter().filter(|claim| reworded.contains(&claim.number)) {
             assert!(!claim.revised.is_empty(), "claim {}", claim.number);
@@ -428,7 +428,7 @@ mod tests {
                 claim.quantity
             );
             assert!(claim.within[0] <= claim.within[1], "claim {}", claim.number);
-            // A claim that fails, or holds with a condition only, needs a reason.
+            // A claim that fails, or holds only under a condition, needs a reason.
             let is_revised = !claim.revised.is_empty();
             let reasoned = claim.deviation.is_some()
                 || claim.condition.is_some()
@@ -445,7 +445,7 @@ mod tests {
                 "claim {}",
                 claim.number
             );
-            // No criterion is worded anew after its measurement and counts as holding.
+            // A claim with a criterion that was changed after its measurement must not count as holding.
             let holds = [ClaimVerdict::Holds, ClaimVerdict::HoldsWithCondition].contains(&claim.expected);
             assert!(!(is_revised && holds), "claim {}", claim.number);
             assert_eq!(

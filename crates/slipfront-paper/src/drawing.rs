@@ -1,4 +1,4 @@
-//! Pictures as data, to be drawn and to be written as CSV.
+//! Pictures as data, which can be drawn or written as CSV.
 
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +44,7 @@ impl Drawing {
         }
     }
 
-    /// Numbers of the picture as CSV, with as many digits as read back to the same bits.
+    /// Numbers of the picture as CSV, with enough digits to read back the same bits.
     ///
     /// # Errors
     /// When the numbers cannot be written as CSV.
@@ -140,7 +140,7 @@ pub(super) fn stress_maps(maps: Vec<FieldMap>, columns: usize) -> Drawing {
     })
 }
 
-/// Maps of local coefficients over their mean, to three standard deviations to both sides.
+/// Maps of local coefficients over their mean, up to three standard deviations on either side.
 pub(super) fn coefficient_maps(value_title: &str, sigma: f64, maps: Vec<FieldMap>) -> Drawing {
     Drawing::Maps(FieldMaps {
         value_title: value_title.to_owned(),

@@ -10,7 +10,7 @@ use slipfront_run::verify::VerifyError;
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::VerifyStudyError;
 
-/// Reason for which the figures could not be run or the report not be written.
+/// Reason why the figures could not be run or the report could not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the error sentence describes each variant")]
 pub enum PaperError {

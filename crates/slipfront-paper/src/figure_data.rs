@@ -34,7 +34,7 @@ pub struct Panel {
 /// All data of a figure.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FigureData {
-    /// Measured numbers by their names within the figure; claims are judged by them.
+    /// Measured numbers by their names within the figure; they decide on the claims.
     pub numbers: BTreeMap<String, MeasuredNumber>,
     /// Pictures.
     pub panels: Vec<Panel>,
@@ -43,7 +43,7 @@ pub struct FigureData {
 }
 
 impl FigureData {
-    /// The numbers with the name of their figure before their own: `fig12.largest_rise`.
+    /// The numbers, with names that begin with that of the figure: `fig12.largest_rise`.
     pub(super) fn named_numbers(&self, figure: &str) -> impl Iterator<Item = (String, MeasuredNumber)> {
         let numbers = self.numbers.iter();
         numbers.map(move |(name, number)| (format!("{figure}.{name}"), *number))

@@ -1,11 +1,11 @@
-//! The paper behind the model: every figure and table is run again, and every claim is judged.
+//! The paper behind the model: reproduces every figure and table, and judges every claim.
 //!
 //! ```text
 //! cases/*.toml -> runs -> FigureData (numbers, pictures, tables) -> verdicts -> report
 //! ```
 //!
-//! A figure has a file of its own (`figures/fig12.rs`); its cases are in `cases/fig12.toml`, and the claims
-//! about it in `cases/claims.toml`. The command is `slipfront paper`.
+//! A figure has its own file (`figures/fig12.rs`); its cases are in `cases/fig12.toml`, and the claims about
+//! it in `cases/claims.toml`. The command is `slipfront paper`.
 
 mod cache;
 mod claims;

@@ -36,14 +36,13 @@ impl MeasuredNumber {
         }
     }
 
-    /// The mean and the ends of its interval, NaN where there is no interval: the form in which pictures take
-    /// them.
+    /// The mean and the ends of its interval as pictures need them: NaN if there is no interval.
     pub(super) fn ends(&self) -> [f64; 3] {
         let [low, high] = self.interval.unwrap_or([f64::NAN; 2]);
         [self.value, low, high]
     }
 
-    /// The number to `digits` digits after the point, with the half width of its interval.
+    /// The number with `digits` decimal places, and the half width of its interval.
     pub(super) fn shown(&self, digits: usize) -> String {
         with_interval(self.value, self.interval, digits)
     }

@@ -20,13 +20,14 @@ use crate::step_rule::StepRule;
 /// Options for running figures.
 #[derive(Clone, Copy, Debug)]
 pub struct PaperOptions<'a> {
-    /// Number of figures at once. Their runs are those of rayon's pool, which has as many threads.
+    /// Number of simultaneous figures. Their runs use rayon's pool, which has as many threads.
     pub threads: usize,
     /// Flag set by a signal: all runs end, and the finished runs of studies stay recorded.
     pub stop: &'a AtomicBool,
-    /// Two random surfaces in place of five, one time step, and only the claims that can be judged by that.
+    /// Whether to use two random surfaces in place of five, one time step, and only the claims that can be
+    /// judged with these.
     pub reduced: bool,
-    /// Folder of the results. A figure whose data this program has stored there is not run again.
+    /// Folder of the results. A figure is not run again if this program has stored its data there.
     pub folder: &'a Path,
 }
 
@@ -61,7 +62,7 @@ pub struct Paper {
 }
 
 impl Paper {
-    /// The claims whose verdict is not the expected one, under either step rule.
+    /// The claims with an unexpected verdict, under either step rule.
     pub fn unexpected_verdicts(&self) -> impl Iterator<Item = (StepRule, &ClaimResult)> {
         let both = [
             (StepRule::Auto, &self.results),
@@ -102,7 +103,7 @@ pub fn run(
     for (pass, &step) in rules.iter().enumerate() {
         let before = pass * figures.len();
         let done = AtomicUsize::new(before);
-        // The runs of the other figures fill the pool while one waits for its last run or draws.
+        // While one figure waits for its last run or draws, the runs of the others keep the pool busy.
         let data = map_at_once(&figures, options.threads, |index, figure| {
             let stage = Stage {
                 done: done.load(Ordering::Relaxed),
@@ -131,8 +132,8 @@ pub fn run(
     })
 }
 
-/// Results of `work` for each item, in their order, on the present thread and on others beside it, if the
-/// system grants them: `threads` in all. After an error no further item is begun.
+/// Results of `work` for each item, in their order. The work is done on `threads` threads including the
+/// present one, or fewer if the system refuses more. After an error, no further item is begun.
 fn map_at_once<T: Sync, R: Send + Sync>(
     items: &[T],
     threads: usize,
@@ -157,7 +158,7 @@ fn map_at_once<T: Sync, R: Send + Sync>(
         }
         take();
     });
-    // Items are begun in their order, so that those that were not follow the error.
+    // Items are begun in their order, so those that were not begun follow the error.
     results.into_iter().filter_map(OnceLock::into_inner).collect()
 }
 

@@ -14,7 +14,7 @@ use slipfront_plot::{FieldMap, FrictionCurve};
 use slipfront_run::pictures::friction::marked_curve;
 use slipfront_run::running::RunData;
 
-/// A case that ends at the last of these times, with its fields at these alone.
+/// A case that ends at the last of these times, and records its fields only at these times.
 pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
     let step = |time: &f64| (time / case.time_plan.dt_star).round() as u64;
     let mut steps: Vec<u64> = times_star.iter().map(step).collect();
@@ -50,7 +50,7 @@ pub(super) fn curves(runs: &[FigureRun], label: impl Fn(usize) -> String) -> Dra
     Drawing::Curves(curves.map(|(index, run)| run.curve(&label(index))).collect())
 }
 
-/// Measurements on each of several runs.
+/// Results of a measurement on each of several runs.
 pub(super) fn on_each<T>(
     runs: &[FigureRun],
     measure: impl Fn(&FigureRun) -> Result<T, PaperError>,
@@ -180,7 +180,7 @@ impl FigureRun {
         time.ok_or_else(|| self.lacks("slip"))
     }
 
-    /// Times of the first slip of the blocks in contact, in rising order.
+    /// Times of the first slip of the blocks in contact, in ascending order.
     pub(super) fn slip_times(&self) -> Vec<f64> {
         let times = self.record.first_slip_time_star.iter().copied();
         let mut times: Vec<f64> = times.filter(|time| !time.is_nan()).collect();

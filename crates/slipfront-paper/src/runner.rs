@@ -27,7 +27,7 @@ pub(super) struct FigureRunner<'a> {
     /// Flag set by a signal: all runs end.
     pub(super) stop: &'a AtomicBool,
     pub(super) step: StepRule,
-    /// Whether there are two surfaces in place of five.
+    /// Whether to use two surfaces in place of five.
     pub(super) reduced: bool,
     /// Called with the progress of a study after every run of it.
     pub(super) watch: &'a mut dyn FnMut(&study::Progress),
@@ -56,12 +56,12 @@ impl FigureRunner<'_> {
     }
 
     pub(super) fn run_one(&self, case: Case) -> Result<FigureRun, PaperError> {
-        // On the pool as all others, which limits the runs at once.
+        // Use the pool, as all other runs do, to limit the number of simultaneous runs.
         rayon::scope(|_| run_case(case, self.stop))
     }
 
-    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks
-    /// have slipped, up to the last of these. Maps of the new run have the scale of the whole run.
+    /// Repeats `run` of a case with its fields at the times when these shares of the blocks have slipped, up
+    /// to the last of these times. Maps of the new run have the scale of the whole run.
     pub(super) fn run_seen_at_shares(
         &self,
         case: Case,
@@ -87,10 +87,10 @@ impl FigureRunner<'_> {
         })
     }
 
-    /// A study of this crate with its results: recorded runs are taken from the records, the others are run.
+    /// A study of this crate with its results: recorded runs are reused, the others are run.
     pub(super) fn study(&mut self, name: &str) -> Result<ParameterSweep, PaperError> {
         let plan = self.plan(name)?.plan;
-        // No run folders are kept, so that the folder is not used.
+        // No run folders are kept, so the folder is not used.
         let results = study::execute(&plan, self.records, Path::new(""), self.stop, self.watch)?;
         if let Some((_, reason)) = results.failures().next() {
             return Err(PaperError::StudyRun {
@@ -101,9 +101,9 @@ impl FigureRunner<'_> {
         Ok(ParameterSweep { plan, results })
     }
 
-    /// A study with its results as from [`study`](Self::study), and the runs of the first `replicates` of its
-    /// points with their curves and fields, in the order of replicates and then of points. Where the study
-    /// goes to the same end, these are runs of it and not made again.
+    /// A study with its results, as from [`study`](Self::study), and the runs of the first `replicates` of
+    /// its points with their curves and fields, ordered by replicate and then by point. If the study runs to
+    /// the same end, it reuses these runs.
     pub(super) fn study_with_runs(
         &mut self,
         name: &str,

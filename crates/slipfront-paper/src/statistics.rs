@@ -8,7 +8,7 @@ pub(super) fn smallest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The largest value less the smallest.
+/// Difference of the largest and the smallest value.
 pub(super) fn range(values: &[f64]) -> f64 {
     largest(values.iter().copied()) - smallest(values.iter().copied())
 }

@@ -1,6 +1,6 @@
-//! The two ways in which the time step of the paper's cases is chosen.
+//! The two rules for the time step of the paper's cases.
 
-/// Rule by which the time step is chosen where a case does not set it.
+/// Rule for the time step of cases that do not set it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepRule {
     /// The step `dt* = 0.1`.

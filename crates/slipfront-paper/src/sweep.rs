@@ -82,7 +82,7 @@ impl ParameterSweep {
         plan.settings.keep = RetainRuns::All;
         let mut case = plan.case(run, &mut |_| true)?;
         case.name = format!("{}, {}", plan.name, plan.describe(&plan.points[run.point]));
-        // The largest contact stress of all, which maps are scaled by, may come late.
+        // Maps are scaled by the largest contact stress of the run, which may occur late.
         case.time_plan.stop = Stop::at_step(case.time_plan.last_step);
         Ok(case)
     }

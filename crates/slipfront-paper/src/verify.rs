@@ -1,5 +1,5 @@
-//! Compares a folder of figures with the list of its files, and with what follows from the data that were
-//! stored there.
+//! Compares a folder of figures with the list of its files, and with the results that follow from the stored
+//! data.
 
 use std::fs::File;
 use std::path::Path;
@@ -20,8 +20,8 @@ use crate::error::PaperError;
 use crate::paper::{PaperOptions, run};
 use crate::report::write;
 
-/// Compares the folder of `slipfront paper` with the list of its files, then with pictures and tables that
-/// are made again from the data of its figures, unless these were measured by another program.
+/// Compares the folder of `slipfront paper` with the list of its files, and then with pictures and tables
+/// that are made again from the data of its figures, unless another program has measured these.
 ///
 /// # Errors
 /// When the folder cannot be read, and after a stop.
@@ -40,8 +40,8 @@ pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdic
     Ok(verdict)
 }
 
-/// Makes pictures and tables again from the data of the figures, those of the full or of the reduced paper,
-/// and compares the folder with them.
+/// Makes pictures and tables again from the data of the figures, of the full or the reduced paper, and
+/// compares the folder with them.
 fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), PaperError> {
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
     let names = |files: &[ManifestFile]| files.iter().map(|file| file.name.clone()).collect::<Vec<_>>();
@@ -56,7 +56,7 @@ fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(),
             reduced,
             folder: &again,
         };
-        // No figure is asked for: there are those whose data were stored.
+        // No figure is requested, so the result has those with stored data.
         let paper = run(&[], &RunJournal::open(&again)?, &options, &|_| {})?;
         write(&paper, &ResultFiles::new(&again, "paper", false))?;
         let files = files_of(&again)?;

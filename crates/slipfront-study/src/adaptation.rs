@@ -1,8 +1,8 @@
 //! A search over vectors of numbers that adapts the distribution of its drafts to their losses.
 //!
-//! Matrix adaptation evolution strategy: H.-G. Beyer and B. Sendhoff, Simplify your covariance matrix
-//! adaptation evolution strategy, IEEE Transactions on Evolutionary Computation 21 (2017) 746-759,
-//! doi:10.1109/TEVC.2017.2680320, with the weights and constants given there.
+//! The method is the matrix adaptation evolution strategy: H.-G. Beyer and B. Sendhoff, Simplify your
+//! covariance matrix adaptation evolution strategy, IEEE Transactions on Evolutionary Computation 21 (2017)
+//! 746-759, doi:10.1109/TEVC.2017.2680320, with the weights and constants given there.
 
 use crate::draws::Draws;
 
@@ -15,12 +15,12 @@ pub struct Adaptation {
     step: f64,
     /// The matrix M, row-major.
     matrix: Vec<f64>,
-    /// Sum over steps of the mean, each of which fades with time.
+    /// Exponentially fading sum of the steps of the mean.
     path: Vec<f64>,
 }
 
 impl Adaptation {
-    /// A distribution with this mean, and this deviation in every direction.
+    /// A distribution with this mean, and this standard deviation in every direction.
     pub fn new(mean: Vec<f64>, step: f64) -> Self {
         let n = mean.len();
         let mut matrix = vec![0.0; n * n];
@@ -41,7 +41,7 @@ impl Adaptation {
         self.step
     }
 
-    /// Standard normal numbers z, and the vector x that they give.
+    /// Draws standard normal numbers z, and returns them with the vector x.
     pub fn draw(&self, draws: &mut Draws) -> (Vec<f64>, Vec<f64>) {
         let z: Vec<f64> = self.mean.iter().map(|_| draws.normal()).collect();
         let x = self.mean.iter().zip(self.times(&z));
@@ -54,8 +54,8 @@ impl Adaptation {
         rows.map(|row| dot(row, z)).collect()
     }
 
-    /// Adapts the distribution to the numbers z of at least two drafts, the best first. With d_i those of the
-    /// better half, and w_i weights that fall from the best on, their sum 1:
+    /// Adapts the distribution to the numbers z of at least two drafts, the best first. d_i are the numbers
+    /// of the better half, and w_i decreasing weights with a sum of 1:
     ///
     /// ```text
     /// w_i ~ ln(mu + 1/2) - ln i,   mu_e = 1/sum_i w_i^2,   d = sum_i w_i d_i
@@ -92,7 +92,7 @@ impl Adaptation {
             (effective * fading * (2.0 - fading)).sqrt(),
             &moved,
         );
-        // M v v^T is the column M v times the row v^T, whatever v.
+        // M v v^T is the product of the column M v and the row v^T.
         let mut changed = self.matrix.clone();
         changed
             .iter_mut()
@@ -129,7 +129,7 @@ fn add(to: &mut [f64], factor: f64, vector: &[f64]) {
 mod tests {
     use super::*;
 
-    /// Least value that is found of a function with so many drafts, and the mean of the distribution then.
+    /// Least value of a function that is found with this many drafts, and the final mean of the distribution.
     fn least(of: impl Fn(&[f64]) -> f64, start: Vec<f64>, mut drafts: usize) -> (f64, Vec<f64>) {
         let mut draws = Draws::new(3);
         let mut adaptation = Adaptation::new(start, 0.5);
@@ -149,8 +149,8 @@ mod tests {
         (least, adaptation.mean)
     }
 
-    /// The axes of an ellipsoid are a thousand times apart, and turned: a search whose drafts were alike in
-    /// all directions would take a million times as many.
+    /// The ellipsoid is rotated, and its axes differ by a factor of a thousand: a search with isotropic
+    /// drafts would need a million times as many.
     #[test]
     fn the_middle_of_a_long_tilted_ellipsoid_is_found() {
         let [cos, sin] = [0.6, 0.8];

@@ -1,5 +1,5 @@
-//! Friction against the direction of the drive: the size of the difference, whether it is more than chance,
-//! and friction across the drive.
+//! Dependence of friction on the direction of the drive: the size of the difference, its statistical
+//! significance, and friction across the drive.
 
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ pub(crate) const FRICTION: [(&str, &str); 2] = [
 /// Name of static friction, which a run without a transition does not have.
 const STATIC: &str = "static_friction_star";
 
-/// Difference in degrees below which two directions are one.
+/// Difference in degrees below which two directions are equal.
 const SAME: f64 = 1e-9;
 
 /// Friction of one quantity over the directions, at the same levels of all other axes.
@@ -30,17 +30,17 @@ pub struct Anisotropy {
     pub quantity: &'static str,
     /// Columns of the other axes, and their cells.
     pub levels: Vec<(String, String)>,
-    /// Number of directions that count: those in which at least half of the runs have a value.
+    /// Number of directions that are used: those in which at least half of the runs have a value.
     pub directions: usize,
-    /// Number of replicates that count: those that have a value in each of these directions.
+    /// Number of replicates that are used: those with a value in each of these directions.
     pub replicates: usize,
     /// Sentence on the directions, replicates and runs that are left out.
     pub left_out: Option<String>,
-    /// Result for these values, or a sentence why they are too few.
+    /// Result for these values, or a sentence on why they are too few.
     pub found: Result<OverDirections, String>,
 }
 
-/// Statistics of friction over the directions, over replicates.
+/// Statistics over replicates of friction in all directions.
 #[derive(Clone, Debug)]
 pub struct OverDirections {
     /// The mean over the directions.
@@ -50,29 +50,29 @@ pub struct OverDirections {
     pub largest_direction: f64,
     /// The direction in which the mean over replicates is smallest.
     pub smallest_direction: f64,
-    /// Friction in the largest direction less that in the smallest, over the mean over the directions, of
-    /// every replicate r after the first; for each, the directions are those in which the mean of the
-    /// replicates before it is largest and smallest:
+    /// Difference of friction between the directions of largest and smallest friction, over the mean over all
+    /// directions, for every replicate r after the first. The two directions are those in which the mean of
+    /// the earlier replicates is largest and smallest:
     ///
     /// ```text
     /// (mu_r(largest direction of 0 .. r - 1) - mu_r(smallest direction of 0 .. r - 1))/mean(mu_r)
     /// ```
     ///
-    /// Where friction does not depend on the direction its mean is zero; the difference between the largest
-    /// and the smallest of the same values would be above zero by chance alone.
+    /// If friction does not depend on the direction, the expected value is zero, while the difference between
+    /// the largest and the smallest of the same values would be positive by chance alone.
     pub anisotropy: Sample,
-    /// Probability of axes that stand out as much or more if friction has none; none for less than three
-    /// directions in half a turn.
+    /// p-value of the test for axes: the probability of axes at least as pronounced if friction is isotropic.
+    /// None for fewer than three directions within half a turn.
     pub p_value: Option<f64>,
-    /// The axes of the friction tensor, if they are more than chance.
+    /// The axes of the friction tensor, if they are statistically significant.
     pub principal: Option<Principal>,
-    /// Friction across the drive, positive to its left, and the direction where its mean is largest in size.
-    /// As for `anisotropy`, the direction of every value is that of the replicates before it, and so is its
-    /// sign.
+    /// The direction in which friction across the drive is largest in magnitude, and that friction, positive
+    /// to the left of the drive. As for `anisotropy`, the earlier replicates determine the direction and the
+    /// sign of each value.
     pub lateral: Option<(f64, Sample)>,
 }
 
-/// The anisotropy of static and kinetic friction at all levels of the other axes; empty if no axis is one of
+/// The anisotropy of static and kinetic friction at all levels of the other axes; empty if no axis is over
 /// directions. Levels at which no run has a value are left out.
 pub fn anisotropies(plan: &Plan, results: &StudyResults) -> Vec<Anisotropy> {
     let Some(over) = direction_axis(&plan.axes) else {
@@ -146,8 +146,8 @@ impl DirectedPoints<'_> {
         axes.flatten().collect()
     }
 
-    /// The directions that have a point at these levels of the other axes, each once, with the positions of
-    /// the points.
+    /// The distinct directions that have a point at these levels of the other axes, with the positions of the
+    /// points.
     fn directions(&self, fixed: &Levels) -> Vec<(f64, usize)> {
         let mut levels = vec![0; self.plan.axes.len()];
         for &(axis, level) in fixed {
@@ -170,7 +170,7 @@ impl DirectedPoints<'_> {
         found
     }
 
-    /// The values of each replicate in all directions, for the replicates that have them all.
+    /// The values of each replicate in all directions, for replicates without a missing value.
     fn replicates(&self, directions: &[(f64, usize)], quantity: RunQuantity) -> Vec<Vec<f64>> {
         let counts = directions.iter();
         let counts = counts.map(|(_, position)| self.results.points[*position].replicates);
@@ -181,7 +181,7 @@ impl DirectedPoints<'_> {
         (0..counts.min().unwrap_or(0)).filter_map(values).collect()
     }
 
-    /// Sentence on the directions, replicates and runs that do not count.
+    /// Sentence on the directions, replicates and runs that are not used.
     fn left_out(
         &self,
         quantity: &str,
@@ -251,7 +251,7 @@ fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Res
     })
 }
 
-/// The value that is largest in size, and its direction; none for less than three replicates.
+/// The value that is largest in magnitude, and its direction; none for fewer than three replicates.
 fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<(f64, Sample)> {
     if values.len() < MIN_REPLICATES {
         return None;
@@ -269,10 +269,10 @@ fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Opt
     Some((degrees[at], Sample::of(&sizes, confidence)?))
 }
 
-/// A number of every replicate after the first, from its values and the sums of those of the replicates
-/// before it. A choice from these does not depend on the scatter of the replicate itself, as a choice from
-/// all would; nor does a number depend on the choice for an earlier one, so that the interval of the numbers
-/// is as wide as it claims to be.
+/// Applies `of` to the sums over the earlier replicates and the values of a replicate, for every replicate
+/// after the first. A direction that is chosen from earlier replicates does not depend on the scatter of the
+/// replicate itself, as one chosen from all would, and no number depends on the choice for an earlier one.
+/// The confidence interval of the numbers therefore has the stated coverage.
 fn by_those_before(values: &[Vec<f64>], of: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
     let Some((first, later)) = values.split_first() else {
         return Vec::new();
@@ -333,8 +333,8 @@ mod tests {
         0.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0, 210.0, 240.0, 270.0, 300.0, 330.0,
     ];
 
-    /// Replicates with normal scatter of 0.01 around this friction in each of the directions, and a scatter
-    /// of 0.02 that a replicate has in all of them, as that of its surface.
+    /// Replicates with normal scatter of 0.01 around this friction in each direction, and a common scatter of
+    /// 0.02 for all directions of a replicate, such as that of its surface.
     fn planted(friction: [f64; 12], replicates: usize, seed: u64) -> Vec<Vec<f64>> {
         let normal = |deviation| Distribution { mean: 0.0, deviation };
         let drawn = Coefficients::draw(12 * replicates, normal(0.01), normal(0.02), seed);
@@ -347,15 +347,15 @@ mod tests {
             .collect()
     }
 
-    /// Number of trials with an interval above zero, and below.
+    /// Number of trials with an interval above zero, and with one below.
     fn outside(found: &[Sample]) -> [usize; 2] {
         let ends: Vec<[f64; 2]> = found.iter().filter_map(Sample::interval).collect();
         let count = |is: fn(&[f64; 2]) -> bool| ends.iter().filter(|&ends| is(ends)).count();
         [count(|ends| ends[0] > 0.0), count(|ends| ends[1] < 0.0)]
     }
 
-    /// The largest and the smallest of 12 means differ by chance; that difference must not pass for
-    /// anisotropy more often than the confidence says.
+    /// The largest and the smallest of 12 means differ by chance; that difference must not count as
+    /// anisotropy more often than the confidence level allows.
     #[test]
     fn isotropic_friction_is_called_anisotropic_no_more_often_than_it_may_be() {
         for replicates in [3, 6, 12] {
@@ -365,19 +365,20 @@ mod tests {
                 over_directions(&TWELVE, &values, 0.95).unwrap()
             };
             let found: Vec<OverDirections> = (0..trials).map(trial).collect();
-            // 2.5 % of 2000 on either side are 50 +- 7: five standard errors. The differences of replicates
-            // are independent and normal but for the division by the mean, whose scatter of 2 % is far below
-            // that.
+            // 2.5 % of 2000 on either side are 50 +- 7; the bound is five standard errors. The differences of
+            // replicates are independent and normal, except for the division by the mean, which scatters by
+            // only 2 %.
             let differences: Vec<Sample> = found.iter().map(|found| found.anisotropy).collect();
             let [above, below] = outside(&differences);
             assert!(
                 above.abs_diff(50) < 35 && below.abs_diff(50) < 35,
                 "{replicates}: {above} {below}"
             );
-            // 5 % are 100 +- 9.7, likewise.
+            // 5 % are 100 +- 9.7; the bound is five standard errors.
             let axes = found.iter().filter(|found| found.principal.is_some());
             assert!(axes.count().abs_diff(100) < 49, "{replicates}");
-            // Across the drive, where there is nothing, the sign too is chosen; both sides together are 5 %.
+            // Friction across the drive is zero, and its sign is chosen from the data, too; both sides
+            // together are 5 %.
             let laterals = (0..trials).map(|seed| {
                 let values = planted([0.0; 12], replicates, seed);
                 largest_in_size(&TWELVE, &values, 0.95).unwrap().1
@@ -397,9 +398,9 @@ mod tests {
         let found: Vec<OverDirections> = (0..trials)
             .map(|seed| over_directions(&TWELVE, &planted(friction, 8, seed), 0.95).unwrap())
             .collect();
-        // An amplitude of 0.04 is 28 standard errors of 0.01 sqrt(2/12)/sqrt(8).
+        // The amplitude of 0.04 is 28 standard errors of 0.01 sqrt(2/12)/sqrt(8).
         assert!(found.iter().all(|found| found.principal.is_some()));
-        // 95 % of 400 are 380 +- 4.4: five standard errors.
+        // 95 % of 400 are 380 +- 4.4; the bound is five standard errors.
         let share = |is: &dyn Fn(&OverDirections) -> bool| found.iter().filter(|found| is(found)).count();
         let axis = share(&|found| {
             let principal = found.principal.unwrap();
@@ -414,15 +415,16 @@ mod tests {
         for covered in [axis, values[0], values[1]] {
             assert!(covered.abs_diff(380) < 23, "{axis} {values:?}");
         }
-        // The largest is at 60 or 240, the smallest a quarter turn from there. 30 degrees away friction is
-        // 0.02 less, four standard errors of a difference of two means of eight (3e-5), and there are eight
-        // such pairs: one of 400 trials in ten times.
+        // Friction is largest at 60 or 240 degrees, and smallest a quarter turn from there. At 30 degrees
+        // from these, friction differs by 0.02, four standard errors of the difference of two means of eight
+        // (3e-5). There are eight such pairs, so a wrong direction is expected in one of 400 trials about one
+        // time in ten.
         let at = share(&|found| {
             found.largest_direction % 180.0 == 60.0 && found.smallest_direction % 180.0 == 150.0
         });
         assert!(at >= 398, "{at}");
-        // A direction that one or two replicates choose wrongly makes a difference smaller, by a twentieth on
-        // average at most.
+        // If one or two replicates choose a wrong direction, a difference is smaller, by at most a twentieth
+        // on average.
         let sizes: Vec<f64> = found.iter().map(|found| found.anisotropy.mean).collect();
         let size = mean(&sizes);
         assert!((0.095..=0.1002).contains(&size), "{size}");
@@ -436,7 +438,7 @@ mod tests {
         let two = over_directions(&TWELVE, &values, 0.95).unwrap_err();
         assert!(two.contains("with 2 replicates that have a value"), "{two}");
         assert!(largest_in_size(&TWELVE, &values, 0.95).is_none());
-        // Two directions have a difference, and no axes.
+        // Two directions have a difference, but no axes.
         let values: Vec<Vec<f64>> = planted([0.8; 12], 3, 1)
             .into_iter()
             .map(|values| values[..2].to_vec())
@@ -445,8 +447,7 @@ mod tests {
         assert!(found.p_value.is_none() && found.principal.is_none());
     }
 
-    /// A direction that fails, or runs that never slide, are left out, and a sentence says so; the others
-    /// stay.
+    /// Failed directions and runs that never slide are left out, and a sentence says so; the others are used.
     #[test]
     fn what_has_no_value_is_left_out_and_said() {
         let text = "base.slider.blocks = [4, 4]\nstudy.replicates = 4\n[[axes]]\nkey = 'drive.direction'\nlist = [0, 60, 120, 90, 360]";
@@ -482,7 +483,7 @@ mod tests {
             [numbers.largest_direction, numbers.smallest_direction],
             [60.0, 0.0]
         );
-        // Replicates 0, 2 and 3 around 0.55.
+        // The means of replicates 0, 2 and 3 are around 0.55.
         assert!(
             (numbers.mean.mean - (0.55 + 0.05 / 3.0)).abs() < 1e-15,
             "{numbers:?}"
@@ -490,7 +491,7 @@ mod tests {
         assert_eq!(numbers.anisotropy.n, 2);
     }
 
-    /// The directions of each difference are those of the replicates before it.
+    /// The earlier replicates determine the directions of each difference.
     #[test]
     fn a_difference_is_between_directions_that_others_chose() {
         let values = [vec![0.9, 0.8, 0.7], vec![0.6, 0.8, 1.0], vec![0.7, 1.0, 0.7]];
@@ -498,7 +499,8 @@ mod tests {
             let [largest, smallest] = extremes(before);
             values[largest] - values[smallest]
         });
-        // 0 less 2 after the first; after two of them 2 leads with 1.7, 0 is last with 1.5.
+        // After one replicate, direction 0 is largest and 2 is smallest; after two, direction 2 is largest
+        // with 1.7 and 0 is smallest with 1.5.
         let expected = [0.6 - 1.0, 0.7 - 0.7];
         assert_eq!(numbers, expected);
     }

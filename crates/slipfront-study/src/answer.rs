@@ -1,4 +1,4 @@
-//! The answer of a study for programs.
+//! The answer of a study in a form for programs.
 
 use serde_json::{Map, Value, json};
 
@@ -8,9 +8,9 @@ use crate::study_results::StudyResults;
 use crate::tables::quantities;
 use crate::warning_texts::warning_texts;
 
-/// The answer of a study as JSON: at each point the levels of the axes, and for each quantity that a run has
-/// the columns of `points.csv` (number of values, mean, standard deviation, ends of the interval, smallest
-/// and largest); the runs that failed, with the reason; and the warnings about the cases.
+/// The answer of a study as JSON: for each point, the levels of the axes and, for each quantity that a run
+/// has, the columns of `points.csv` (number of values, mean, standard deviation, ends of the interval,
+/// smallest and largest); the failed runs, with the reasons; and the warnings about the cases.
 pub fn answer(plan: &Plan, results: &StudyResults) -> Value {
     let points: Vec<Value> = (0..plan.points.len())
         .map(|position| point(plan, results, position))

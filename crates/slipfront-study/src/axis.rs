@@ -22,8 +22,8 @@ pub struct Axis {
     pub levels: Vec<Level>,
     /// Spacing of the levels.
     pub spacing: Spacing,
-    /// Unit of the axis's numbers, where they are written with one: that of the first level. Empty where
-    /// levels are named with their units, none where the unit is that of the key.
+    /// Unit of the axis's numbers if they are written with one: that of the first level. Empty if levels are
+    /// named with their units; none if the numbers are in the unit of the key.
     pub unit: Option<String>,
 }
 
@@ -32,7 +32,7 @@ pub struct Axis {
 pub struct Level {
     /// Cells of the level in the columns of the axis.
     pub labels: Vec<String>,
-    /// Number of the level on an axis of numbers; for a quantity in the unit of the axis.
+    /// Number of the level on an axis of numbers; for a quantity, in the unit of the axis.
     pub number: Option<f64>,
     /// Keys of the case and their values.
     pub overrides: Vec<Override>,
@@ -52,7 +52,7 @@ impl Level {
 /// Spacing of the levels of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
-    /// Names or other levels without order.
+    /// Names or other unordered levels.
     Named,
     /// Numbers or quantities.
     Linear,
@@ -61,7 +61,7 @@ pub enum Spacing {
 }
 
 key_rows! {
-    /// `[[axes]]` as it stands in the file.
+    /// `[[axes]]` as written in the file.
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct AxisKeys {
@@ -86,11 +86,12 @@ key_rows! {
 /// Largest number of levels of one axis.
 const MAX_LEVELS: usize = 100_000;
 
-/// The longest key of an axis, in bytes: all keys of a case are shorter. A key is repeated in every level.
+/// Largest length of a key of an axis, in bytes: all keys of a case are shorter. Every level repeats the key,
+/// so longer ones would take much memory.
 const MAX_KEY: usize = 100;
 
-/// Largest number of keys that a level sets: a case without textures has fewer. Every one is compared with
-/// all others.
+/// Largest number of keys that a level sets: a case without textures has fewer. Every key is compared with
+/// all others, which limits their number.
 const MAX_KEYS: usize = 300;
 
 impl Axis {
@@ -143,7 +144,8 @@ impl Axis {
         }
     }
 
-    /// The axis of keys that change together, each with the list of its values. All lists are equally long.
+    /// The axis of keys that change together, each with the list of its values. All lists have the same
+    /// length.
     fn of_lists(lists: &[(String, Vec<Value>)], spacing: Spacing) -> Self {
         let texts = lists.first().filter(|(key, _)| !names_a_file(key));
         let mut quantities = texts.iter().flat_map(|(_, values)| values).filter_map(quantity);
@@ -208,7 +210,7 @@ impl Axis {
             }
         }
         let mut seen = HashSet::new();
-        // 5 and 5.0 are one number.
+        // 5 and 5.0 are the same number.
         let value = |set: &Override| match set.value() {
             Value::Integer(number) => (number as f64).to_string(),
             Value::Float(number) => number.to_string(),
@@ -227,14 +229,14 @@ impl Axis {
         Ok(())
     }
 
-    /// Sets the spacing. An axis is one of numbers only if all its levels are different numbers: zipped keys
-    /// may repeat the first.
+    /// Sets the spacing. An axis is numeric only if all its levels are different numbers: with zipped keys,
+    /// the numbers of the first key may repeat.
     fn set_spacing(&mut self) {
         let mut seen = HashSet::new();
         let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
         if !self.levels.iter().all(&mut differs) {
             self.spacing = Spacing::Named;
-            // Names of one kind: with their units, and pairs in full.
+            // Show all names in the same form: with units, and pairs in full.
             self.levels.iter_mut().for_each(|level| level.number = None);
             self.unit = self.unit.take().map(|_| String::new());
         } else if self.spacing == Spacing::Linear && self.is_nearer_to_ratios() {
@@ -242,8 +244,8 @@ impl Axis {
         }
     }
 
-    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a
-    /// decade, and their median lies nearer to the geometric mean of their ends than to the arithmetic one.
+    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, fit a logarithmic axis better: they span a
+    /// decade, and their median is closer to the geometric mean of the ends than to the arithmetic mean.
     fn is_nearer_to_ratios(&self) -> bool {
         let mut numbers: Vec<f64> = self.levels.iter().filter_map(|level| level.number).collect();
         numbers.sort_by(f64::total_cmp);
@@ -279,7 +281,7 @@ fn values_of(
         (None, Some(range), None) => {
             let range = SpacingRange::read("linspace", &range)?;
             let (from, to) = (range.from, range.to);
-            // Symmetric, so that a spacing from -1 to 1 meets 0.
+            // Symmetric, so that values from -1 to 1 include exactly 0.
             let value = |share: f64| from * (1.0 - share) + to * share;
             Ok((range.spaced(value)?, Spacing::Linear))
         }
@@ -331,11 +333,11 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
     }
 }
 
-/// Sizes of numbers that an axis shows without a power of ten.
+/// Magnitudes of numbers that an axis shows without a power of ten.
 const PLAIN_NUMBERS: std::ops::Range<f64> = 1e-4..1e6;
 
-/// A quantity of one unit, that of the first of these values with an SI prefix, where the values would not be
-/// plain numbers without.
+/// The quantity 1 in the unit of the first of these values with an SI prefix, if the values would need a
+/// power of ten without the prefix.
 fn with_prefix(first: &WrittenQuantity, values: &[Value]) -> Option<Value> {
     let numbers = values
         .iter()
@@ -346,12 +348,12 @@ fn with_prefix(first: &WrittenQuantity, values: &[Value]) -> Option<Value> {
     }
     let (_, prefix) = si_prefix(largest);
     let one = Value::String(format!("1 {prefix}{}", first.unit()));
-    // A unit that has a prefix takes no other.
+    // A unit with a prefix cannot have another one.
     quantity(&one)?.in_unit_of(first)?;
     Some(one)
 }
 
-/// The quantity of a level, if its value has a unit; for a pair of equal quantities the one.
+/// The quantity of a level, if its value has a unit; for a pair of equal quantities, one of them.
 fn quantity(value: &Value) -> Option<WrittenQuantity<'_>> {
     match value {
         Value::String(text) => WrittenQuantity::read(text),
@@ -363,7 +365,8 @@ fn quantity(value: &Value) -> Option<WrittenQuantity<'_>> {
     }
 }
 
-/// The number of a level. A pair of equal ones counts as one: the blocks along each side of a square.
+/// The number of a level. A pair of equal numbers, such as the blocks along the sides of a square, counts as
+/// one number.
 fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Integer(number) => Some(*number as f64),
@@ -378,14 +381,14 @@ fn number(value: &Value) -> Option<f64> {
 
 fn label(key: &str, value: &Value) -> String {
     match value.as_str() {
-        // The same wherever the file stands: beside its case, or copied into a results folder.
+        // Independent of the location of the file: next to its case, or copied into a results folder.
         Some(text) if names_a_file(key) => plain_name(text),
         Some(text) => text.to_owned(),
         None => value.to_string(),
     }
 }
 
-/// The overrides that a table such as `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }` stands for.
+/// The overrides in a table such as `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }`.
 pub fn overrides(keys: &toml::Table) -> Vec<Override> {
     let mut list = Vec::new();
     for (key, value) in keys {
@@ -395,11 +398,11 @@ pub fn overrides(keys: &toml::Table) -> Vec<Override> {
 }
 
 fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
-    // Tables of the case, `drive`, and elements of its lists, `texture.0`, lead to keys; anything else is a
-    // value, and so is a texture that names its shape.
+    // Tables of the case (`drive`) and elements of its lists (`texture.0`) contain keys. Anything else is a
+    // value, also a texture with a key `shape`.
     let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
-    // A key that no case has is refused as it stands, not once for everything in it.
+    // A key that is too long for any case stays whole, so it is refused once and not for every key in it.
     let leads_on = leads_on && key.len() <= MAX_KEY;
     match value {
         Value::Table(inner) if leads_on && !inner.contains_key("shape") => {
@@ -412,7 +415,7 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
 }
 
 /// Whether setting `key` replaces a setting of `earlier`: the keys are equal or partners, or one is a table
-/// or list around the other.
+/// or list that contains the other.
 pub(crate) fn replaces_key(key: &str, earlier: &str) -> bool {
     let rest = earlier.strip_prefix(key);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.')) || exclude_each_other(key, earlier)
@@ -440,7 +443,7 @@ pub(crate) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option
     same.or_else(inside).copied()
 }
 
-/// The ends of a spacing, in the unit of the first if they have one, and the number of values.
+/// The ends of a range, in the unit of the first if they have one, and the number of values.
 struct SpacingRange {
     from: f64,
     to: f64,
@@ -484,7 +487,8 @@ impl SpacingRange {
         })
     }
 
-    /// The values from end to end, both exactly; `between` gives the number at a share of the way.
+    /// The values between the ends, both of which are exact. `between` returns the number at a share of the
+    /// range.
     fn spaced(&self, between: impl Fn(f64) -> f64) -> Result<Vec<Value>, String> {
         let &Self {
             from,
@@ -513,13 +517,13 @@ impl SpacingRange {
     }
 }
 
-/// A value rounded to twelve digits: short in the tables, and independent of the machine's last digit.
+/// A value rounded to twelve digits: short in the tables, and independent of rounding errors of the machine.
 fn twelve_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// A whole number where the value is one: keys that count, such as a seed, take only those, and all others
-/// take them too.
+/// An integer if the value is a whole number: keys such as a seed accept only integers, and all others accept
+/// them, too.
 fn whole_or_not(value: f64) -> Value {
     const LARGEST: f64 = 9e15;
     if value.fract() == 0.0 && value.abs() < LARGEST {
@@ -617,7 +621,7 @@ mod tests {
             (vec![0.1, 1.0, 10.0], "0.1 um, 1 um, 10 um")
         );
         assert_eq!((spacing, unit.as_str()), (Spacing::Logarithmic, "um"));
-        // What is listed stays as it is written, and 0.3 MPa is 300 kPa to the last bit.
+        // Listed values are kept as written, and 0.3 MPa equals 300 kPa to the last bit.
         let (numbers, labels, spacing, _) = of("list = ['0.7 kPa', '0.3 MPa', '100 Pa']");
         assert_eq!(
             (numbers, labels.as_str()),
@@ -626,14 +630,15 @@ mod tests {
         assert_eq!(spacing, Spacing::Logarithmic);
         let (numbers, ..) = of("list = [['1 um', '1 um'], ['2 um', '2 um']]");
         assert_eq!(numbers, [1.0, 2.0]);
-        // Where the unit of the first would take powers of ten, it has a prefix, if it can.
+        // If numbers in the unit of the first value would need powers of ten, the unit gets a prefix, if
+        // possible.
         let (numbers, _, _, unit) = of("list = ['1e-6 m', '3e-6 m', '7e-6 m']");
         assert_eq!((numbers, unit.as_str()), (vec![1.0, 3.0, 7.0], "um"));
         let (numbers, _, _, unit) = of("list = ['2e9 Pa', '1e8 Pa']");
         assert_eq!((numbers, unit.as_str()), (vec![2.0, 0.1], "GPa"));
         let (numbers, _, _, unit) = of("list = ['1e-6 mm', '2e-6 mm']");
         assert_eq!((numbers, unit.as_str()), (vec![1e-6, 2e-6], "mm"));
-        // Of several kinds they are names, which have their units.
+        // Values of several kinds are names, with their units.
         let (numbers, _, spacing, unit) = of("list = ['1 um', 'auto', '2 um']");
         assert_eq!((numbers.len(), spacing, unit.as_str()), (0, Spacing::Named, ""));
         let zipped =
@@ -642,7 +647,7 @@ mod tests {
             (zipped.spacing, zipped.unit.as_deref()),
             (Spacing::Linear, Some("kPa"))
         );
-        // A name of a file is one, whatever it looks like.
+        // A name of a file is a name, even if it looks like a quantity.
         let files = axis("key = 'friction.mu_static_field'\nlist = ['1 m', '2 m']").unwrap();
         assert_eq!(files.spacing, Spacing::Named);
     }
@@ -736,7 +741,7 @@ mod tests {
         assert!(crate::Axis::new(toml::from_str("zip = { a = [1], b = [1, 2] }").unwrap()).is_err());
     }
 
-    /// Every key is compared with all others, which would take minutes in a file of 300 kB.
+    /// Every key is compared with all others, which would take minutes for a file of 300 kB.
     #[test]
     fn more_keys_than_a_case_has_are_refused() {
         let keys =
@@ -750,7 +755,7 @@ mod tests {
         }
     }
 
-    /// A few megabytes of text must not become terabytes.
+    /// A few megabytes of text must not expand to terabytes.
     #[test]
     fn long_keys_are_not_repeated_in_every_level() {
         let long = "k".repeat(100_000);

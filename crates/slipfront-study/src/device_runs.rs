@@ -1,5 +1,5 @@
-//! Makes the missing runs of a study on a device, as many at once as wait, and on the pool those that a
-//! device does not compute.
+//! Makes the missing runs of a study on a device, all waiting ones at once, and runs that the device cannot
+//! compute on the thread pool.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,7 +25,7 @@ use slipfront_case::case_file::CaseError;
 use slipfront_run::device_summaries::{device_summaries, refusal};
 use slipfront_run::names::RUNS;
 
-/// Most runs at once.
+/// Largest number of simultaneous runs.
 const AT_ONCE: usize = 4096;
 
 /// Runs on their way.
@@ -39,7 +39,7 @@ struct DeviceRuns<'a> {
 /// Executes a plan as [`execute`](crate::execute) does, with the same results, on a device.
 ///
 /// # Panics
-/// If the study keeps the folders of all runs, which a device does not make.
+/// If the study keeps the folders of all runs, which a device cannot write.
 pub fn execute_on_device(
     plan: &Plan,
     records: &RunJournal,
@@ -67,7 +67,7 @@ pub fn execute_on_device(
         threads.spawn(move || runs.make(&tasks, &to_scheduler));
         let _abandon = SetOnDrop(&abandon);
         let start = move |task| {
-            // A thread that has ended by a panic wants no more of them.
+            // If the thread has panicked, it needs no more tasks.
             let _ = to_device.send(task);
         };
         Scheduler::new(plan, records, &start, AT_ONCE).run(&finished, stop, watch)
@@ -80,17 +80,17 @@ impl DeviceRuns<'_> {
         while let Ok(first) = tasks.recv() {
             let waiting = tasks.try_iter().take(AT_ONCE - 1);
             let tasks: Vec<Task> = std::iter::once(first).chain(waiting).collect();
-            // Without an answer the scheduler would wait without end.
+            // Without an answer, the scheduler would wait forever.
             let made = catch_unwind(AssertUnwindSafe(|| self.make_at_once(tasks)));
             let fault = |panic: Box<dyn Any + Send>| vec![Err(DeviceError(panicked(panic.as_ref())).into())];
             for result in made.unwrap_or_else(fault) {
-                // A scheduler that has ended wants no more of them.
+                // If the scheduler has ended, it needs no more results.
                 let _ = to_scheduler.send(result);
             }
         }
     }
 
-    /// Makes some runs at once.
+    /// Makes several runs at the same time.
     fn make_at_once(&self, tasks: Vec<Task>) -> Vec<TaskResult> {
         let made = tasks.into_par_iter().map(|task| (self.case(&task), task));
         let (mut cases, mut on_device, mut results) = (Vec::new(), Vec::new(), Vec::new());
@@ -134,7 +134,7 @@ impl DeviceRuns<'_> {
                                 wall_time_s,
                                 outcome: Outcome::of(summary),
                             })),
-                            // What is kept of a run that failed is kept there.
+                            // The CPU repeats a failed run and keeps the files of it.
                             Some(Err(_)) => self.make_on_cpu(task),
                         }),
                 );
@@ -173,7 +173,7 @@ mod tests {
     use crate::execute::execute;
     use crate::study_file::StudyFile;
 
-    /// Plain runs, runs of the CPU alone and runs that fail: all are recorded as on the CPU.
+    /// Plain runs, runs that only the CPU can compute, and runs that fail: all are recorded as on the CPU.
     const STUDY: &str = "base = { slider.blocks = [12, 10], time.stop = 'after_onset', drive.v_star = 0.1 }\n\
                          study = { replicates = 3, keep = 'failed', reference = { texture = [] } }\n\
                          [[axes]]\nkey = 'drive.loading'\nlist = ['constant', 'held']\n\
@@ -199,11 +199,11 @@ mod tests {
         let on_cpu = executed(STUDY, None).unwrap();
         assert_eq!(on_device.points, on_cpu.points);
         assert_eq!(on_device.runs, on_cpu.runs);
-        // Each with its reference.
+        // Each run has its reference.
         assert_eq!(on_cpu.runs.len(), 2 * 4 * 3);
     }
 
-    /// A device that takes no lattice of the study.
+    /// A device that accepts no lattice of the study.
     #[derive(Debug)]
     struct Small;
 
@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(on_device.runs, executed(STUDY, None).unwrap().runs);
     }
 
-    /// A device that fails, or that has a fault.
+    /// A device that returns an error, or panics.
     #[derive(Debug)]
     struct Broken {
         panics: bool,

@@ -1,4 +1,4 @@
-//! Random numbers of searches and calibrations, alike on every machine.
+//! Random numbers of searches and calibrations, identical on every machine.
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
@@ -8,12 +8,12 @@ use chacha20::rand_core::{Rng, SeedableRng};
 pub struct Draws(ChaCha8Rng);
 
 impl Draws {
-    /// The stream of a start number.
+    /// The stream of a seed.
     pub fn new(start: u64) -> Self {
         Self::of([start, 0, 0, 0])
     }
 
-    /// The stream of four numbers that name it.
+    /// The stream that four numbers identify.
     pub fn of(name: [u64; 4]) -> Self {
         let mut key = [0; 32];
         for (bytes, number) in key.chunks_exact_mut(8).zip(name) {
@@ -38,7 +38,7 @@ impl Draws {
         ((self.uniform() * n as f64) as usize).min(n - 1)
     }
 
-    /// A standard normal number, by Box and Muller.
+    /// A standard normal number, by the Box-Muller transform.
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
         radius * libm::cos(std::f64::consts::TAU * self.uniform())

@@ -229,7 +229,7 @@ impl StudyError {
     }
 }
 
-/// Reason for which the model has no curves at some values of the unknowns.
+/// Reason why the model has no curves at some values of the unknowns.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TrainingError {

@@ -1,4 +1,4 @@
-//! Estimate of the cost of a study, from some steps of each size of slider, and limits on it.
+//! Estimate of the cost of a study, from a few steps on each size of slider; and limits on the cost.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use crate::plan::Plan;
 /// Limits on the runs of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CostLimits {
-    /// Memory of all runs at once, GB.
+    /// Memory of all simultaneous runs, GB.
     pub memory_gb: Option<f64>,
     /// Time until all runs are done.
     pub time: Option<SignedDuration>,
@@ -44,7 +44,7 @@ pub fn estimated_time(plan: &Plan, threads: usize) -> Result<TimeRange, CaseErro
 }
 
 impl CostLimits {
-    /// Refuses a plan if there is no memory for `threads` runs at once, or if it exceeds the limits.
+    /// Refuses a plan if memory is too small for `threads` simultaneous runs, or if it exceeds the limits.
     ///
     /// # Errors
     /// A sentence with the cost, the limit, and the remedy.
@@ -52,7 +52,7 @@ impl CostLimits {
         const GB: f64 = 1e9;
         plan.check_memory(threads)?;
         let memory = plan.memory(threads);
-        // NaN is a limit that nothing fits.
+        // Nothing fits a limit of NaN.
         let fits = |most: f64| memory <= most * GB;
         if let Some(most) = self.memory_gb.filter(|most| !fits(*most)) {
             let needed = byte_size(memory);
@@ -63,7 +63,7 @@ impl CostLimits {
             });
         }
         let Some(most) = self.time else { return Ok(()) };
-        // Other work on the machine must not refuse what would be in time without it.
+        // Use the lower estimate: other work on the machine must not cause a refusal.
         let TimeRange { least, .. } = estimated_time(plan, threads)?;
         if least > most.as_secs_f64() {
             let estimated = SignedDuration::from_secs(least.ceil() as i64);

@@ -22,22 +22,22 @@ use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::{clock, pictures, results, running};
 
-/// Whether runs should be given up: after a signal, and when the study cannot go on.
+/// Returns whether runs should be aborted: after a signal, or when the study cannot continue.
 type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
 
-/// Runs a case; without an outcome if the run was given up.
+/// Function that runs a case; no outcome if the run was aborted.
 type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
 
-/// Function that gets a run that has ended, before its results are written, and returns whether it counts as
-/// done. A run that does not is no failure: it counts as stopped.
+/// Callback that receives a finished run before its results are written, and returns whether the run counts
+/// as done. If not, the run counts as stopped, not as failed.
 pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::RunData) -> bool + Sync + 'a;
 
 /// Runs everything that the plan needs and the records lack.
 ///
-/// The threads of rayon's pool do one run each at a time, of this study and of others that are executed
-/// meanwhile; this thread waits for them, and must not be the only one of the pool. `stop` ends all runs;
+/// Each thread of rayon's pool does one run at a time, of this study or of others that are executed at the
+/// same time. This thread waits for them, and must not be the only thread of the pool. `stop` ends all runs;
 /// finished ones stay recorded. Run folders that the study keeps are written to `folder`. `watch` is called
-/// after every run. A run that fails is no error.
+/// after every run. A failed run is not an error.
 pub fn execute(
     plan: &Plan,
     records: &RunJournal,
@@ -48,7 +48,7 @@ pub fn execute(
     execute_and_look(plan, records, folder, stop, &|_, _, _| true, watch)
 }
 
-/// Executes a plan as [`execute`] does; `look` gets every run that ends, on the thread of the run.
+/// Executes a plan as [`execute`] does, and calls `look` for every run that ends, on the thread of the run.
 pub fn execute_and_look(
     plan: &Plan,
     records: &RunJournal,
@@ -77,14 +77,15 @@ fn execute_with(
     let (to_scheduler, finished) = mpsc::channel::<TaskResult>();
     let abandon = AtomicBool::new(false);
     let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
-    // The scheduler stays on the thread of the caller: it waits, and would take a run's place in the pool.
+    // The scheduler stays on the thread of the caller: it mostly waits, and would occupy a thread of the
+    // pool.
     rayon::in_place_scope(|scope| {
         let _abandon = SetOnDrop(&abandon);
         let start = |task| {
             let (is_stopped, to_scheduler) = (&is_stopped, to_scheduler.clone());
             scope.spawn(move |_| work(run_case, task, &to_scheduler, is_stopped));
         };
-        // Of the pool that works, so that idle threads get replicates ahead of need.
+        // The threads of the working pool, so that idle threads get replicates ahead of need.
         let threads = rayon::current_num_threads();
         Scheduler::new(plan, records, &start, threads).run(&finished, stop, watch)
     })
@@ -93,11 +94,11 @@ fn execute_with(
 /// Does a run.
 fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<TaskResult>, is_stopped: &IsStopped) {
     let began = Instant::now();
-    // The pool may hold many tasks that wait: after a stop they end here.
+    // The pool may hold many waiting tasks; after a stop, they end here.
     let outcome = if is_stopped() {
         Ok(None)
     } else {
-        // A panic is recorded as a failed run, so that the scheduler does not wait for it without end.
+        // A panic is recorded as a failed run; otherwise, the scheduler would wait for it forever.
         catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
             .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
     };
@@ -106,11 +107,11 @@ fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<TaskResult
         wall_time_s: began.elapsed().as_secs_f64(),
         outcome,
     };
-    // A scheduler that has ended wants no more of them.
+    // If the scheduler has ended, it needs no more results.
     let _ = finished.send(outcome.map(|outcome| outcome.map(record)));
 }
 
-/// The reason of a run that failed by a panic.
+/// The reason for a run that failed by a panic.
 pub(crate) fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
     let message = panic.downcast_ref::<String>().map(String::as_str);
     let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
@@ -126,8 +127,8 @@ pub(crate) fn run_one(
     is_stopped: &IsStopped,
 ) -> Result<Option<Outcome>, StudyError> {
     let started = clock::now();
-    // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends
-    // the study and is not recorded as a failure of the run.
+    // The point was valid when the study began. If it is invalid now, a file that it reads has changed. This
+    // ends the study, and is not recorded as a failure of the run.
     let case = match plan.case(run, &mut |_| !is_stopped()) {
         Ok(case) => Arc::new(case),
         Err(CaseError::Stopped) => return Ok(None),
@@ -156,8 +157,8 @@ pub(crate) fn run_one(
     }))
 }
 
-/// Writes a run folder. The folder of a failed run is that of an interrupted one and holds the case alone, by
-/// which it can be repeated.
+/// Writes a run folder. The folder of a failed run is marked as interrupted and contains only the case, from
+/// which the run can be repeated.
 fn write_folder(
     case: &Case,
     record: Option<&mut running::RunData>,
@@ -172,7 +173,7 @@ fn write_folder(
     Ok(())
 }
 
-/// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the pool would run
+/// Sets a flag when it is dropped, also after an error or a panic: without a scheduler, the pool would run
 /// cases that nobody records.
 pub(crate) struct SetOnDrop<'a>(pub(crate) &'a AtomicBool);
 
@@ -196,7 +197,7 @@ mod tests {
         Plan::new(&file, None).unwrap()
     }
 
-    /// A pretended run whose number depends on its seed and point, and whose duration on neither.
+    /// A simulated run: its result depends on seed and point, and its duration on neither.
     fn pretend(run: RunKey) -> Outcome {
         let mixed = (run.replicate as u64 * 7919 + run.point as u64 * 104_729) % 1000;
         Outcome::Done(Box::new(Summary {
@@ -206,7 +207,7 @@ mod tests {
         }))
     }
 
-    /// Executes a plan with `threads` runs at once: the thread that waits for them is one more of the pool.
+    /// Executes a plan with `threads` simultaneous runs; the pool has one more thread, which waits for them.
     fn execute_on(
         threads: usize,
         plan: &Plan,
@@ -237,7 +238,7 @@ mod tests {
         let (expected, _) = run(&plan, &|run, _| Ok(Some(pretend(run))), 1);
         let expected = expected.unwrap();
         let counts: Vec<usize> = expected.points.iter().map(|point| point.replicates).collect();
-        // The case must be one in which something is decided.
+        // The case must be one in which the stopping rule matters.
         assert!(counts.iter().any(|&count| count > 3 && count < 20), "{counts:?}");
         for threads in [2, 5, 16] {
             let late_first = |run: RunKey, _: &IsStopped| {
@@ -248,7 +249,7 @@ mod tests {
             let found = found.unwrap();
             assert_eq!(found.points, expected.points, "{threads} threads");
             assert_eq!(found.runs, expected.runs, "{threads} threads");
-            // No more than what idle threads could run ahead.
+            // No more runs than idle threads could do ahead of need.
             assert!(recorded < found.runs.len() + 4 * threads, "{recorded}");
         }
     }
@@ -310,7 +311,7 @@ mod tests {
             if run.replicate < 5 {
                 return Ok(Some(pretend(run)));
             }
-            // Nothing else ends this one.
+            // Only the flag ends this run.
             let began = Instant::now();
             while !is_stopped() && began.elapsed() < Duration::from_secs(60) {
                 std::thread::sleep(Duration::from_millis(1));

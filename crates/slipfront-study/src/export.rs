@@ -1,5 +1,5 @@
-//! Folders of studies and of other projects as results that are exported: the files of their lists with their
-//! meanings, the project as an action, and each run of a study as one.
+//! Export of the folders of studies and other projects: the files in their lists with their meanings, the
+//! project as an action, and each run of a study as a further action.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -25,7 +25,7 @@ use crate::project_folder::{
 use crate::study_file::STUDIES;
 use crate::summary_values::{AFTER_AXES, BEFORE_AXES};
 
-/// A folder that is not exported.
+/// Reason why a folder is not exported.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ExportFolderError {
@@ -55,7 +55,7 @@ impl JournalEntry for RecordedRun {
 /// every file with its checksum.
 ///
 /// # Errors
-/// When it is no such folder, was not finished, cannot be read, or is not as it was written.
+/// When it is not such a folder, was not finished, cannot be read, or was changed after it was written.
 pub fn exported(folder: &Path, others: &[Derivation]) -> Result<Exported, ExportFolderError> {
     if STUDIES.is_in(folder) {
         return study(folder);
@@ -70,7 +70,7 @@ pub fn exported(folder: &Path, others: &[Derivation]) -> Result<Exported, Export
     Ok(Exported::run(folder)?)
 }
 
-/// A study with its runs; one with a comparison of its meshes is a convergence.
+/// A study with its runs. A study with a comparison of its meshes is a convergence.
 fn study(folder: &Path) -> Result<Exported, ExportFolderError> {
     let is_over_meshes = folder.join(CONVERGENCE[0]).exists();
     let kind = if is_over_meshes {
@@ -83,8 +83,8 @@ fn study(folder: &Path) -> Result<Exported, ExportFolderError> {
     Ok(study)
 }
 
-/// The folder of a project as its list has it. The project is an action of this `kind`: from its file and
-/// what stands beside it, it gives all else.
+/// The folder of a project, as in its list of files. The project is an action of this `kind`: its project
+/// file and the given files are the inputs, and all others are the results.
 fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Exported, ExportFolderError> {
     let (verdict, is_complete) = verify_checksums(folder, &[], &AtomicBool::new(false))?;
     ExportError::expect_none(verdict.differences)?;
@@ -147,7 +147,7 @@ fn file_of(folder: &Path, name: &str) -> Result<ManifestFile, StudyError> {
     Ok(ManifestFile::of(folder, name).map_err(FolderError::read(&path))?)
 }
 
-/// Whether a project is made from a file.
+/// Whether a file is an input of a project.
 fn is_given(of: &ProjectKind, name: &str) -> bool {
     name == of.file || name.starts_with("inputs/") || meaning_among(of.given, name).is_some()
 }
@@ -170,14 +170,14 @@ fn meaning(of: &ProjectKind, name: &str) -> String {
     meaning.to_owned()
 }
 
-/// Meaning of a file by the beginning of its name.
+/// Meaning of a file, found by the beginning of its name.
 fn meaning_among(known: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
     let found = known.iter().find(|(begin, _)| name.starts_with(begin));
     found.map(|(_, meaning)| *meaning)
 }
 
-/// Adds the runs in the table of a study: those whose folders are kept with their files, others as the rows
-/// that they are.
+/// Adds the runs in the table of a study: runs with a kept folder together with their files, the others only
+/// as rows of the table.
 fn add_runs(study: &mut Exported) -> Result<(), ExportFolderError> {
     let path = study.folder.join(TABLES[0]);
     let unreadable = FolderError::read(&path);
@@ -214,7 +214,7 @@ struct TableRow<'a> {
 }
 
 impl TableRow<'_> {
-    /// The cell of the column at `after` the axes.
+    /// The cell of column number `after`, counted from 0, behind those of the axes.
     fn after_axes(&self, after: usize) -> &str {
         self.cells.get(self.axes.end + after).unwrap_or_default()
     }
@@ -223,7 +223,7 @@ impl TableRow<'_> {
         self.after_axes(1)
     }
 
-    /// The reason for which the run failed, if it did.
+    /// The reason why the run failed, if it did.
     fn failure(&self) -> Option<&str> {
         (self.after_axes(2) == "failed").then(|| self.after_axes(3))
     }
@@ -298,7 +298,7 @@ fn add_run(study: &mut Exported, row: &TableRow) -> Result<(), ExportFolderError
     Ok(())
 }
 
-/// The case that is kept of a run that failed, and the files that it reads.
+/// The case that is kept of a failed run, and the files that it reads.
 fn files_of_failed(folder: &Path, at: &str) -> Result<Vec<ExportedFile>, StudyError> {
     let path = folder.join(at);
     let names = file_names(&path).map_err(FolderError::read(&path))?;

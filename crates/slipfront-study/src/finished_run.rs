@@ -8,7 +8,7 @@ use crate::project_folder::JournalEntry;
 use crate::summary_values::SummaryValues;
 use slipfront_run::summary::Summary;
 
-/// End of a run.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -18,7 +18,7 @@ pub enum Outcome {
     Failed(String),
 }
 
-/// The part of an outcome that tables and statistics need: numbers, or the reason of the failure.
+/// The part of an outcome that tables and statistics need: numbers, or the reason for the failure.
 pub type RunResult = Result<Arc<SummaryValues>, String>;
 
 impl Outcome {
@@ -35,7 +35,7 @@ impl Outcome {
         }
     }
 
-    /// The outcome, or a failure if a number of it is not finite: JSON has no such numbers.
+    /// The outcome, or a failure if one of its numbers is not finite: JSON has no such numbers.
     fn or_not_finite(self) -> Self {
         let json = serde_json::to_string(&self).unwrap_or_default();
         match serde_json::from_str::<Self>(&json) {
@@ -48,9 +48,9 @@ impl Outcome {
 /// A finished run: one line of the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FinishedRun {
-    /// Identity of the run: a hash of all that decides its numbers.
+    /// Identity of the run: a hash of everything that determines its numbers.
     pub id: String,
-    /// Seconds that the run took. A repeated run differs in this value alone.
+    /// Seconds that the run took. A repeated run differs only in this value.
     pub wall_time_s: f64,
     /// Outcome of the run.
     pub outcome: Outcome,

@@ -36,13 +36,13 @@ pub struct StudyFolder {
 }
 
 impl StudyFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works
-    /// in. If the study has changed since then, its tables and pictures are removed: they can be made from
-    /// the records again.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process uses.
+    /// If the study has changed since then, its tables and pictures are removed: they can be made again from
+    /// the records.
     ///
     /// # Errors
-    /// When the folder holds other things, or files that were edited since they were written and may not be
-    /// replaced by `force`; when another process works in it, or it cannot be written to.
+    /// When the folder contains other things, or results that were edited afterwards, unless `force` is set;
+    /// when another process uses it, or it cannot be written to.
     pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
         STUDIES.is_used(path)?;
         if is_of_figures(path) {
@@ -94,8 +94,8 @@ impl StudyFolder {
             .collect()
     }
 
-    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this
-    /// folder lacks them.
+    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard if they are
+    /// missing here.
     ///
     /// # Errors
     /// When the system refuses to read or to write, and after a stop.
@@ -124,7 +124,7 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Refuses a study if the disk has no room for the runs that it lacks, with the fewest replicates.
+    /// Refuses a study if the disk has no space for its missing runs, with the fewest replicates.
     pub fn check_disk(&self, plan: &Plan) -> Result<(), StudyError> {
         let lacking = |run: &RunKey| self.records.get(&plan.identity(*run)).is_none();
         let needed = plan.disk(plan.runs(plan.settings.min_replicates()).filter(lacking));
@@ -156,7 +156,7 @@ pub(crate) fn stage(
     stage_pictures(plan, results, batch, stop)
 }
 
-/// Writes the pictures of a study to a batch of files, in the look that the batch has, until a stop.
+/// Writes the pictures of a study to a batch of files, in the look of the batch, until a stop.
 pub(crate) fn stage_pictures(
     plan: &Plan,
     results: &StudyResults,
@@ -172,7 +172,7 @@ pub(crate) fn stage_pictures(
     })
 }
 
-/// Whether the folder is one of `slipfront paper`, which has records and no study file.
+/// Whether the folder is one of `slipfront paper`, which has records but no study file.
 pub fn is_of_figures(folder: &Path) -> bool {
     folder.join(FIGURE_CACHE).is_dir() && !is_study(folder)
 }
@@ -185,13 +185,12 @@ pub fn is_study(folder: &Path) -> bool {
 /// Loads the study file of a results folder.
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     let path = folder.join(STUDY);
-    // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without
-    // end.
+    // A study file given by the user may be a pipe; in a results folder, opening a pipe would block forever.
     open_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
     StudyFile::load(&path)
 }
 
-/// Refuses folders whose studies differ: names the first that differs from the first of all.
+/// Refuses folders with different studies, and names the first that differs from the first folder.
 pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
     let read = |folder: &Path| {
         let path = folder.join(STUDY);
@@ -214,8 +213,8 @@ pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
 mod tests {
     use super::*;
 
-    /// Runs read the copies of which their identity was made: changes of the original files during a study
-    /// have no effect, and a changed copy is an error.
+    /// Runs read the copies that their identity was computed from. Changes of the original files during a
+    /// study have no effect, and a changed copy is an error.
     #[test]
     fn runs_read_what_their_identity_was_made_of() {
         let folder = tempfile::tempdir().unwrap();

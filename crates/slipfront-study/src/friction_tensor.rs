@@ -10,15 +10,15 @@ pub(crate) const MIN_REPLICATES: usize = 3;
 /// Difference relative to the mean below which values differ only by rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The friction tensor M that fits best, by least squares over the directions d:
+/// The least-squares fit of the friction tensor M over the directions d:
 ///
 /// ```text
 /// mu(d) = d . M d = (mu_1 + mu_2)/2 + (mu_1 - mu_2)/2 cos 2(theta - theta_1)
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Principal {
-    /// Direction theta_1 of the larger principal value, from 0 to 180 degrees; the other direction is across
-    /// it.
+    /// Direction theta_1 of the larger principal value, from 0 to 180 degrees; the other principal direction
+    /// is perpendicular to it.
     pub direction: f64,
     /// Half width of the direction's confidence interval, degrees.
     pub half_width: Option<f64>,
@@ -31,15 +31,15 @@ pub struct Principal {
 /// Result of the tensors of all replicates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tensor {
-    /// Probability of axes that stand out as much or more if friction has none.
+    /// p-value: the probability of axes at least as pronounced if friction is isotropic.
     pub(crate) p_value: f64,
-    /// The axes, if they are more than chance at this confidence.
+    /// The axes, if they are statistically significant at this confidence.
     pub(crate) principal: Option<Principal>,
 }
 
 impl Tensor {
     /// The tensor of the values of at least [`MIN_REPLICATES`] replicates, each in all directions; none if
-    /// there are less than three directions in half a turn.
+    /// there are fewer than three directions within half a turn.
     pub(crate) fn of(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<Self> {
         let harmonics: Vec<[f64; 3]> = degrees
             .iter()
@@ -62,8 +62,8 @@ impl Tensor {
     }
 }
 
-/// Hotelling's test of whether the mean of the two components of the second harmonic, (c, s) with the
-/// covariance S over n replicates, is zero; none of fewer than [`MIN_REPLICATES`] replicates:
+/// p-value of Hotelling's test of whether the mean (c, s) of the two components of the second harmonic is
+/// zero, with the covariance S over n replicates; none for fewer than [`MIN_REPLICATES`] replicates:
 ///
 /// ```text
 /// T^2 = n (c, s) . S^-1 (c, s),   (n - 2)/(2 (n - 1)) T^2 ~ F(2, n - 2)
@@ -76,7 +76,7 @@ fn p_of_isotropy(fits: &[[f64; 3]]) -> Option<f64> {
     let mean = |of: &dyn Fn(&[f64; 3]) -> f64| fits.iter().map(of).sum::<f64>() / n;
     let [level, c, s] = [0, 1, 2].map(|part| mean(&|fit| fit[part]));
     let covariance = |of: &dyn Fn(&[f64; 3]) -> f64| mean(of) * n / (n - 1.0);
-    // Without it, replicates that do not differ at all would divide by zero.
+    // Avoids a division by zero for replicates that do not differ at all.
     let rounding = (ROUNDING * level) * (ROUNDING * level);
     let cc = covariance(&|fit| (fit[1] - c) * (fit[1] - c)) + rounding;
     let ss = covariance(&|fit| (fit[2] - s) * (fit[2] - s)) + rounding;
@@ -96,7 +96,7 @@ fn principal(
     let means = over_replicates(values);
     let [level, cosine, sine] = least_squares(harmonics, &means)?;
     let amplitude = libm::hypot(cosine, sine);
-    // Every replicate along the axes of the mean, and across.
+    // Components of every replicate along the axes of the mean, and perpendicular to them.
     let [along_cosine, along_sine] = [cosine / amplitude, sine / amplitude];
     let part = |of: &dyn Fn([f64; 3]) -> f64| {
         let values: Vec<f64> = fits.iter().map(|fit| of(*fit)).collect();
@@ -132,15 +132,15 @@ fn over_replicates(values: &[Vec<f64>]) -> Vec<f64> {
     (0..directions).map(mean).collect()
 }
 
-/// The factors of three functions, given by their values, whose sum is nearest to these values; none if the
-/// functions do not differ there.
+/// The coefficients of three functions in the least-squares fit to these values; none if the functions, given
+/// by their values, are linearly dependent.
 fn least_squares(functions: &[[f64; 3]], values: &[f64]) -> Option<[f64; 3]> {
     let product = |i: usize, j: usize| functions.iter().map(|f| f[i] * f[j]).sum::<f64>();
     let matrix: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| product(i, j)));
     let right: [f64; 3] =
         std::array::from_fn(|i| functions.iter().zip(values).map(|(f, value)| f[i] * value).sum());
     let determinant = determinant(&matrix);
-    // That of equally spaced directions is a quarter of the third power of their number.
+    // For equally spaced directions, the determinant is a quarter of the third power of their number.
     if determinant <= 1e-9 * (functions.len() as f64).powi(3) {
         return None;
     }
@@ -164,7 +164,7 @@ mod tests {
 
     use super::*;
 
-    /// Friction of a tensor of these principal values, the first at `direction`.
+    /// Friction of a tensor with these principal values, the first at `direction`.
     fn of_tensor(degrees: &[f64], [one, two]: [f64; 2], direction: f64) -> Vec<f64> {
         let value = |degrees: &f64| {
             let cosine = libm::cos(2.0 * (degrees - direction).to_radians());
@@ -175,7 +175,7 @@ mod tests {
 
     const EIGHTH: [f64; 8] = [0.0, 22.5, 45.0, 67.5, 90.0, 112.5, 135.0, 157.5];
 
-    /// Replicates that do not differ leave nothing to chance.
+    /// If replicates do not differ, the axes are certain.
     #[test]
     fn the_axes_of_a_tensor_are_found() {
         for (degrees, direction) in [
@@ -186,7 +186,7 @@ mod tests {
             let values = vec![of_tensor(degrees, [0.9, 0.6], direction); 3];
             let tensor = Tensor::of(degrees, &values, 0.95).unwrap();
             let found = tensor.principal.unwrap();
-            // Roundings of sums of a few numbers of order 1.
+            // The bounds allow for rounding of sums of a few numbers of order 1.
             assert!((found.direction - direction).abs() < 1e-10, "{found:?}");
             assert!((found.values[0].mean - 0.9).abs() < 1e-13 && (found.values[1].mean - 0.6).abs() < 1e-13);
             assert!(
@@ -199,23 +199,23 @@ mod tests {
 
     #[test]
     fn axes_that_are_not_known_are_not_told() {
-        // Two directions and their opposites determine no axes, and two replicates no chance.
+        // Two directions and their opposites determine no axes, and two replicates are too few for the test.
         let two = [0.0, 90.0, 180.0, 270.0];
         assert!(Tensor::of(&two, &vec![of_tensor(&two, [0.9, 0.6], 0.0); 3], 0.95).is_none());
         assert!(Tensor::of(&EIGHTH, &vec![of_tensor(&EIGHTH, [0.9, 0.6], 0.0); 2], 0.95).is_none());
-        // Equal friction all around, and a pattern of four.
+        // Equal friction in all directions, and friction with fourfold symmetry.
         let fourfold = EIGHTH.map(|degrees| 0.8 + 0.1 * libm::cos(4.0 * degrees.to_radians()));
         for values in [[0.8; 8], fourfold] {
             let tensor = Tensor::of(&EIGHTH, &vec![values.to_vec(); 3], 0.95).unwrap();
             assert!(tensor.principal.is_none() && tensor.p_value > 0.99, "{tensor:?}");
         }
-        // Surfaces that differ by more than the principal values do.
+        // Surfaces that differ by more than the principal values.
         let one = of_tensor(&EIGHTH, [0.9, 0.6], 0.0);
         let others = [80.0, 100.0].map(|direction| of_tensor(&EIGHTH, [0.9, 0.8], direction));
         let [two, three] = others;
         let tensor = Tensor::of(&EIGHTH, &[one, two, three], 0.95).unwrap();
         assert!(tensor.principal.is_none(), "{tensor:?}");
-        // Little scatter leaves an interval of the direction.
+        // A little scatter gives the direction a finite interval.
         let turned = [-1.0, 0.0, 1.0].map(|degrees| of_tensor(&EIGHTH, [0.9, 0.6], 20.0 + degrees));
         let found = Tensor::of(&EIGHTH, &turned, 0.95).unwrap().principal.unwrap();
         assert!((found.direction - 20.0).abs() < 1e-10);
@@ -223,13 +223,13 @@ mod tests {
         // degrees)/3.
         let turn = 2f64.to_radians();
         let ratio = 4.3027 * turn.sin() / 3f64.sqrt() / ((1.0 + 2.0 * turn.cos()) / 3.0);
-        // The quantile has four decimals: 1e-5 of 2.5 degrees.
+        // The quantile has four decimals, a relative error of 1e-5 for 2.5 degrees.
         let expected = 0.5 * ratio.atan().to_degrees();
         assert!((found.half_width.unwrap() - expected).abs() < 1e-4, "{found:?}");
     }
 
-    /// F(2, d) has a closed form: P(F > f) = (1 + 2 f/d)^(-d/2), which makes (1 + T^2/(n - 1))^(-(n - 2)/2)
-    /// of it.
+    /// F(2, d) has a closed form, P(F > f) = (1 + 2 f/d)^(-d/2), so the p-value is
+    /// `(1 + T^2/(n - 1))^(-(n - 2)/2)`.
     #[test]
     fn the_test_is_that_of_hotelling() {
         let fits = [
@@ -245,8 +245,8 @@ mod tests {
         assert!((p_of_isotropy(&fits).unwrap() - expected).abs() < 1e-13);
     }
 
-    /// Isotropic friction with normal scatter is called anisotropic as often as the level says, which is
-    /// exact for such scatter.
+    /// Isotropic friction with normal scatter is called anisotropic as often as the significance level
+    /// states, since the test is exact for such scatter.
     #[test]
     fn chance_passes_for_anisotropy_as_often_as_it_may() {
         let scatter = Distribution {
@@ -261,7 +261,7 @@ mod tests {
                 let tensor = Tensor::of(&EIGHTH, &values, 0.95).unwrap();
                 tensor.principal.is_some()
             });
-            // Of 2000 trials at 5 %, 100 +- 9.7: five standard errors.
+            // 5 % of 2000 trials are 100 +- 9.7; the bound is five standard errors.
             let alarms = alarms.count();
             assert!(alarms.abs_diff(100) < 49, "{replicates}: {alarms}");
         }

@@ -1,4 +1,5 @@
-//! Identity of a run, a hash of all that decides its numbers: runs of one identity are made once.
+//! Identity of a run, a hash of everything that determines its numbers: runs with equal identities are made
+//! once.
 
 use serde::Serialize;
 use slipfront_case::case::{Case, Input};
@@ -30,15 +31,15 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its
-/// files and the program; not the names of files, nor the output. Tables that equal those of a `known` case
-/// are not hashed again.
+/// Hash of everything except the seed that determines the numbers of a run: the physics of the case, the
+/// contents of its files and the program; not the names of files or the output. Tables that equal those of a
+/// `known` case are not hashed again.
 pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 7])>) -> Result<blake3::Hash, CaseError> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(program::this_build().as_bytes());
-    // This crate makes the recorded numbers of what a run leaves.
+    // This crate computes the recorded numbers from the output of a run, so its sources count, too.
     hasher.update(SOURCE_HASH.as_bytes());
-    // What identifies a file follows from its contents.
+    // The contents of files may differ even if the tables are equal.
     let known = known.filter(|_| case.inputs.is_empty());
     for text in texts(&case.file, &case.inputs, known)? {
         hasher.update(&text);
@@ -46,7 +47,7 @@ pub fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 7])>) -> Result
     Ok(hasher.finalize())
 }
 
-/// The tables of a case that decide its numbers, with the contents of files in place of their names, and
+/// The tables of a case that determine its numbers, with the contents of files in place of their names, and
 /// without the seed.
 fn texts(
     file: &CaseFile,
@@ -68,7 +69,7 @@ fn texts(
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
-    // Without the text that the case was read from, which decides nothing.
+    // Without the text that the case was read from, which has no effect.
     let mut hashed = CaseFile {
         slider: file.slider.clone(),
         load: file.load.clone(),

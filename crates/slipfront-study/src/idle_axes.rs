@@ -1,6 +1,6 @@
 //! Axes that change nothing in a study: the dimensionless model and its time plan are the same at every
-//! level. Pressure, stiffness and density alone are such axes, since they only set units as long as the drive
-//! has a V*.
+//! level. Pressure, stiffness or density is such an axis as long as the drive has a V*, since it then only
+//! sets units.
 
 use std::cell::LazyCell;
 
@@ -10,8 +10,8 @@ use slipfront_case::case::Case;
 use crate::axis::Axis;
 use crate::plan::Plan;
 
-/// Strain of the load below which results do not depend on it in the digits that are printed: the strain
-/// shows in the third digit above ten times this.
+/// Strain due to the load below which it does not affect the printed digits of results; at ten times this
+/// strain, it affects the third digit.
 const NEGLIGIBLE_EPSILON: f64 = 1e-3;
 
 /// The keys that set the unit of speed (Eq. 11a): V* does not change with them.
@@ -22,10 +22,10 @@ const UNITS_OF_SPEED: [&str; 4] = [
     "friction.mu_static",
 ];
 
-/// A sentence for each axis that changes nothing: the axis and the remedy.
+/// A sentence for each axis that changes nothing, with the axis and a remedy.
 ///
-/// An axis changes nothing if all its levels are one model, both at the first levels of the other axes and at
-/// the last ones. Where an axis changes something, its second level shows it.
+/// An axis changes nothing if all its levels give the same model, both at the first levels of the other axes
+/// and at the last ones. If an axis changes something, usually its second level already differs.
 pub fn idle_axes(plan: &Plan) -> Vec<String> {
     let first = vec![0; plan.axes.len()];
     let last = plan.axes.iter().map(|axis| axis.levels.len() - 1).collect();
@@ -53,14 +53,14 @@ pub fn idle_axes(plan: &Plan) -> Vec<String> {
     idle.map(|axis| sentence(&plan.axes[axis])).collect()
 }
 
-/// Hash of the computed model at these levels; none where they are no valid case, since a part of a study
-/// need not notice a point that it does not run.
+/// Hash of the computed model at these levels; none if they are not a valid case, since a shard need not
+/// check points that it does not run.
 fn digest_at(plan: &Plan, levels: &[usize]) -> Option<blake3::Hash> {
     plan.case_of(levels).ok().as_ref().map(digest)
 }
 
-/// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units
-/// that cancel leave the rounding of two operations at 53 bits.
+/// Hash of everything in a case that the kernel and the observers use. Numbers are rounded to 24 bits,
+/// because units that cancel leave rounding errors of two operations at 53 bits.
 fn digest(case: &Case) -> blake3::Hash {
     let (model, time) = (&case.model, &case.time_plan);
     let mut hasher = blake3::Hasher::new();
@@ -147,8 +147,8 @@ mod tests {
         format!("[[axes]]\nkey = '{key}'\nlist = {list}\n")
     }
 
-    /// Axes of units are named with their remedy: only the dimensionless model counts, whatever the key is
-    /// called.
+    /// Axes that only set units are reported with a remedy: only the dimensionless model counts, not the name
+    /// of the key.
     #[test]
     fn axes_of_units_are_named_with_their_remedy() {
         let (pressure, speed) = (
@@ -159,13 +159,13 @@ mod tests {
         let expected = "the axis of `load.pressure` changes nothing but the units of results while `drive.v_star` is fixed: set \
                         `drive.speed` instead, or leave the axis out";
         assert_eq!(said, [expected]);
-        // As the remedy says, and so do they change what is computed with sizes that have a unit.
+        // With the remedy, the axis has an effect.
         assert!(idle(&format!("base.drive.speed = '0.1 mm/s'\n{pressure}")).is_empty());
         for (key, list) in [
             ("slider.young_modulus", "['50 GPa', '100 GPa']"),
             ("slider.density", "['5 g/cm^3', '10 g/cm^3']"),
             ("slider.block_size", "['1 um', '3 um']"),
-            // Divided by themselves, these leave other roundings.
+            // These values cancel only up to rounding.
             ("friction.mu_static", "[0.3, 0.7, 1.0]"),
         ] {
             let said = idle(&axis(key, list));
@@ -199,7 +199,7 @@ mod tests {
             ("time.kinetic_from_star", "[200, 210]"),
             ("time.stop", "['end', 'after_onset']"),
             ("friction.law", "['projection', 'literal']"),
-            // Strains that show.
+            // Strains that affect the results.
             ("load.pressure", "['1 GPa', '2 GPa']"),
         ] {
             let grades = "{ along = 'x', from = 1, to = 1 }";
@@ -207,7 +207,7 @@ mod tests {
                 format!("base.slider.stiffness_grade = {grades}\nbase.slider.density_grade = {grades}\n");
             assert!(idle(&format!("{base}{}", axis(key, list))).is_empty(), "{key}");
         }
-        // Four blocks a side show no difference between these.
+        // Four blocks per side do not resolve the difference.
         let sized = "[[base.texture]]\nshape = 'cavity'\n";
         let said = idle(&format!("{sized}{}", axis("texture.0.coverage", "[12, 13]")));
         assert!(said.len() == 1 && said[0].contains("the same blocks"), "{said:?}");
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// An axis that only counts at the last levels of the others is no idle axis.
+    /// An axis that has an effect only at the last levels of the others is not idle.
     #[test]
     fn an_axis_may_count_at_some_points_alone() {
         let variants = "[[axes]]\nname = 'held'\n[axes.variants]\nv_star = { drive.v_star = 0.03 }\n\

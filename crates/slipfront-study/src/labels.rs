@@ -8,7 +8,7 @@ use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
 use slipfront_run::summary::TITLES;
 
-/// Title of a quantity: words, symbol, unit; none if its name stands for it.
+/// Title of a quantity: words, symbol, unit; none if its name is used instead.
 fn title_of_quantity(name: &str) -> Option<[&'static str; 3]> {
     if name == REDUCTION {
         return Some(["reduction of \u{3bc}\u{209b}*", "", "%"]);
@@ -28,7 +28,7 @@ pub(crate) fn quantity_symbol(quantity: &str) -> &'static str {
 }
 
 /// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key
-/// without a title is shown as it is.
+/// without a title is shown unchanged.
 pub(crate) fn axis_title(axis: &Axis) -> String {
     in_its_unit(axis, |label| label.title())
 }
@@ -53,11 +53,11 @@ pub struct AxisLabels {
     pub title: String,
     /// Title of the axis as it is drawn.
     pub drawn_title: String,
-    /// Title of a legend of what is drawn of the axis.
+    /// Title of a legend for the axis as it is drawn.
     pub drawn_symbol: String,
-    /// Whether pictures have meshed coverages in place of its levels.
+    /// Whether pictures show meshed coverages in place of the levels.
     pub is_meshed: bool,
-    /// Levels beside those of other axes: symbol, value and unit.
+    /// Labels of levels where several axes are named: symbol, value and unit.
     pub levels: Vec<String>,
 }
 
@@ -80,7 +80,8 @@ pub fn axis_labels(plan: &Plan) -> Vec<AxisLabels> {
     labels.collect()
 }
 
-/// Text of a level of an axis beside those of others: its symbol, value and unit. A name stands alone.
+/// Label of a level where several axes are named: its symbol, value and unit; only the name if the axis has
+/// names.
 pub(crate) fn level_with_symbol(axis: &Axis, shown: String) -> String {
     if axis.spacing == Spacing::Named {
         return shown;

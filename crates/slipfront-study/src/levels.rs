@@ -1,8 +1,8 @@
-//! Levels of several axes at once, and the axis of directions.
+//! Combinations of levels of several axes, and the axis of directions.
 
 use crate::axis::{Axis, Spacing};
 
-/// The key whose levels are directions.
+/// The key of the axis of directions.
 const DIRECTION: &str = "drive.direction";
 
 /// The axis over directions of the drive, if a study has one.

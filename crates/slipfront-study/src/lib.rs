@@ -5,7 +5,7 @@
 //! text -> StudyFile -> Plan (every point a valid case) -> StudyResults -> tables -> pictures
 //! ```
 //!
-//! Every finished run is a line of the journal. A study that was stopped is continued from there.
+//! Every finished run is a line of the journal, from which a stopped study continues.
 
 pub mod adaptation;
 mod anisotropy;

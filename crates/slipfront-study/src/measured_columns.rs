@@ -5,14 +5,14 @@ use std::path::Path;
 use slipfront_case::table::TableOptions;
 use slipfront_run::measured::{Column, Measure, MeasuredError, MeasuredRecord};
 
-/// Columns of a table, by their names or numbers, and their units where the header has none.
+/// Columns of a table, by their names or numbers, and their units if the header has none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredColumns {
     /// Times, or displacements of the drive.
     pub x: Column,
     /// Forces, or coefficients if their unit is 1.
     pub y: Column,
-    /// How the table is written, where it should not be found.
+    /// Format of the table, as far as it is not detected.
     pub options: TableOptions,
 }
 
@@ -33,16 +33,16 @@ impl MeasuredColumns {
     /// The record in a table.
     ///
     /// # Errors
-    /// A sentence on why the table is no record.
+    /// A sentence on why the table is not a record.
     pub fn read(&self, path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::read(path, [&self.x, &self.y], along, self.options);
         read.map_err(|error| Self::sentence(error, path))
     }
 
-    /// The record in these bytes of a table, of which messages name the path.
+    /// The record in these bytes of a table; messages contain its path.
     ///
     /// # Errors
-    /// A sentence on why the table is no record.
+    /// A sentence on why the table is not a record.
     pub fn parse(&self, bytes: &[u8], path: &Path, along: Measure) -> Result<MeasuredRecord, String> {
         let read = MeasuredRecord::parse(bytes, path, [&self.x, &self.y], along, self.options);
         read.map_err(|error| Self::sentence(error, path))

@@ -1,5 +1,5 @@
-//! Meshed coverages of the levels of a coverage, which blocks meet only nearly: pictures show them in place
-//! of the asked ones.
+//! Meshed coverages for the levels of a coverage axis: blocks give the requested coverages only
+//! approximately, and pictures show the meshed ones.
 
 use std::collections::HashMap;
 
@@ -8,8 +8,8 @@ use slipfront_base::number_format::count;
 use crate::axis::Spacing;
 use crate::plan::Plan;
 
-/// Meshed coverage at every point of a study with an axis of numbers over the coverage of its only texture.
-/// For several textures the coverage of each is not known.
+/// Meshed coverage at every point of a study with a numeric axis over the coverage of its only texture. For
+/// several textures, the coverage of each is not known.
 pub struct MeshedCoverage {
     /// Position of the axis.
     pub axis: usize,
@@ -42,7 +42,7 @@ impl MeshedCoverage {
         self.percent.get(levels).copied()
     }
 
-    /// A sentence if levels are meshed to one coverage: pictures show them at one place.
+    /// A sentence if several levels are meshed to the same coverage, so pictures show them at one place.
     pub fn merged(&self, plan: &Plan) -> Option<String> {
         let axis = &plan.axes[self.axis];
         let mut first: HashMap<(Vec<usize>, u64), usize> = HashMap::new();

@@ -1,4 +1,4 @@
-//! The pictures of a study, which follow from its axes alone: curves over numbers, maps over two of them,
+//! The pictures of a study, determined by its axes alone: curves over numeric axes, maps over two of them,
 //! bars for names.
 
 use std::collections::HashSet;
@@ -15,18 +15,18 @@ pub(crate) const QUANTITIES: [&str; 3] = ["static_friction_star", "kinetic_frict
 /// Largest number of curves in one picture.
 const MOST_CURVES: usize = 9;
 
-/// Largest number of pictures of curves of a quantity; for a larger study the tables serve better.
+/// Largest number of pictures with curves of a quantity; for a larger study, the tables are more useful.
 const MOST_PICTURES: usize = 1000;
 
-/// Largest number of characters of the levels in the name of a picture: the length of file names is limited.
+/// Largest number of characters for the levels in the name of a picture: the length of file names is limited.
 const MOST_OF_LEVELS: usize = 100;
 
-/// The picture of friction over the directions of the drive.
+/// Name of the picture of friction over the directions of the drive.
 pub(crate) const POLAR: &str = "friction_polar";
 
-/// The axis of directions and the combinations of levels of the others, each of which is a curve of every
-/// quantity in the polar picture; none if there is no such axis. A sentence if there are too many for one
-/// picture.
+/// The axis of directions and the combinations of levels of the other axes; none if there is no such axis.
+/// Each combination is a curve of every quantity in the polar picture. A sentence if they are too many for
+/// one picture.
 pub(crate) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String>> {
     let over = direction_axis(axes)?;
     let others = others_than(axes, over);
@@ -74,8 +74,7 @@ pub(crate) fn measured_quantities(plan: &Plan, results: &StudyResults) -> Vec<&'
     QUANTITIES.into_iter().filter(has).collect()
 }
 
-/// A sentence for each quantity that a study of this kind has pictures of, and for which this one has no
-/// value.
+/// A sentence for each quantity that a study of this kind draws, if this study has no value of it.
 pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<String> {
     let measured = measured_quantities(plan, results);
     let expected = |quantity: &&str| plan.has_reference() || *quantity != REDUCTION;
@@ -86,8 +85,8 @@ pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<S
         .collect()
 }
 
-/// Sentences on why a study of these axes has no curves and no bars, and why no polar picture of its
-/// directions; none for pictures that it has.
+/// Sentences on why a study with these axes has no curves or bars, and no polar picture of its directions;
+/// none for pictures that it has.
 pub fn why_no_pictures(axes: &[Axis]) -> Vec<String> {
     let polar = polar(axes).and_then(Result::err);
     why_no_curves(axes).into_iter().chain(polar).collect()
@@ -105,11 +104,10 @@ fn why_no_curves(axes: &[Axis]) -> Option<String> {
     Some(format!("there are no pictures of curves: {why}; {values}"))
 }
 
-/// Kind of the charts of a study beside a map.
+/// Kind of the charts of a study, apart from a map.
 enum ChartKind {
     Bars,
-    /// Curves over axis `x`; the first `split` of the others take a picture for each combination of their
-    /// levels.
+    /// Curves over axis `x`; each combination of levels of the first `split` other axes has its own picture.
     Curves {
         x: usize,
         split: usize,
@@ -127,7 +125,7 @@ impl ChartKind {
                 "none of its {count} axes is numeric, and bars need one or two axes"
             )),
             (Some((x, Ok(split))), _) => Self::Curves { x, split },
-            // Over another axis there may be fewer of them.
+            // Another axis may need fewer curves or pictures.
             (Some((_, Err(why))), _) => over
                 .find_map(|(x, split)| {
                     Some(Self::Curves {
@@ -140,7 +138,7 @@ impl ChartKind {
     }
 }
 
-/// The axes of numbers.
+/// The numeric axes.
 fn numeric(axes: &[Axis]) -> Vec<usize> {
     let axes = axes.iter().enumerate();
     axes.filter(|(_, axis)| axis.spacing != Spacing::Named)
@@ -148,13 +146,13 @@ fn numeric(axes: &[Axis]) -> Vec<usize> {
         .collect()
 }
 
-/// The two axes that a study has, if both are of numbers.
+/// The axes of a study that has exactly two, if both are numeric.
 fn map_of(axes: &[Axis]) -> Option<[usize; 2]> {
     let numeric: [usize; 2] = numeric(axes).try_into().ok()?;
     (axes.len() == 2).then_some(numeric)
 }
 
-/// The pictures of a quantity, by the axes alone.
+/// The pictures of a quantity, determined by the axes alone.
 pub(crate) fn planned(axes: &[Axis], quantity: &str) -> Vec<PlannedPicture> {
     let mut pictures = match ChartKind::of(axes) {
         ChartKind::Bars => vec![PlannedPicture {
@@ -178,8 +176,8 @@ fn others_than(axes: &[Axis], x: usize) -> Vec<usize> {
     (0..axes.len()).filter(|&axis| axis != x).collect()
 }
 
-/// Number of axes beside `x` that are split off into pictures of their own, from the front, so that a picture
-/// can hold curves for the rest; a sentence if there would still be too many curves, or too many pictures.
+/// Number of leading axes, not counting `x`, with a separate picture for each level, so that each picture has
+/// few enough curves; a sentence if there would still be too many curves, or too many pictures.
 fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     let others = others_than(axes, x);
     let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
@@ -203,8 +201,8 @@ fn split(axes: &[Axis], x: usize) -> Result<usize, String> {
     }
 }
 
-/// Curves over axis `x`, one for each combination of levels of the other axes, of which those in front have
-/// pictures of their own.
+/// Curves over axis `x`, one for each combination of levels of the other axes; the levels of the first
+/// `split` of them have separate pictures.
 fn planned_curves(axes: &[Axis], x: usize, split: usize, quantity: &str) -> Vec<PlannedPicture> {
     let others = others_than(axes, x);
     let (front, back) = others.split_at(split);
@@ -213,7 +211,7 @@ fn planned_curves(axes: &[Axis], x: usize, split: usize, quantity: &str) -> Vec<
             .iter()
             .flat_map(|&(axis, level)| &axes[axis].levels[level].labels);
         let letters = labels.flat_map(|label| ['-'].into_iter().chain(label.chars()));
-        // Some file systems allow no other letters in names.
+        // Some file systems do not allow other characters in names.
         let is_allowed = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
         let letters = letters.map(|letter| if is_allowed(letter) { letter } else { '_' });
         let suffix: String = letters.take(MOST_OF_LEVELS).collect();
@@ -227,7 +225,7 @@ fn planned_curves(axes: &[Axis], x: usize, split: usize, quantity: &str) -> Vec<
         }
     };
     let mut pictures: Vec<PlannedPicture> = combinations(axes, front).into_iter().map(picture).collect();
-    // Names can be equal once characters are replaced or the end is cut off: then each gets a number.
+    // After characters are replaced or the end is cut off, names can be equal: then each gets a number.
     let names: HashSet<&String> = pictures.iter().map(|picture| &picture.name).collect();
     if names.len() < pictures.len() {
         for (k, picture) in pictures.iter_mut().enumerate() {
@@ -256,7 +254,7 @@ mod tests {
         planned.map(|picture| picture.name).collect()
     }
 
-    /// Every picture has a name of its own, whatever the levels are called, and no name is too long.
+    /// Every picture has a distinct name, whatever the names of the levels, and no name is too long.
     #[test]
     fn every_picture_has_a_name_of_its_own() {
         let long = "x".repeat(300);
@@ -281,7 +279,7 @@ mod tests {
         );
     }
 
-    /// No more pictures are drawn than are useful, although a line of a file can ask for a million.
+    /// The number of pictures is limited, although a line of a file can ask for a million.
     #[test]
     fn more_pictures_than_anyone_looks_at_are_not_drawn() {
         let surfaces: String = (0..1001)

@@ -25,7 +25,7 @@ use slipfront_plot::{
 /// Name of the curve of a study over meshes.
 const MEANS_ON_MESHES: &str = "mean on each mesh";
 
-/// The value on the finest mesh with its error. The axis begins at blocks of no size, to which the meshes
+/// The value on the finest mesh with its error. The axis begins at a block size of 0, to which the meshes
 /// converge.
 fn result_on_meshes(finest: f64, value: f64, error: f64) -> Response {
     Response {
@@ -38,11 +38,11 @@ fn result_on_meshes(finest: f64, value: f64, error: f64) -> Response {
     }
 }
 
-/// Note that coverages are meshed ones, for which a legend of several axes has no room.
+/// Note that coverages are meshed ones; a legend of several axes has no space to say so.
 const AS_MESHED: &str = "A* as meshed";
 
-/// Draws the pictures of a study that are asked for, and hands each on with the name of its files. The budget
-/// limits the number of pictures in memory at once.
+/// Draws the requested pictures of a study, and passes each on with the name of its files. The budget limits
+/// the number of pictures that are in memory at the same time.
 pub(crate) fn draw(
     plan: &Plan,
     results: &StudyResults,
@@ -94,7 +94,7 @@ struct PlottedQuantity<'a> {
     note: String,
     /// Number of values at each point that has one.
     counts: Vec<usize>,
-    /// Levels of the points of which runs without a transition are left out: a cross marks them.
+    /// Levels of the points that lack some runs because these have no transition: a cross marks them.
     crossed: HashSet<Vec<usize>>,
     /// Number of runs without a transition.
     without_transition: usize,
@@ -193,14 +193,14 @@ impl<'a> PlottedQuantity<'a> {
         let shown = shown_at(level);
         let mut others = (0..self.axes[axis].levels.len()).filter(|&other| other != level);
         if others.any(|other| shown_at(other) == shown) {
-            // What is meshed does not tell it from another one.
+            // Another level has the same meshed coverage.
             format!("{shown} ({asked} asked)")
         } else {
             shown
         }
     }
 
-    /// Text of a level beside those of other axes, with these axes held at levels.
+    /// Label of a level where several axes are named, with the axes of `held` fixed at their levels.
     fn level_with_symbol(&self, axis: usize, level: usize, held: &[(usize, usize)]) -> String {
         level_with_symbol(&self.axes[axis], self.shown(axis, level, held))
     }
@@ -208,7 +208,7 @@ impl<'a> PlottedQuantity<'a> {
     fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Responses {
         let curves = combinations(self.axes, varied).into_iter();
         let mut curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
-        // What covers no block has no place on a logarithmic scale.
+        // A coverage of 0 cannot be drawn on a logarithmic scale.
         let has_place = curves.iter().flat_map(|curve| &curve.x).all(|&x| x > 0.0);
         if let (Some([value, error]), [curve]) = (self.on_finest_mesh, &mut curves[..]) {
             MEANS_ON_MESHES.clone_into(&mut curve.label);
@@ -229,12 +229,13 @@ impl<'a> PlottedQuantity<'a> {
         }
     }
 
-    /// The note on the intervals, after the levels that all curves of a picture have in common.
+    /// The note below a picture: the levels that all its curves have in common, and the meaning of the
+    /// intervals.
     fn note_at(&self, fixed: &[(usize, usize)], varied: &[usize]) -> String {
         let levels = fixed
             .iter()
             .map(|&(axis, level)| self.level_with_symbol(axis, level, fixed));
-        // The title of a legend or of an axis says it otherwise.
+        // Otherwise, the title of a legend or an axis says so.
         let several = varied.iter().filter(|_| varied.len() > 1);
         let mut beside_others = fixed.iter().map(|(axis, _)| axis).chain(several);
         let is_meshed = beside_others.any(|&axis| self.meshed(axis).is_some());
@@ -243,8 +244,8 @@ impl<'a> PlottedQuantity<'a> {
         parts.join("; ")
     }
 
-    /// A curve over axis `x` at these levels of the others; the levels of the `varied` axes name it; a single
-    /// varied axis stands in the title of the legend.
+    /// A curve over axis `x` at these levels of the others. Its label has the levels of the `varied` axes,
+    /// without a symbol if there is a single one, which the title of the legend names.
     fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
         let held = [fixed, varied].concat();
         let label = varied.iter().map(|&(axis, level)| match varied.len() {
@@ -275,7 +276,7 @@ impl<'a> PlottedQuantity<'a> {
     fn map(&self, x: usize, y: usize) -> HeatMap {
         let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
         let (mut means, mut half_widths, mut crossed) = (Vec::new(), Vec::new(), Vec::new());
-        // A map is drawn for two axes alone.
+        // A map is drawn only for two axes.
         let mut levels = [0; 2];
         for &(_, row) in &rows {
             for &(_, column) in &columns {
@@ -308,8 +309,8 @@ impl<'a> PlottedQuantity<'a> {
         }
     }
 
-    /// The mean meshed coverages of the lines of a map over two axes; none if this is no axis of coverages,
-    /// or if the lines would not keep their order.
+    /// The mean meshed coverages of the lines of a map over two axes; none if this is not an axis of
+    /// coverages, or if the lines would change their order.
     fn meshed_lines(&self, axis: usize, asked: &[(f64, usize)], log: bool) -> Option<Vec<f64>> {
         let meshed = self.meshed(axis)?;
         let across = 0..self.axes[1 - axis].levels.len();
@@ -362,8 +363,8 @@ impl<'a> PlottedQuantity<'a> {
     }
 }
 
-/// Static and kinetic friction around the directions of the drive, a curve for each combination of levels of
-/// the other axes; none if no run has either.
+/// Polar picture of static and kinetic friction over the directions of the drive, with a curve for each
+/// combination of levels of the other axes; none if no run has either quantity.
 fn friction_polar(
     plan: &Plan,
     results: &StudyResults,
@@ -413,7 +414,7 @@ fn friction_polar(
     slipfront_plot::polar(&polar, size).map(Some)
 }
 
-/// Note on the intervals around means of `counts` values, and on the number of runs that are left out.
+/// Note on the intervals of means of `counts` values, and on the number of runs that are left out.
 fn note_on_intervals(confidence: f64, counts: &[usize], without_transition: usize) -> String {
     let intervals = intervals(confidence, counts);
     match without_transition {
@@ -449,7 +450,7 @@ fn range(coverages: &[f64]) -> String {
     }
 }
 
-/// Numbers of an axis in rising order, each with its level.
+/// Numbers of an axis in ascending order, each with its level.
 fn by_number(axis: &Axis) -> Vec<(f64, usize)> {
     let levels = axis.levels.iter().enumerate();
     let mut numbers: Vec<(f64, usize)> = levels

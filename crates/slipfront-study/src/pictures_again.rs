@@ -1,5 +1,5 @@
-//! Pictures of the folder of a study or of another project, drawn again in a look that is asked for, from the
-//! runs that the folder has recorded. The folder stays as it is.
+//! Pictures of a study or of another project, drawn again in a requested look from the recorded runs in its
+//! folder. The folder is not changed.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -64,7 +64,7 @@ pub fn pictures_of<'f>(
     }))
 }
 
-/// The name of the picture of which a file is in this format; none for other files.
+/// The name of the picture if a file is a picture in this format; none for other files.
 fn picture_name(file: &str, format: PictureFormat, no_pictures: &[&str]) -> Option<String> {
     let name = file.strip_suffix(format.ending())?.strip_suffix('.')?;
     let is_one = !name.contains('/') && !no_pictures.contains(&name);

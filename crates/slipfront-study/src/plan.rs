@@ -49,16 +49,16 @@ pub struct Point {
 struct RunSpec {
     /// Seed of replicate 0.
     seed: u64,
-    /// Hash of all that decides the numbers of a run, but for the seed.
+    /// Hash of everything except the seed that determines the numbers of a run.
     physics: blake3::Hash,
-    /// Steps that are expected.
+    /// Expected number of steps.
     steps: ExpectedSteps,
     n_blocks: usize,
-    /// Whether the drive stands while blocks slide, for steps that `steps` leave out.
+    /// Whether the drive stops while blocks slide, for an additional time that `steps` do not include.
     is_held: bool,
-    /// Memory of a run beside others, in bytes.
+    /// Memory of a run that is made at the same time as others, in bytes.
     memory: f64,
-    /// Memory of the case of a run alone, in bytes.
+    /// Memory of only the case of a run, in bytes.
     memory_of_case: f64,
     /// Disk space for the files of a run, in bytes.
     disk: f64,
@@ -68,18 +68,18 @@ struct RunSpec {
     meshed_coverage: Option<f64>,
 }
 
-/// Number of blocks above which cases are made one at a time while planning: one for each thread might not
-/// fit into memory.
+/// Number of blocks above which planning makes cases one at a time, because one for each thread might not fit
+/// into memory.
 const LARGE: u64 = 250_000;
 
-/// Data of a run and the warnings about it, or what its case breaks.
+/// Data of a run and the warnings about it, or the error of its case.
 type Spec = Result<(RunSpec, Vec<String>), (Role, CaseError)>;
 
 /// Result of making the cases of points in a row.
 enum MadeRow {
     /// The cases were made; data of their runs.
     Made(Vec<Spec>),
-    /// A case has too many blocks to be made beside others.
+    /// A case has too many blocks to be made at the same time as others.
     TooLarge,
 }
 
@@ -93,10 +93,10 @@ impl MadeRow {
     }
 }
 
-/// Number of points whose cases are made before the data of their runs are collected.
+/// Number of points for which cases are made before the data of their runs are collected.
 const POINTS_AT_ONCE: usize = 4096;
 
-/// Number of points in a row whose cases are made from one base.
+/// Number of consecutive points with cases made from the same base.
 const POINTS_OF_A_BASE: usize = 64;
 
 /// Bytes of a line of the records and a row of the tables.
@@ -106,7 +106,7 @@ const RECORD_BYTES: f64 = 4096.0;
 /// pictures.
 const RESULT_BYTES: f64 = 2048.0;
 
-/// Number of pictures of the study that are drawn at once.
+/// Number of pictures of the study that are drawn at the same time.
 pub(crate) const PICTURES_AT_ONCE: usize = 2;
 
 /// The purpose of a run of a point.
@@ -130,7 +130,8 @@ pub struct RunKey {
 }
 
 impl Plan {
-    /// Makes the points of all combinations of levels and the case of each; the first invalid one is named.
+    /// Makes the points of all combinations of levels and the case of each. The error names the first invalid
+    /// one.
     pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
         let points = (0..file.count_points()?)
             .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
@@ -179,7 +180,7 @@ impl Plan {
                 };
                 made.specs()
             });
-            // In order, so that the first invalid point is named.
+            // In order, so that the error names the first invalid point.
             for (run, made) in made.enumerate() {
                 let position = chunk * POINTS_AT_ONCE + run / roles;
                 let (spec, sentences) = made.map_err(|error| invalid(Some(&self.points[position]), error))?;
@@ -192,8 +193,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Number of the first axes that keep their levels over several points in a row, from which a base can be
-    /// made, and the number of these points.
+    /// Number of leading axes that keep their levels over several points in a row, so that these points can
+    /// share a base; and the number of these points.
     fn slow_axes(&self) -> (usize, usize) {
         let (mut slow, mut length) = (self.axes.len(), 1);
         while slow > 0 && length < POINTS_OF_A_BASE {
@@ -213,7 +214,7 @@ impl Plan {
         });
         let bases = match bases.collect::<Result<Vec<_>, _>>() {
             Ok(bases) => bases,
-            // It is that of the first of them.
+            // The error is that of the first point.
             Err(error) => return MadeRow::Made(vec![Err(error)]),
         };
         let mut specs = Vec::with_capacity(row.len() * bases.len());
@@ -243,8 +244,8 @@ impl Plan {
         self.reference.is_some()
     }
 
-    /// The main quantity: the one that decides on replicates, else the reduction if there is a reference,
-    /// else mu_s*.
+    /// The main quantity: the one that decides on replicates, otherwise the reduction if there is a
+    /// reference, otherwise mu_s*.
     pub fn main_quantity(&self) -> &str {
         match &self.settings.until {
             Some(until) => &until.key,
@@ -253,7 +254,7 @@ impl Plan {
         }
     }
 
-    /// The overrides of a point's levels of these axes, and of the reference after those of the last one.
+    /// The overrides of a point's levels on these axes. The overrides of the reference follow the last axis.
     fn overrides(&self, point: &Point, role: Role, axes: Range<usize>) -> Vec<&Override> {
         let levels = self.levels(point);
         let overrides = axes
@@ -276,8 +277,8 @@ impl Plan {
         self.with_body_of_point(file, base, point, role, 0)
     }
 
-    /// The case file of a run. A reference gets the bulk body of its point, whatever texture it has itself:
-    /// sheets are fitted for the wave lengths of a texture, and a reduction compares textures on one body.
+    /// The case file of a run. A reference gets the bulk body of its point, whatever its own texture: sheets
+    /// are fitted for the wavelengths of a texture, and a reduction must compare textures on the same body.
     fn with_body_of_point(
         &self,
         file: CaseFile,
@@ -354,7 +355,7 @@ impl Plan {
         Ok((spec, warnings))
     }
 
-    /// Refuses a seed from which the replicates would count beyond the largest one.
+    /// Refuses a seed if the seeds of the replicates would exceed the largest seed.
     fn check_seeds(&self, file: &CaseFile) -> Result<(), CaseError> {
         const MAX_SEED: u64 = i64::MAX.unsigned_abs();
         let (seed, replicates) = (file.friction.seed, self.settings.max_replicates());
@@ -374,12 +375,12 @@ impl Plan {
     }
 
     /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.
-    /// `watch` gets the progress of laying its texture over the blocks.
+    /// `watch` receives the progress of meshing its texture.
     pub fn case(&self, run: RunKey, watch: &mut Watch) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
         let case = self.trimmed(file, &self.folder_name(run), watch)?;
-        // Only files can have become others.
+        // Only files can have changed.
         if !case.inputs.is_empty() && physics(&case, None)? != self.spec_of(run).physics {
             let originals = case.inputs.iter().map(|input| display_path(&input.original));
             let names: Vec<String> = originals.collect();
@@ -392,7 +393,7 @@ impl Plan {
         Ok(case)
     }
 
-    /// Returns the plan for the study in a results folder, which reads copies of its files there: later
+    /// Returns the plan for the study in a results folder. It reads the copies of the files there, so later
     /// changes of the original files have no effect on its runs.
     #[must_use]
     pub fn reading_copies(self, study: &StudyFile) -> Self {
@@ -404,7 +405,7 @@ impl Plan {
         }
     }
 
-    /// A case that records no more than the study keeps.
+    /// A case that records only what the study keeps.
     fn trimmed(&self, mut file: CaseFile, name: &str, watch: &mut Watch) -> Result<Case, CaseError> {
         let keeps_all = self.settings.keep == RetainRuns::All;
         if !keeps_all {
@@ -423,13 +424,13 @@ impl Plan {
         &self.specs[run.point * self.roles().count() + usize::from(run.role == Role::Reference)]
     }
 
-    /// Seed of a run. Replicates differ by their seed alone, so that replicate r has one surface at all
+    /// Seed of a run. Replicates differ only by their seed, so replicate r has the same surface at all
     /// points.
     pub fn seed(&self, run: RunKey) -> u64 {
         self.spec_of(run).seed + run.replicate as u64
     }
 
-    /// Identity of a run, from its physics and seed. Points share runs of one identity, such as their
+    /// Identity of a run, from its physics and seed. Points share runs with equal identities, such as their
     /// reference.
     pub fn identity(&self, run: RunKey) -> String {
         let mut hasher = blake3::Hasher::new();
@@ -438,13 +439,13 @@ impl Plan {
         hasher.finalize().to_hex()[..32].to_owned()
     }
 
-    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that the name stays
-    /// when the study grows.
+    /// Name of the folder of a run, if it is kept: the beginning of its identity, so that the name does not
+    /// change when the study grows.
     pub fn folder_name(&self, run: RunKey) -> String {
         self.identity(run)[..12].to_owned()
     }
 
-    /// Steps that are expected of a run, and its blocks: the measure of its cost.
+    /// Expected number of steps of a run, and its number of blocks: the measure of its cost.
     pub fn cost(&self, run: RunKey) -> (ExpectedSteps, usize) {
         let spec = self.spec_of(run);
         (spec.steps, spec.n_blocks)
@@ -459,20 +460,20 @@ impl Plan {
         self.settings.min_replicates() as f64 * self.runs(1).map(of_run).sum::<f64>()
     }
 
-    /// Whether the drive of any run stands while blocks slide, so that the cost is a lower bound.
+    /// Whether the drive of any run stops while blocks slide, so that the cost is a lower bound.
     pub fn has_held_drive(&self) -> bool {
         self.runs(1).any(|run| self.spec_of(run).is_held)
     }
 
-    /// Memory of `threads` runs at once, if they are the largest, with the results of all runs and the
-    /// pictures of the study, in bytes.
+    /// Memory of the largest `threads` simultaneous runs, the results of all runs and the pictures of the
+    /// study, in bytes.
     pub fn memory(&self, threads: usize) -> f64 {
         self.work().of(threads)
     }
 
     fn work(&self) -> WorkMemory {
         let runs = self.points.len() * self.settings.min_replicates() * self.roles().count();
-        // Cases were tried in memory that the allocator keeps for others of their size.
+        // Planning has made these cases, and the allocator keeps that memory for others of their size.
         let made = self.specs.iter().map(|spec| spec.memory_of_case);
         let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
         WorkMemory {
@@ -488,8 +489,8 @@ impl Plan {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Refuses `threads` runs at once if there is no memory for them, and says how many there is memory for;
-    /// with no runs, only the memory of tables and pictures counts.
+    /// Refuses `threads` simultaneous runs if memory is too small. The error gives the number of runs that it
+    /// is large enough for. With no runs, only the memory of tables and pictures counts.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
         self.compare_memory(threads, available_of(self.memory(threads)))
     }
@@ -525,8 +526,8 @@ impl Plan {
         self.spec_of(first_run(position)).texture_percent
     }
 
-    /// Meshed area of the shapes of the only texture at the point at `position`, %; none where there are
-    /// several textures.
+    /// Meshed area of the shapes of the only texture at the point at `position`, %; none for several
+    /// textures.
     pub(crate) fn meshed_coverage(&self, position: usize) -> Option<f64> {
         self.spec_of(first_run(position)).meshed_coverage
     }
@@ -542,7 +543,7 @@ impl Plan {
         levels
     }
 
-    /// The levels of a point, as a reader would name it.
+    /// Description of a point by its levels, for a reader.
     pub fn describe(&self, point: &Point) -> String {
         let columns = self.columns(point).into_iter();
         let levels: Vec<String> = columns.map(|(name, value)| format!("{name} = {value}")).collect();
@@ -605,7 +606,7 @@ mod tests {
 
     use super::*;
 
-    /// An interval of replicates that differ in little looks better than it is, and a note says so.
+    /// If replicates differ in little, their interval is too optimistic, and a note says so.
     #[test]
     fn what_differs_between_replicates_is_said() {
         let notes = |keys: &str| -> Vec<String> {
@@ -619,13 +620,13 @@ mod tests {
         assert!(notes("").is_empty());
         assert!(notes("sigma_kinetic_star = 0").is_empty());
         assert!(notes("sigma_static_star = 0")[0].contains("only the kinetic coefficients differ"));
-        // The drag of a slider without kinetic friction has a note of its own.
+        // The drag of a slider without kinetic friction has its own note.
         assert!(notes("sigma_static_star = 0, r_star = 0")[1].contains("the same run"));
         assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
     }
 
-    /// A bulk body is fitted for the wave lengths of its texture. Without that a reduction would compare two
-    /// bodies.
+    /// A bulk body is fitted for the wavelengths of its texture. If the reference had its own, a reduction
+    /// would compare two bodies.
     #[test]
     fn a_reference_is_the_same_bulk_body() {
         let bodies = |keys: &str| {
@@ -644,7 +645,7 @@ mod tests {
                     role,
                 };
                 let case = plan.case(run, &mut |_| true).unwrap();
-                // The planned run is the one that is made.
+                // The run equals the planned one.
                 let planned = plan.spec_of(run).physics;
                 assert_eq!(physics(&case, None).unwrap(), planned);
                 case.bulk_body().unwrap()
@@ -659,12 +660,11 @@ mod tests {
         assert_eq!(bodies(", longest_wave = '24 um'"), [24e-6, 24e-6]);
     }
 
-    /// The threads share the blocks of a large case, too: none may wait for another to be done with one. The
-    /// data of the runs and the named invalid point do not depend on the number of threads.
+    /// Threads also share the work on the blocks of a large case, so no thread may wait for another to finish
+    /// one. The data of the runs and the named invalid point do not depend on the number of threads.
     #[test]
     fn large_cases_are_planned_on_any_number_of_threads() {
-        // Some large cases, unevenly spread over 16 rows, so that threads run out of rows of their own at
-        // different times.
+        // Some large cases, unevenly spread over 16 rows, so that threads run out of rows at different times.
         let blocks = (0..16 * POINTS_OF_A_BASE).map(|point| match (point * 7919 / 13) % 97 {
             7 => format!("[600, {}]", 2000 + point),
             _ => format!("[{}, 2]", 2 + point),
@@ -715,7 +715,7 @@ mod tests {
             said.contains("slider.blocks = [800, 800]") && said.contains("reduce `slider.blocks`"),
             "{said}"
         );
-        // Every run that is kept holds the five fields of six instants until they are written.
+        // Every kept run holds five fields at six instants in memory until they are written.
         let kept = text.replace("replicates = 2", "replicates = 2\nkeep = 'all'");
         let kept = StudyFile::parse(&kept, "study.toml", "study", Path::new("")).unwrap();
         let kept = Plan::new(&kept, None).unwrap();

@@ -20,7 +20,7 @@ pub struct Warning {
 #[derive(Default)]
 pub(crate) struct Warnings {
     pub(crate) found: Vec<Warning>,
-    /// Place in `found` by kind, and the last point to which it applies.
+    /// Position in `found`, and the last point to which the warning applies, by kind.
     known: HashMap<String, (usize, usize)>,
 }
 
@@ -28,7 +28,7 @@ impl Warnings {
     /// Adds the warnings about a run of the point at this position.
     pub(crate) fn add(&mut self, position: usize, sentences: Vec<String>) {
         for sentence in sentences {
-            // Sentences of one kind differ in their figures.
+            // Sentences of the same kind differ only in their numbers.
             let kind = sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
             match self.known.entry(kind) {
                 Entry::Occupied(mut known) => {
@@ -49,7 +49,7 @@ impl Warnings {
     }
 }
 
-/// Note on what the seed changes in runs of a case, for intervals over seeds; none where static coefficients
+/// Note on the effect of the seed on runs of a case, for intervals over seeds; none if static coefficients
 /// are random.
 pub fn note_on_seeds(case: &Case) -> Option<&'static str> {
     let (friction, groups) = (&case.file.friction, &case.groups);

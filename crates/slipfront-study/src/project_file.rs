@@ -1,4 +1,4 @@
-//! The input file of a project: a base case, and a table of keys of its own kind.
+//! The input file of a project: a base case, and a table of keys for this kind of project.
 
 use std::path::{Path, PathBuf};
 
@@ -21,13 +21,13 @@ pub struct Base {
     pub text: String,
     /// Name of the case in messages.
     pub name: String,
-    /// The folder to which the files of the case are relative.
+    /// The folder that paths of files in the case are relative to.
     pub folder: PathBuf,
-    /// Files of the case in memory, which are not looked for in the folder.
+    /// Files of the case that are in memory, and are not read from the folder.
     pub in_memory: FilesInMemory,
-    /// Keys that are set beside the file, as by `--set`.
+    /// Keys that are set in addition to the file, as by `--set`.
     pub(crate) overrides: Vec<Override>,
-    /// The file that holds the case as its table `base`, in which errors name their places.
+    /// The file that contains the case as its table `base`; errors give positions in it.
     pub(crate) whole: Option<Source>,
 }
 
@@ -49,10 +49,10 @@ impl Base {
         }
     }
 
-    /// Sets keys of the case, each by a text such as `drive.v_star=0.05`.
+    /// Sets keys of the case, each by a string such as `drive.v_star=0.05`.
     ///
     /// # Errors
-    /// When a text is no override.
+    /// When a string is not an override.
     pub(crate) fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
         for text in overrides {
             self.overrides.push(Override::parse(text)?);
@@ -60,7 +60,7 @@ impl Base {
         Ok(())
     }
 
-    /// A base case of this text.
+    /// A base case with this text.
     fn new(text: String, name: String, folder: PathBuf) -> Self {
         Self {
             text,
@@ -73,7 +73,7 @@ impl Base {
     }
 }
 
-/// A file of a base case and one table of keys of its own, such as `[design]`.
+/// A file with a base case and a table of its own keys, such as `[design]`.
 #[derive(Clone, Debug)]
 pub struct ProjectFile {
     /// Name of the project and of its results.
@@ -86,11 +86,11 @@ pub struct ProjectFile {
 }
 
 impl ProjectFile {
-    /// Reads a file called `file` in messages, whose own table has the keys `own`, and whose `further` tables
-    /// are left to [`table`](Self::table); a base case that it names is relative to `folder`.
+    /// Reads a file called `file` in messages. `own` are the keys of its own table, and `further` the names
+    /// of tables that [`table`](Self::table) returns. A base case that it names is relative to `folder`.
     ///
     /// # Errors
-    /// When it is no TOML, or has unknown keys.
+    /// When it is not TOML, or has unknown keys.
     pub fn parse<Keys: DeserializeOwned>(
         kind: &'static ProjectKind,
         own: &[Key],
@@ -130,15 +130,15 @@ impl ProjectFile {
         ))
     }
 
-    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    /// Sets keys of the base case, each by a string such as `drive.v_star=0.05`.
     ///
     /// # Errors
-    /// When a text is no override.
+    /// When a string is not an override.
     pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
         self.base.set(overrides)
     }
 
-    /// The project with its base case inside and its files beside it, for the results folder.
+    /// The project file with the base case inside, and the files that it reads, for the results folder.
     ///
     /// # Errors
     /// When the base case is not valid, or a file that it names cannot be read.
@@ -146,10 +146,10 @@ impl ProjectFile {
         given(&self.base, &self.table)
     }
 
-    /// A table of the file beside the case and the project's own.
+    /// A further table of the file, in addition to the case and the project's own table.
     ///
     /// # Errors
-    /// When the file has something else of that name.
+    /// When the file has something else with that name.
     pub fn table(&self, name: &str) -> Result<Option<&toml::Table>, CaseError> {
         let given = self.table.get(name);
         if given.is_some_and(|given| !given.is_table()) {
@@ -169,7 +169,7 @@ impl ProjectFile {
         self.source.error(&format!("{}.{key}", self.kind.table), sentence)
     }
 
-    /// An error about a case that a key of the project's own table makes, at the place of the key.
+    /// An error about a case that a key of the project's own table defines, at the position of the key.
     pub fn found_in(&self, key: &str, error: CaseError) -> CaseError {
         match error {
             CaseError::Invalid(invalid) => match invalid.place {
@@ -181,7 +181,7 @@ impl ProjectFile {
     }
 }
 
-/// The text of a file with its base case inside, and the copies of files that it names beside it.
+/// The text of a file with its base case inside, and the copies of the files that it names.
 pub(crate) fn given(base: &Base, table: &toml::Table) -> Result<Given, StudyError> {
     let mut portable = toml::Table::from_iter([("base".to_owned(), base_table(base)?.into())]);
     portable.extend(table.clone().into_iter().filter(|(key, _)| key != "base"));
@@ -193,7 +193,7 @@ pub(crate) fn given(base: &Base, table: &toml::Table) -> Result<Given, StudyErro
     })
 }
 
-/// Parses a text, and notes the places of its keys in the source.
+/// Parses a text, and records the positions of its keys in the source.
 pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
     let root = DeTable::parse(limit_nesting(source, 0, text)?);
     let root = root
@@ -208,8 +208,8 @@ fn base_table(base: &Base) -> Result<toml::Table, CaseError> {
     base.parse()?.to_table()
 }
 
-/// The text of a study. Keys in an axis or under `[study]` keep their order, which is that of columns and
-/// points: a table in full would have its lists of tables behind all else.
+/// The text of a study. Keys in an axis or under `[study]` keep their order, which determines that of columns
+/// and points: serialising the table as a whole would move its lists of tables to the end.
 pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
     let mut text = String::new();
     if let Some(base) = study.remove("base") {
@@ -230,12 +230,12 @@ pub(crate) fn portable_text(mut study: toml::Table) -> Result<String, CaseError>
     Ok(text)
 }
 
-/// The base case of a file called `file`: a table of it, a case file that it names relative to `folder`, or
-/// the baseline.
+/// The base case of a file called `file`: its table `base`, a case file that it names relative to `folder`,
+/// or the baseline.
 pub(crate) fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
     let folder = folder.to_owned();
     let Some(value) = tables.root.remove("base") else {
-        // Without a base the baseline is varied.
+        // Without a base, the study varies the baseline.
         let (text, name) = (String::new(), format!("{file} [base]"));
         return Ok(Base::new(text, name, folder));
     };

@@ -1,4 +1,4 @@
-//! The runs of a study: its journal, and what its tables need of each run in memory.
+//! The runs of a study: its journal, and the part of each run that the tables need, in memory.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::error::StudyError;
 use crate::finished_run::{FinishedRun, RunResult};
 use crate::project_folder::Journal;
 
-/// The journal of a study folder, open for one process alone, whose threads may share it.
+/// The journal of a study folder, open in only one process; its threads may share it.
 #[derive(Debug)]
 pub struct RunJournal {
     state: Mutex<JournalState>,
@@ -37,7 +37,7 @@ impl RunJournal {
 
     /// The runs of a journal that was opened.
     pub(crate) fn of((journal, runs, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
-        // Each run is dropped before the next is looked at.
+        // Each run is dropped before the next is processed.
         let results = runs.into_iter().map(|run| result_of(&run));
         Self {
             state: Mutex::new(JournalState {
@@ -48,8 +48,8 @@ impl RunJournal {
         }
     }
 
-    /// The file and results, locked for this thread. A thread that panicked has left them whole: results are
-    /// added last.
+    /// The file and results, locked for this thread. They are consistent even after a panic of another
+    /// thread, because results are added last.
     fn state(&self) -> MutexGuard<'_, JournalState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -69,8 +69,8 @@ impl RunJournal {
         self.len() == 0
     }
 
-    /// Appends finished runs that are not recorded yet and waits until they are on the disk; earlier ones
-    /// stay whole.
+    /// Appends finished runs that are not recorded yet, and waits until they are on disk; earlier ones stay
+    /// intact.
     pub fn append(&self, runs: &[FinishedRun]) -> Result<(), StudyError> {
         let JournalState { journal, results } = &mut *self.state();
         // Studies that share the file may have made the same run at the same time.
@@ -85,7 +85,7 @@ impl RunJournal {
         let (mut runs, damaged) = Journal::read::<FinishedRun>(folder, RUN_JOURNAL)?;
         self.damaged += damaged;
         runs.retain(|run| self.get(&run.id).is_none());
-        // Their lines need not be in memory all at once.
+        // Not all lines need to be in memory at once.
         for some in runs.chunks(LINES_AT_ONCE) {
             self.append(some)?;
         }
@@ -98,7 +98,7 @@ fn result_of(run: &FinishedRun) -> (String, RunResult) {
     (run.id.clone(), run.outcome.result())
 }
 
-/// Number of runs whose lines are written at once: each time waits for the disk.
+/// Number of lines per write: each write waits for the disk.
 const LINES_AT_ONCE: usize = 1000;
 
 #[cfg(test)]
@@ -118,12 +118,12 @@ mod tests {
         }
     }
 
-    /// A line that lacks its line break alone is whole.
+    /// A line that lacks only its line break is complete.
     #[test]
     fn a_line_cut_short_anywhere_is_not_run_and_does_not_harm_the_next() {
         let whole = to_line(&finished("a"));
         let next = to_line(&finished("b"));
-        // Every place would be a thousand waits for the disk.
+        // Testing every position would wait for the disk a thousand times.
         for cut in (0..40)
             .chain((40..next.len() - 1).step_by(97))
             .chain([next.len() - 2, next.len() - 1])
@@ -145,7 +145,7 @@ mod tests {
             drop(journal);
             let journal = RunJournal::open(folder.path()).unwrap();
             assert_eq!((journal.len(), journal.damaged), (2 + left, 0), "cut at {cut}");
-            // The first line of all may be cut as well.
+            // The first line of the file may be incomplete as well.
             std::fs::write(folder.path().join(RUN_JOURNAL), &next[..cut]).unwrap();
             drop(journal);
             let journal = RunJournal::open(folder.path()).unwrap();
@@ -183,7 +183,7 @@ mod tests {
             Err(StudyError::Busy { .. })
         ));
         drop(first);
-        // Whatever it is called, and whether or not its last line ends.
+        // The result is the same for any name of the file, with or without a final line break.
         let path = folder.path().join(RUN_JOURNAL);
         for mine in [
             "some notes\nof mine\n",
@@ -197,7 +197,8 @@ mod tests {
         }
     }
 
-    /// A file without end, and an entry that is no file, are refused: they are neither read nor waited for.
+    /// A file without end, or a directory entry that is not a file, is refused without reading from it or
+    /// waiting for it.
     #[cfg(unix)]
     #[test]
     fn what_never_ends_is_refused() {

@@ -1,7 +1,7 @@
 //! Decides on the runs that a study needs, and records each as soon as it is finished.
 //!
 //! The results do not depend on the order in which runs finish: the number of replicates of a point is
-//! decided by its first replicates in their order, however many more have been run.
+//! determined by its first replicates in their order, however many more have been run.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,14 +16,14 @@ use crate::statistics::Sample;
 use crate::study_results::{PointResult, Progress, StudyResults};
 use crate::summary_values::RunQuantity;
 
-/// A run to be done.
+/// A run to do.
 pub(crate) struct Task {
     pub(crate) run: RunKey,
     /// [`Plan::identity`] of the run.
     pub(crate) id: String,
 }
 
-/// The record of a run that has ended; none if it was given up.
+/// The record of a finished run; none if it was aborted.
 pub(crate) type TaskResult = Result<Option<FinishedRun>, StudyError>;
 
 /// Starts runs and decides on the number of replicates.
@@ -31,9 +31,9 @@ pub(crate) struct Scheduler<'a> {
     plan: &'a Plan,
     records: &'a RunJournal,
     start: &'a dyn Fn(Task),
-    /// Number of runs at once.
+    /// Number of simultaneous runs.
     threads: usize,
-    /// The runs known so far; the points follow at the end.
+    /// The runs known so far; the points are added at the end.
     results: StudyResults,
     /// Requested runs that are not finished, by identity. Points may share a run.
     waiting: HashMap<String, Vec<RunKey>>,
@@ -52,7 +52,7 @@ struct PointState {
     requested: usize,
     /// Number of runs of these replicates that are not finished.
     missing: usize,
-    /// Number of first replicates that the stopping rule has been evaluated with.
+    /// Number of leading replicates that the stopping rule has been evaluated with.
     evaluated: usize,
     /// Half width of the interval of the replicates evaluated last.
     half_width: Option<f64>,
@@ -61,7 +61,7 @@ struct PointState {
 }
 
 impl<'a> Scheduler<'a> {
-    /// A scheduler; `start` has a run done by another thread.
+    /// A scheduler; `start` passes a run to another thread.
     pub(crate) fn new(
         plan: &'a Plan,
         records: &'a RunJournal,
@@ -83,7 +83,7 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// The results of the records alone, if no run is missing.
+    /// The results from the records alone, if no run is missing.
     pub(crate) fn collect(mut self) -> Result<StudyResults, StudyError> {
         self.begin();
         match self.waiting.len() {
@@ -105,10 +105,11 @@ impl<'a> Scheduler<'a> {
         self.begin();
         self.report(watch);
         while !self.waiting.is_empty() {
-            // Before waiting: what has finished by the stop is still recorded.
+            // Checked before waiting, so runs that have finished by the stop are still recorded.
             let stopped = stop.load(Ordering::Relaxed);
             let first = finished.recv_timeout(Duration::from_millis(100)).ok();
-            // All that has finished meanwhile is written at once, since every write waits for the disk.
+            // All runs that have finished meanwhile are written together, since every write waits for the
+            // disk.
             self.record(first.into_iter().chain(finished.try_iter()))?;
             if stopped {
                 return Err(StudyError::Interrupted);
@@ -118,7 +119,7 @@ impl<'a> Scheduler<'a> {
         Ok(self.results())
     }
 
-    /// Requests the fewest replicates of every point, and more where all of these are recorded already.
+    /// Requests the fewest replicates of every point, and more if all of these are recorded already.
     fn begin(&mut self) {
         for point in 0..self.points.len() {
             self.request(point, self.plan.settings.min_replicates());
@@ -135,8 +136,8 @@ impl<'a> Scheduler<'a> {
                 Err(error) => failure = Some(error),
             }
         }
-        // On the disk before anything is decided by it. Runs that finished beside one that ends the study are
-        // kept too.
+        // Runs are on disk before any decision depends on them. Runs that finished together with one that
+        // ends the study are kept, too.
         self.records.append(&records)?;
         self.progress.here += records.len();
         for record in records {
@@ -168,7 +169,7 @@ impl<'a> Scheduler<'a> {
         self.points[run.point].missing += 1;
         let waiting = self.waiting.entry(id.clone()).or_default();
         waiting.push(run);
-        // Other points that need the same run wait for the one that is under way.
+        // Other points that need the same run wait for the one that is in progress.
         if waiting.len() == 1 {
             self.progress.total += 1;
             (self.start)(Task { run, id });
@@ -188,8 +189,8 @@ impl<'a> Scheduler<'a> {
         };
         let runs = self.waiting.remove(&id).unwrap_or_default();
         self.count(id, &result);
-        // All points know of the run before one of them decides, which may ask for runs that are recorded by
-        // now.
+        // All points get the result before one of them decides, since a decision may request runs that are
+        // recorded by now.
         for run in &runs {
             self.results.runs.insert(*run, result.clone());
             self.points[run.point].missing -= 1;
@@ -199,14 +200,14 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// Decides on the number of replicates of a point once all that were requested are finished, and requests
-    /// more where they are not enough.
+    /// Decides on the number of replicates of a point once all requested ones are finished, and requests more
+    /// if they are not enough.
     fn decide(&mut self, point: usize) {
-        // Again where all that was asked for is recorded already, as when a study goes on.
+        // Repeats if all requested runs are recorded already, as when a study is continued.
         while self.points[point].missing == 0 && self.points[point].result.is_none() {
             self.points[point].result = self.evaluate_stopping(point);
             if self.points[point].result.is_none() {
-                // More than one at a time only for threads that would have nothing to do.
+                // Request more than one at a time only for idle threads.
                 let idle = self.threads.saturating_sub(self.waiting.len());
                 let more = self.points[point].requested + idle.max(1);
                 let more = more.min(self.plan.settings.max_replicates());
@@ -216,7 +217,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Evaluates the stopping rule with the first replicates of a point, one more at a time: the smallest
-    /// number that fulfils it is the number of replicates.
+    /// number that satisfies it is the number of replicates.
     fn evaluate_stopping(&mut self, point: usize) -> Option<PointResult> {
         let settings = &self.plan.settings;
         let state = &mut self.points[point];
@@ -236,8 +237,8 @@ impl<'a> Scheduler<'a> {
             if enough && state.half_width.is_some_and(|half| half <= until.half_width) {
                 return decided(replicates, Some(true));
             }
-            // Where the fewest replicates never show the quantity, such as a front that no run has, no more
-            // are tried.
+            // If none of the fewest replicates has the quantity, such as the speed of a front, no more are
+            // tried.
             if values.is_empty() {
                 return decided(replicates, Some(false));
             }
@@ -256,8 +257,7 @@ impl<'a> Scheduler<'a> {
         watch(&self.progress);
     }
 
-    /// The results of the study. Replicates that were run and turned out not to be needed stay in the records
-    /// alone.
+    /// The results of the study. Replicates that were run but not needed stay only in the records.
     fn results(self) -> StudyResults {
         let orphaned_runs = self.orphaned_runs();
         let points: Vec<PointResult> = self.points.into_iter().filter_map(|point| point.result).collect();
@@ -273,7 +273,7 @@ impl<'a> Scheduler<'a> {
 
     /// Number of recorded runs that no point could request, even with the most replicates.
     fn orphaned_runs(&self) -> usize {
-        // Mostly so, which spares the identities of all runs that might have been asked for.
+        // The usual case; it avoids computing the identities of all possible runs.
         if self.records.len() == self.belonging.len() {
             return 0;
         }

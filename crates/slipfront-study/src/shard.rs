@@ -6,7 +6,7 @@ use std::str::FromStr;
 use crate::error::StudyError;
 use slipfront_base::text::truncated;
 
-/// Part `number` of `count`, counted from 1. A shard holds every `count`-th point, so that all shards have
+/// Part `number` of `count`, counted from 1. A shard contains every `count`-th point, so that all shards have
 /// nearly equal sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {

@@ -14,7 +14,7 @@ pub struct Batch {
     pub command: PathBuf,
     /// Path of the study file, as the job will see it.
     pub study: PathBuf,
-    /// Folder of the results; every task has a subfolder of its own.
+    /// Folder of the results; every task has its own subfolder.
     pub out: PathBuf,
     /// Number of tasks.
     pub tasks: usize,

@@ -55,8 +55,8 @@ impl Sample {
     }
 }
 
-/// The mean of values, which rounding does not take beyond them: that of equal values is their value, so that
-/// their deviation is 0.
+/// The mean of values, limited to their range despite rounding. The mean of equal values is exactly their
+/// value, so their standard deviation is 0.
 pub fn mean(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -140,7 +140,7 @@ mod tests {
                 (low..=high).contains(&100.0)
             })
             .count();
-        // Of 2000 trials at 90 %, 1800 +- 13.4: five standard errors.
+        // 90 % of 2000 trials are 1800 +- 13.4; the bound is five standard errors.
         assert!(covered.abs_diff(1800) < 67, "{covered}");
     }
 }

@@ -18,7 +18,7 @@ use slipfront_case::case_file::{
 use slipfront_case::key_rows;
 use slipfront_run::names::{RUN_JOURNAL, TABLES};
 
-/// Folders of studies. Their study file has the base case as a table in it: `slipfront study DIR/study.toml`
+/// Folders of studies. Their study file contains the base case as a table: `slipfront study DIR/study.toml`
 /// repeats the study.
 pub(crate) static STUDIES: ProjectKind = ProjectKind {
     name: "study",
@@ -74,7 +74,7 @@ key_rows! {
     }
 }
 
-/// Run folders that are kept beside the tables.
+/// Run folders that are kept in addition to the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RetainRuns {
@@ -104,17 +104,17 @@ key_rows! {
     }
 }
 
-/// Confidence of intervals where the study asks for no other.
+/// Confidence of intervals unless the study sets another one.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Largest number of points that are listed.
+/// Largest number of points of a study.
 const MAX_POINTS: usize = 1_000_000;
 
 /// Largest number of replicates of a point.
 const MAX_REPLICATES: u32 = 100_000;
 
 impl Settings {
-    /// Whether every run leaves its folder, with fields and pictures.
+    /// Whether the folder of every run is kept, with fields and pictures.
     pub fn keeps_all_runs(&self) -> bool {
         self.keep == RetainRuns::All
     }
@@ -190,15 +190,15 @@ impl Settings {
 }
 
 impl StudyFile {
-    /// The study with its base case inside and its files beside it, for the results folder.
+    /// The study file with the base case inside, and the files that it reads, for the results folder.
     pub(crate) fn given(&self) -> Result<Given, StudyError> {
         given(&self.base, &self.table)
     }
 
-    /// Sets keys of the base case, each by a text such as `drive.v_star=0.05`.
+    /// Sets keys of the base case, each by a string such as `drive.v_star=0.05`.
     ///
     /// # Errors
-    /// A text that is no override, and a key that an axis sets.
+    /// When a string is not an override, or sets a key that an axis sets.
     pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
         for text in overrides {
             let change = Override::parse(text)?;
@@ -218,12 +218,12 @@ impl StudyFile {
         self.base.set(overrides)
     }
 
-    /// Whether the file has anything of a study: an empty file is a study, too, which varies nothing.
+    /// Whether the file has a key of a study. An empty file is also a study, which varies nothing.
     pub fn is_study(&self) -> bool {
         !self.table.is_empty()
     }
 
-    /// Whether the base is a file of its own, and not a table in the study file.
+    /// Whether the base is a separate file, and not a table in the study file.
     pub fn has_base_file(&self) -> bool {
         self.table.get("base").is_some_and(toml::Value::is_str)
     }
@@ -258,7 +258,7 @@ impl StudyFile {
         let axes = read_axes(&mut tables)?;
         refuse_rest(&tables)?;
         refuse_conflicts(&axes, &source)?;
-        // The text has been read as TOML once, so that it is a table.
+        // The text has already been parsed as TOML, so it is a table.
         let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
         Ok(Self {
             name: name.to_owned(),
@@ -270,7 +270,7 @@ impl StudyFile {
     }
 }
 
-/// Refuses the first table or key of the file that a study has no use for.
+/// Refuses the first table or key of the file that a study does not use.
 fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
     let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) else {
         return Ok(());
@@ -290,7 +290,7 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
     Err(tables.source.error_at(key.span(), sentence))
 }
 
-/// Largest number of axes: 20 of two levels are as many points as a study may have.
+/// Largest number of axes: 20 axes with two levels already reach the largest number of points.
 const MAX_AXES: usize = 64;
 
 fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
@@ -315,13 +315,13 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
         let keys: AxisKeys = tables.read_table(value, "[[axes]]")?;
         let axis = Axis::new(keys).map_err(|sentence| tables.source.error_at(span, sentence))?;
         axes.push(axis);
-        // A line of the file makes up to 100 000 levels: too many are noticed before more are made.
+        // A line of the file can define up to 100 000 levels, so check the number of points after each axis.
         count_points(&axes)?;
     }
     Ok(axes)
 }
 
-/// Number of points: the product of the axes.
+/// Number of points: the product of the numbers of levels.
 fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
     let mut counts = axes.iter().map(|axis| axis.levels.len());
     let product = counts.try_fold(1usize, usize::checked_mul);

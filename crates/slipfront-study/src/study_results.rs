@@ -13,24 +13,24 @@ use crate::summary_values::{REDUCTION, RunQuantity, needs_transition, reduction_
 pub struct Progress {
     /// Number of runs done, including those of earlier processes.
     pub done: usize,
-    /// Number of runs known to be needed. The number grows while intervals are too wide.
+    /// Number of runs that are known to be needed; it grows while intervals are too wide.
     pub total: usize,
     /// Number of runs that this process has done.
     pub here: usize,
     /// Failed runs.
     pub failed: usize,
-    /// The largest half width of an interval so far, of the quantity that decides on replication.
+    /// The largest half width of an interval so far, for the quantity that decides on replication.
     pub worst: Option<f64>,
 }
 
 /// The results of a study.
 #[derive(Clone, Debug, Default)]
 pub struct StudyResults {
-    /// The result of every run that the tables hold.
+    /// The result of every run in the tables.
     pub runs: BTreeMap<RunKey, RunResult>,
     /// The result of each point of the plan.
     pub points: Vec<PointResult>,
-    /// Number of recorded runs that are not part of the study as it is now.
+    /// Number of recorded runs that are not part of the present study.
     pub orphaned_runs: usize,
 }
 
@@ -39,7 +39,7 @@ pub struct StudyResults {
 pub struct PointResult {
     /// Number of replicates in the tables.
     pub replicates: usize,
-    /// Whether the confidence interval is as narrow as the study asks; none if it does not ask.
+    /// Whether the confidence interval is as narrow as the study requires; none without such a requirement.
     pub narrow: Option<bool>,
 }
 
@@ -80,7 +80,7 @@ impl StudyResults {
 
     /// Number of replicates of the point at `position` of the plan for which a quantity is missing because
     /// its run has no transition: the run of the point or, for a reduction, its reference. For quantities
-    /// that do not need a transition it is the number of runs of the point without one.
+    /// that do not need a transition, it is the number of runs of the point without one.
     pub fn runs_without_transition(&self, position: usize, name: &str) -> usize {
         let replicates = self.points.get(position).map_or(0, |point| point.replicates);
         let roles = if name == REDUCTION {
@@ -127,7 +127,7 @@ impl StudyResults {
         })
     }
 
-    /// Refuses results in which no run has a value of the main quantity of the study.
+    /// Refuses results if no run has a value of the main quantity of the study.
     ///
     /// # Errors
     /// A sentence with the quantity.

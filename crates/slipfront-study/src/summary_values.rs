@@ -1,4 +1,4 @@
-//! The numbers of a summary by name, for tables and statistics, and the other columns of these.
+//! The numbers of a summary by name, for tables and statistics, and the other columns of the tables.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -11,7 +11,8 @@ use slipfront_run::summary::{OF_KINETIC_WINDOW, OF_PEAK, Summary};
 /// Reduction of mu_s* against the reference of the same seed, % (Eq. 16).
 pub const REDUCTION: &str = "static_reduction_percent";
 
-/// Numbers of a summary that are no quantities: two in one, and one whose mean has no meaning.
+/// Entries of a summary that are not quantities: the first is a pair of numbers, and the mean of the second
+/// has no meaning.
 const NOT_QUANTITIES: [&str; 2] = ["kinetic_window_star", "seed"];
 
 /// Whether a quantity exists only for runs with a transition.
@@ -25,8 +26,8 @@ pub(crate) fn is_optional(name: &str) -> bool {
     optional.iter().any(|(optional, _)| *optional == name)
 }
 
-/// Names of all numbers, in the order of the summary, then of the observers that only some runs have; the
-/// reduction comes last.
+/// Names of all numbers in the order of the summary, followed by those of observers that only some runs have,
+/// and by the reduction.
 pub fn known() -> &'static [String] {
     static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
         let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
@@ -35,7 +36,7 @@ pub fn known() -> &'static [String] {
     &KNOWN
 }
 
-/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
+/// Columns of `runs.csv` before those of the axes, and columns between the axes and the quantities.
 pub(crate) const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
 pub(crate) const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
 
@@ -53,13 +54,13 @@ pub(crate) const STATISTICS: [&str; 10] = [
     "runs_without_transition",
 ];
 
-/// Whether the tables have a column of this name beside those of the axes: an axis cannot have it.
+/// Whether the tables already have a column of this name, so that an axis cannot use it.
 pub fn is_column(name: &str) -> bool {
     let fixed = [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS].concat();
     fixed.contains(&name) || known().iter().any(|known| known == name)
 }
 
-/// A quantity of a run, or of a run and its reference.
+/// A quantity of a run, or of a pair of a run and its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunQuantity {
     /// A number of the summary, by its position.
@@ -107,7 +108,7 @@ impl SummaryValues {
         }
     }
 
-    /// Number at a position; none where the summary has none.
+    /// Number at a position; none if the summary has none.
     pub(crate) fn get(&self, position: usize) -> Option<f64> {
         self.values.get(position).copied().flatten()
     }
@@ -210,7 +211,7 @@ mod tests {
     }
 
     /// A kinetic window before the largest mu* gives no kinetic friction without a transition: while mu*
-    /// still rises to the onset, its mean is none.
+    /// still rises to the onset, its mean is not kinetic friction.
     #[test]
     fn a_kinetic_window_before_the_largest_mu_star_is_none_without_a_transition() {
         assert_eq!(number(&values_of(false, 100.0), "kinetic_friction_star"), None);

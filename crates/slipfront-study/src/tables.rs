@@ -70,8 +70,8 @@ pub(crate) fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static s
 }
 
 /// Writes `points.csv`: for each point and quantity the number of values, their mean, standard deviation,
-/// confidence interval of the mean, smallest and largest; reductions are paired by seed. Beside an axis of
-/// coverages stands A* as meshed.
+/// confidence interval of the mean, smallest and largest; reductions are paired by seed. If there is an axis
+/// of coverages, another column has A* as meshed.
 pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let meshed = MeshedCoverage::of(plan).map(|_| TEXTURE_PERCENT);
@@ -84,8 +84,8 @@ pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
             let without = results.runs_without_transition(position, name);
-            // A decisive quantity that no run has gets a row without numbers, and so does one that runs lack
-            // for want of a transition.
+            // A row without numbers is written for a decisive quantity that no run has, and for one that is
+            // missing because runs have no transition.
             if sample.is_none() && !decides && !(without > 0 && needs_transition(name)) {
                 continue;
             }
@@ -108,8 +108,8 @@ pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
     Ok(table.flush()?)
 }
 
-/// Writes `anisotropy.csv`: for the levels of all axes but that of the directions, the dependence of static
-/// and kinetic friction on the directions. There is at least one row.
+/// Writes `anisotropy.csv`: the dependence of static and kinetic friction on the directions, for the levels
+/// of all other axes. `rows` has at least one row.
 pub(crate) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     let levels = rows.first().into_iter().flat_map(|row| &row.levels);
@@ -184,7 +184,7 @@ const OF_ANISOTROPY: [&str; 25] = [
     "lateral_direction",
 ];
 
-/// The column of A* as meshed, which has the name of the quantity.
+/// Name of the column of A* as meshed, equal to that of the quantity.
 const TEXTURE_PERCENT: &str = "texture_percent";
 
 /// Columns of all axes.
@@ -193,7 +193,7 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
     columns.map(String::as_str)
 }
 
-/// A number with as few digits as read back to the same bits.
+/// A number with the fewest digits that read back to the same bits.
 fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:?}"))
 }

@@ -1,10 +1,10 @@
-//! Tables that are printed: columns of one width, numbers one below the other.
+//! Printed tables: columns of constant width, with numbers aligned.
 
 /// The sign between a value and the half width of its interval.
 const PLUS_MINUS: &str = " \u{b1} ";
 
-/// A table as text, a line a row: each column as wide as its widest cell, numbers to the right and words to
-/// the left. Cells beyond the columns of the header are remarks.
+/// A table as text, one line per row. Each column is as wide as its widest cell; numbers are right-aligned,
+/// and words left-aligned. Cells beyond the columns of the header are remarks.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let columns = header.iter().enumerate().map(|(column, name)| {
         let cells: Vec<&str> = rows.iter().map(|row| row[column].as_str()).collect();
@@ -22,7 +22,7 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     (0..=rows.len()).map(line).collect()
 }
 
-/// A column, its name first, with every cell filled up to its width.
+/// A column that begins with its name, with every cell padded to its width.
 struct TableColumn {
     cells: Vec<String>,
 }
@@ -48,8 +48,8 @@ impl TableColumn {
     }
 }
 
-/// Cells of values with half widths: decimal points of both stand below each other. Columns without half
-/// widths stay as they are.
+/// Cells of values with half widths, with the decimal points of both aligned. Columns without half widths are
+/// not changed.
 fn aligned(cells: &[&str]) -> Vec<String> {
     if !cells.iter().any(|cell| cell.contains(PLUS_MINUS)) {
         return cells.iter().map(|&cell| cell.to_owned()).collect();
@@ -69,14 +69,14 @@ fn aligned(cells: &[&str]) -> Vec<String> {
     joined
         .map(|((value, half), (_, given))| match given {
             Some(_) => value + PLUS_MINUS + &half,
-            // As wide as the others, so that the column does not move.
+            // Padded to the width of the others, so that the columns stay aligned.
             None => value + &" ".repeat(PLUS_MINUS.chars().count()) + &half,
         })
         .collect()
 }
 
-/// Fills up texts so that their first points, or their ends, stand below each other, to one width. The halves
-/// of a bracket before a power of ten are filled up from outside alone.
+/// Pads texts to one width so that their first decimal points, or their ends, are aligned. The two parts of a
+/// bracket before a power of ten are padded only on the outside.
 fn at_the_point(texts: &[&str], fill: fn(&str, usize) -> String) -> Vec<String> {
     let split = |text: &str| {
         let (before, after) = text.split_at(text.find('.').unwrap_or(text.len()));
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(table(&["coverage", "shape", "mean", "n"], &rows), expected);
     }
 
-    /// A power of ten belongs to the whole bracket, which no blanks tear.
+    /// A power of ten belongs to the whole bracket, so no padding is added inside it.
     #[test]
     fn brackets_stay_whole() {
         let rows = [

@@ -38,7 +38,7 @@ enum Scale {
     Log,
 }
 
-/// A number, or one with a unit.
+/// A number, with or without a unit.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Number {
@@ -46,7 +46,7 @@ enum Number {
     WithUnit(String),
 }
 
-/// Reason for which a range is refused.
+/// Reason why a range is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum UnknownError {
@@ -68,8 +68,8 @@ impl Unknown {
     /// logarithm.
     ///
     /// # Errors
-    /// When the range is empty, not finite or too wide for its width to be a number, begins at or below 0 on
-    /// a logarithmic scale, or is one of seeds.
+    /// When the range is empty, not finite, or so wide that its width overflows; when it begins at or below 0
+    /// on a logarithmic scale; or when the key is a seed.
     pub fn new(key: &str, from: f64, to: f64, is_logarithmic: bool) -> Result<Self, UnknownError> {
         let key = key.to_owned();
         if key == "friction.seed" {
@@ -94,12 +94,12 @@ impl Unknown {
         })
     }
 
-    /// The unknown of a key and of its range as a file has it: `[0.3, 0.9]`, `["1 um", "5 um"]`, or
+    /// The unknown for a key and its range, as written in a file: `[0.3, 0.9]`, `["1 um", "5 um"]`, or
     /// `{ from = 0.03, to = 0.5, scale = "log" }`.
     ///
     /// # Errors
-    /// A sentence, when the range has another form, ends with different units, or is refused by
-    /// [`new`](Self::new).
+    /// A sentence, when the range has another form, its ends have different units, or [`new`](Self::new)
+    /// refuses it.
     pub fn read(key: &str, range: &Value) -> Result<Self, String> {
         let Ok(keys) = range.clone().try_into::<RangeKeys>() else {
             return Err(format!(
@@ -121,7 +121,7 @@ impl Unknown {
         Ok(Self { unit, ..unknown })
     }
 
-    /// Returns the unknown with values that are written with a unit, such as `um`.
+    /// Returns the unknown with a unit for its values, such as `um`.
     #[must_use]
     pub fn in_unit(self, unit: &str) -> Self {
         Self {
@@ -151,7 +151,7 @@ impl Unknown {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn at(&self, share: f64) -> f64 {
-        // The end of the range as it is written: 0.3 + (0.9 - 0.3) is another number than 0.9.
+        // The exact end of the range: 0.3 + (0.9 - 0.3) differs from 0.9 by rounding.
         if share == 1.0 {
             self.to
         } else if self.is_logarithmic {
@@ -175,7 +175,7 @@ impl Unknown {
         Override::new(&self.key, &self.written(share))
     }
 
-    /// The value at a share of the range as a file has it.
+    /// The value at a share of the range, as written in a file.
     pub fn written(&self, share: f64) -> Value {
         self.with_unit(self.at(share))
     }
@@ -188,7 +188,7 @@ impl Unknown {
         })
     }
 
-    /// A value of the key as a file has it.
+    /// A value of the key, as written in a file.
     pub fn with_unit(&self, value: f64) -> Value {
         match &self.unit {
             Some(unit) => Value::from(format!("{value} {unit}")),

@@ -1,6 +1,6 @@
-//! Compares the folder of a study with the list of its files, then with the tables and pictures that its
-//! recorded runs give, and the run folders that it has kept with their manifests; other folders as what they
-//! are.
+//! Verifies the folder of a study: compares it with the list of its files, and then with the tables and
+//! pictures that follow from its recorded runs; compares the kept run folders with their manifests. Other
+//! folders are verified by their kind.
 
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -33,7 +33,7 @@ pub fn has_records(folder: &Path) -> bool {
 /// Verifies the folder of a run, of a study, or of a project of one of these `others` that was finished.
 ///
 /// # Errors
-/// When it is no such folder, was not finished, or cannot be read; after a stop.
+/// When it is not such a folder, was not finished, or cannot be read; after a stop.
 pub fn verify(
     folder: &Path,
     others: &[Derivation],
@@ -79,8 +79,8 @@ fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verd
     Ok(verdict)
 }
 
-/// Makes tables and pictures of a study again from its records, and compares the folder with them; returns
-/// the plan and the results of its runs unless they are lost.
+/// Makes tables and pictures of a study again from its records, and compares the folder with them. Returns
+/// the plan and the results of its runs, unless damaged lines have lost them.
 fn derive_study(
     folder: &Path,
     verdict: &mut Verdict,
@@ -108,7 +108,7 @@ fn derive_study(
             let path = folder.to_owned();
             return Err(VerifyStudyError::Unfinished { path, runs, others });
         }
-        // What its tables should be is lost with the damaged lines.
+        // The damaged lines are needed to derive the tables again.
         Err(StudyError::Missing { .. }) => {
             let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
             verdict.differences.push(damage);
@@ -153,7 +153,7 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error).into()),
     };
-    // Of a run that failed the case alone is kept.
+    // For a failed run, only the case is kept.
     let done = derived.map(|(plan, results)| {
         let done = results.runs.iter().filter(|(_, result)| result.is_ok());
         done.map(|(run, _)| plan.folder_name(*run)).collect()
@@ -176,7 +176,7 @@ fn verify_kept(
             Err(_) => {}
         }
     }
-    // They may have been removed on purpose, or have run before the study was told to keep them.
+    // They may have been removed on purpose, or the runs are older than the setting `keep`.
     let keeps_all = derived.is_some_and(|(plan, _)| plan.settings.keep == RetainRuns::All);
     if keeps_all && !missing.is_empty() {
         verdict.notes.push(format!(

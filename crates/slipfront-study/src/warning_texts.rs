@@ -6,8 +6,8 @@ use crate::plan_warnings::Warning;
 /// Largest number of warnings that are listed.
 const MAX_WARNINGS: usize = 8;
 
-/// Warnings about the cases of a study in words, each with the points that it concerns: the first eight, and
-/// the number of the others.
+/// Warnings about the cases of a study in words, each with the points that it applies to: the first eight,
+/// and the number of the others.
 pub fn warning_texts(plan: &Plan) -> Vec<String> {
     let all = plan.warnings();
     let mut texts: Vec<String> = all
@@ -24,7 +24,7 @@ pub fn warning_texts(plan: &Plan) -> Vec<String> {
     texts
 }
 
-/// The points that a warning concerns.
+/// The points that a warning applies to.
 fn place(warning: &Warning, plan: &Plan) -> String {
     let first = plan.describe(&plan.points[warning.first]);
     match (warning.points, plan.points.len()) {

@@ -8,9 +8,9 @@ use crate::error::StudyError;
 /// Memory of work on several threads, in bytes.
 #[derive(Clone, Debug)]
 pub struct WorkMemory {
-    /// Bytes that are taken whatever the number of threads.
+    /// Bytes that are needed for any number of threads.
     pub beside: f64,
-    /// Bytes of a piece of each kind of work, and how many of them there are. Kinds follow one after the
+    /// Bytes for a piece of each kind of work, and the number of pieces. Kinds of work are done one after the
     /// other.
     pub pieces: Vec<(f64, usize)>,
 }
@@ -23,12 +23,12 @@ impl WorkMemory {
         self.beside + at_once.fold(0.0, f64::max)
     }
 
-    /// Refuses work on `threads` threads if there is no memory for it, and says for how many threads there
-    /// is. `none` gives the error where there is no memory for a single one, from the texts of the memory
-    /// that it needs and that is available.
+    /// Refuses work on `threads` threads if memory is too small. The error gives the number of threads that
+    /// it is large enough for. If it is too small for a single thread, `none` makes the error from the needed
+    /// and the available memory, as text.
     ///
     /// # Errors
-    /// With both figures.
+    /// With the needed and the available memory.
     pub fn check(
         &self,
         threads: usize,
@@ -40,7 +40,7 @@ impl WorkMemory {
     /// Refuses work as [`check`](Self::check) does, on a machine with `available` bytes.
     ///
     /// # Errors
-    /// With both figures.
+    /// With the needed and the available memory.
     pub fn compare(
         &self,
         threads: usize,

@@ -11,7 +11,7 @@ use crate::project_folder::Others;
 use crate::study_results::StudyResults;
 
 /// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the
-/// folder has a comparison of meshes, this is written anew as well.
+/// folder has a comparison of meshes, it is written again, too.
 ///
 /// # Errors
 /// When the system refuses to write, when a file in its place was edited, and after a stop.

@@ -1,4 +1,5 @@
-//! Study files: those of the documentation and of `cases/studies`, and one that is nested too deeply.
+//! Tests of the study files in the documentation and in `cases/studies`, and of a study file that is nested
+//! too deeply.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -77,8 +78,8 @@ fn the_reference_has_the_keys_of_the_structs() {
     });
 }
 
-/// A few grooves lower static friction as one does, many weaken the effect. Measured before by another build;
-/// the digits given are those of the figures.
+/// A few grooves reduce static friction as much as one does; with many grooves, the effect is weaker. The
+/// expected values come from an earlier build and are rounded as in the figures.
 #[test]
 fn many_grooves_weaken_the_effect() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/studies/grooves.toml");
@@ -107,14 +108,14 @@ fn results(text: &str) -> (Plan, StudyResults) {
     (plan, results)
 }
 
-/// Bits of static and kinetic friction at a point, and of both across the drive, of which a mirror turns the
-/// sign.
+/// Bits of static and kinetic friction at a point, along and across the drive. A mirror image changes the
+/// sign across the drive.
 fn friction_at(results: &StudyResults, point: usize, handed: f64) -> [u64; 4] {
     let value = |name: &str| {
         let value = results.value(point, 0, RunQuantity::named(name).unwrap());
         value.unwrap_or_else(|| panic!("no {name} at point {point}"))
     };
-    // 0 has no sign here.
+    // Adding 0.0 turns -0 into 0.
     let across = |name: &str| (handed * value(name) + 0.0).to_bits();
     [
         value("static_friction_star").to_bits(),
@@ -124,11 +125,11 @@ fn friction_at(results: &StudyResults, point: usize, handed: f64) -> [u64; 4] {
     ]
 }
 
-/// The replicates are the same run, as many as a test of chance needs.
+/// All replicates are the same run; three of them are enough for the test of isotropy.
 const SMOOTH: &str = "study.replicates = 3\nbase.friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\nbase.drive.v_star = 0.1\n";
 
-/// Every quarter turn and mirror of the drive on a texture that has all symmetries of the square gives the
-/// same bits.
+/// On a texture with all symmetries of the square, every quarter turn and mirror image of the drive direction
+/// gives the same bits.
 #[test]
 fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
     for texture in [
@@ -136,7 +137,7 @@ fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
         "{ shape = 'cavity', s = 3, w = 0.2, coverage = 15 }",
         "{ shape = 'cavity', coverage = 15, array = [2, 2] }",
     ] {
-        // 30 degrees and its images: those of quarter turns first, then those of the mirrors.
+        // 30 degrees and its images: first by quarter turns, then by mirrors.
         let (plan, results) = results(&format!(
             "{SMOOTH}base.slider.blocks = [14, 14]\nbase.texture = [{texture}]\n[[axes]]\nkey = 'drive.direction'\n\
              list = [30, 120, 210, 300, 60, 150, 240, 330, -30, 0, 90, 180, 270, 45, 135, 225, 315]"
@@ -152,18 +153,18 @@ fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
                 assert_eq!(found, first, "{texture}: {}", plan.describe(&plan.points[point]));
             }
         }
-        // Along an axis of symmetry nothing pulls across; between them something does, or the signs above
-        // would be tried on nothing.
+        // Along an axis of symmetry, friction across the drive is zero. Between the axes it must not be, or
+        // the test of signs above would be empty.
         assert_eq!(friction_at(&results, 9, 1.0)[2..], [0, 0], "{texture}");
         assert!(
             friction_at(&results, 0, 1.0)[2..].iter().all(|bits| *bits != 0),
             "{texture}"
         );
-        // What repeats every quarter turn has no principal axes.
+        // Friction with fourfold symmetry has no principal axes.
         for found in anisotropies(&plan, &results) {
             let numbers = found.found.as_ref().unwrap();
             assert!(numbers.principal.is_none(), "{texture}: {found:?}");
-            // -30 and 330 degrees are one.
+            // -30 and 330 degrees are the same direction.
             assert_eq!((found.directions, found.replicates), (16, 3));
             let [largest, smallest] = [numbers.largest_direction, numbers.smallest_direction];
             assert!(
@@ -174,8 +175,8 @@ fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
     }
 }
 
-/// A groove across x is one along x that is turned: so is friction, and its principal axes are along and
-/// across it.
+/// A groove across x is a groove along x after a rotation. Friction rotates with it, and its principal axes
+/// are along and across the groove.
 #[test]
 fn grooves_turn_their_friction_with_them() {
     let (plan, results) = results(&format!(
@@ -196,7 +197,7 @@ fn grooves_turn_their_friction_with_them() {
         .filter(|found| found.quantity == "static_friction_star")
         .map(|found| found.found.as_ref().unwrap().principal.unwrap().direction)
         .collect();
-    // Friction is larger along a groove than across it. The sums of the fit round.
+    // Friction is larger along a groove than across it. The tolerance allows for rounding in the fit.
     let [across, along] = directions[..] else {
         panic!("{all:?}")
     };
@@ -208,7 +209,7 @@ fn grooves_turn_their_friction_with_them() {
         [("texture.0.orientation".to_owned(), "across".to_owned())]
     );
     let numbers = found.found.as_ref().unwrap();
-    // By its definition, from the values that all replicates have.
+    // By its definition, from the values, which are equal for all replicates.
     let values: Vec<f64> = (0..12)
         .map(|point| f64::from_bits(friction_at(&results, point, 1.0)[0]))
         .collect();
@@ -225,7 +226,7 @@ fn grooves_turn_their_friction_with_them() {
 
 #[test]
 fn deep_nesting_is_refused_without_overflow() {
-    // Brackets that close nothing must not count against those that open.
+    // Unmatched closing brackets must not cancel opening ones.
     for piece in ["{ [], a = ", "{ b = 1 [x], a = ", "[ }, ", "{ a = ], b = "] {
         let nested = piece.repeat(100_000);
         let study = StudyFile::parse(&format!("a = {nested}"), "study.toml", "study", Path::new(""));

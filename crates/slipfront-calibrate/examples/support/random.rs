@@ -1,4 +1,4 @@
-//! Random numbers of records, unrelated to those of training.
+//! Random numbers of records, independent of those of training.
 
 /// Pseudorandom bits (SplitMix64).
 fn bits(state: &mut u64) -> u64 {
@@ -14,13 +14,13 @@ fn unit_interval(state: &mut u64) -> f64 {
     ((bits(state) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
 }
 
-/// A standard normal number, by Box and Muller.
+/// A standard normal number, by the Box-Muller transform.
 pub(crate) fn normal(state: &mut u64) -> f64 {
     let radius = (-2.0 * unit_interval(state).ln()).sqrt();
     radius * (std::f64::consts::TAU * unit_interval(state)).cos()
 }
 
-/// Positions of the unknowns of a record in their ranges.
+/// True values of the unknowns of a record, as shares of their ranges.
 pub(crate) fn uniform(record: usize, count: usize) -> Vec<f64> {
     let mut state = (record as u64 + 1).wrapping_mul(0xAEF1_7502_108E_F2D9);
     (0..count).map(|_| unit_interval(&mut state)).collect()

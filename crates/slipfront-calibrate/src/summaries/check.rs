@@ -1,4 +1,4 @@
-//! Numbers by which a record is checked, which the estimate does not use.
+//! Numbers for the check of a record, which the estimate does not use.
 //!
 //! `d_i` are second differences `y_(i-1) - 2 y_i + y_(i+1)`, a slip is a fall of s3 by more than a quarter of
 //! its range in the second half, and windows are shares of the record as in [the whole](super):
@@ -72,7 +72,7 @@ fn range(y: &[f64]) -> Vec<f64> {
 /// Offsets in values at which the shape of a fall is taken.
 const OFFSETS: [isize; 13] = [-8, -5, -3, -2, -1, 0, 1, 2, 3, 4, 6, 9, 14];
 
-/// Values at the offsets from a place, the nearest one beyond the ends.
+/// Values at the offsets from a place; beyond the ends, the nearest value.
 fn around(y: &[f64], place: usize) -> impl Iterator<Item = f64> {
     let last = y.len() as isize - 1;
     OFFSETS
@@ -149,8 +149,8 @@ fn regularity(curve: &Curve, slips: &[[usize; 2]]) -> Vec<f64> {
     found
 }
 
-/// Correlation of two lists of the same length; 0 of fewer than three pairs, and of values that are the same
-/// but for rounding.
+/// Correlation of two lists of the same length; 0 for fewer than three pairs, or for values that are equal
+/// except for rounding.
 fn correlation(one: &[f64], other: &[f64]) -> f64 {
     let is_the_same = |values: &[f64]| deviation(values) < 1e-9 * mean(values).abs();
     if one.len() < 3 || is_the_same(one) || is_the_same(other) {
@@ -195,7 +195,7 @@ mod tests {
         assert!(slips.windows(2).all(|pair| pair[1][0] - pair[0][0] == 20));
         let found = regularity(&curve, &slips);
         assert!((found[0] - 10.0_f64.ln()).abs() < 1e-12);
-        // 16 of 20 steps rise, of which the running mean keeps all but two beside a turn.
+        // 16 of 20 steps rise; the running mean keeps all but the two next to a turning point.
         assert!((found[1] - 0.7).abs() < 0.01, "{found:?}");
         // Distances are all 20 of 400: they do not scatter.
         assert!((found[6] - 0.05_f64.ln()).abs() < 1e-12 && found[7] == LEAST.ln());

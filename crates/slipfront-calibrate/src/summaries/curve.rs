@@ -40,7 +40,7 @@ impl<'a> Curve<'a> {
         self.s5[self.peak]
     }
 
-    /// A number of values that is a share of the record, given as `count` of 400.
+    /// Number of values in a share of the record, given as `count` of 400.
     pub(super) fn of_400(&self, count: usize) -> usize {
         window(self.y, count)
     }
@@ -51,7 +51,7 @@ pub(crate) fn level(y: &[f64]) -> f64 {
     mean(&y[y.len() / 2..])
 }
 
-/// Number of values that is a share of `y`, given as `count` of 400; one at least.
+/// Number of values in a share of `y`, given as `count` of 400; at least one.
 fn window(y: &[f64], count: usize) -> usize {
     ((count * y.len() + 200) / 400).max(1)
 }
@@ -71,7 +71,7 @@ fn first_peak(s: &[f64], fall: f64) -> usize {
     peak
 }
 
-/// Running mean over the values from `w/2` before to `w/2` behind, both rounded down, without those beyond
+/// Running mean over the values from `w/2` before to `w/2` after each value, both rounded down, truncated at
 /// the ends.
 pub(super) fn running_mean(y: &[f64], w: usize) -> Vec<f64> {
     let half = w / 2;
@@ -91,8 +91,8 @@ pub(crate) fn deviation(values: &[f64]) -> f64 {
 }
 
 /// Logarithm of the mean power of a curve of `n` values in bands of frequencies, in periods over the curve:
-/// of `|E_k|^2/(n m^2)`, where `E_k` are Fourier coefficients of the differences `e` from the mean `m` under
-/// a window of Hann.
+/// of `|E_k|^2/(n m^2)`, where `E_k` are Fourier coefficients, with a Hann window, of the differences `e`
+/// from the mean `m`.
 pub(super) fn log_power(e: &[f64], m: f64, bands: impl Iterator<Item = Range<usize>>) -> Vec<f64> {
     let n = e.len();
     let turn = std::f64::consts::TAU / n as f64;
@@ -154,7 +154,8 @@ pub(super) mod tests {
         assert_eq!(first_peak(&[0.0, 1.0, 2.0], 0.1), 2);
         let y = ramp_and_fall();
         let curve = Curve::new(&y);
-        // The mean over five is largest one before the peak, since the fall is faster than the rise.
+        // The mean over five values is largest one value before the peak, since the fall is faster than the
+        // rise.
         assert_eq!((curve.peak, curve.level), (99, 0.5));
     }
 

@@ -44,7 +44,7 @@ mod tests {
         for (k, value) in [0.79, 0.89, 0.94, 0.97].into_iter().enumerate() {
             near(1 + k, value);
         }
-        // Behind value 100 friction falls by 1/40 each, to 1/2 at 120.
+        // After value 100, friction falls by 1/40 per value, to 1/2 at value 120.
         for (k, behind) in [2.0, 4.0, 6.0, 8.0, 10.0, 13.0, 16.0].into_iter().enumerate() {
             near(5 + k, 1.0 - (behind - 1.0) / 40.0);
         }

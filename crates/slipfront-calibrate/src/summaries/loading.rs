@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! log s5_p                     the height of the first peak
-//! log (p + 1)/n                where it stands
+//! log (p + 1)/n                its position
 //! log (x_q + 1)/n              where s3 first exceeds q s5_p, q = 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.96
 //! log n b_q                    b_q = sum i y_i/sum i^2 over i <= x_q: slope through 0, q = 0.25, 0.4, 0.6, 0.8
 //! b_0.4 p/s5_p - 1             bend: how much higher the first slope would have led
@@ -38,7 +38,7 @@ fn rises_above(s: &[f64], level: f64) -> f64 {
     i as f64 - 1.0 + (level - s[i - 1]) / (s[i] - s[i - 1])
 }
 
-/// Slope of the line through 0 of least squares.
+/// Slope of the least-squares line through the origin.
 fn slope(y: &[f64]) -> f64 {
     let sum =
         |f: &dyn Fn(f64, f64) -> f64| -> f64 { y.iter().enumerate().map(|(i, &y)| f(i as f64, y)).sum() };
@@ -54,7 +54,7 @@ mod tests {
     fn a_ramp_has_its_slope() {
         let y = ramp_and_fall();
         let found = summaries(&Curve::new(&y));
-        // The mean over 5 values is largest one before the peak: (0.97 + 0.98 + 0.99 + 1 + 0.975)/5.
+        // The mean over 5 values is largest one value before the peak: (0.97 + 0.98 + 0.99 + 1 + 0.975)/5.
         let height: f64 = 0.983;
         assert!((found[0] - height.ln()).abs() < 1e-12);
         assert!((found[1] - (100.0_f64 / 400.0).ln()).abs() < 1e-12);

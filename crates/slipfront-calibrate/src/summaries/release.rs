@@ -1,7 +1,7 @@
 //! Friction after the first peak: the size and speed of its fall, and its recovery.
 //!
-//! With `z_i = s3_(p+i)` of 60 of 400 behind the peak p, the least of them at j, and the largest of 50 of 400
-//! behind p + j at l:
+//! With `z_i = s3_(p+i)` for 60 of 400 after the peak p, the smallest of them at j, and the largest within 50
+//! of 400 after p + j at l:
 //!
 //! ```text
 //! z_j/m                        the least friction
@@ -67,8 +67,8 @@ mod tests {
         let found = summaries(&Curve::new(&y));
         let near = |k: usize, value: f64| assert!((found[k] - value).abs() < 1e-12, "{k} {found:?}");
         near(0, 1.0);
-        // The mean of three values is 1/2 from value 121 on, one behind the end of the fall and 22 behind
-        // value 99.
+        // The mean of three values is 1/2 from value 121 on, one after the end of the fall and 22 after value
+        // 99.
         near(1, (23.0_f64 / 400.0).ln());
         near(2, 0.483_f64.ln());
         // The middle, (0.983 + 0.5)/2, is 1 - 10.34/40.

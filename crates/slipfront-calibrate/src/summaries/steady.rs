@@ -1,7 +1,7 @@
 //! Steady sliding: size, speed and regularity of the scatter of friction in the second half of the record.
 //!
-//! With `e_i = y_i - m` of the second half, d_L its differences over L of 400, and quantities over a window
-//! as in [the whole](super):
+//! With `e_i = y_i - m` in the second half, d_L its differences over L of 400, and windows as in [the parent
+//! module](super):
 //!
 //! ```text
 //! log sd(e)/m                  and of its running means over 4, 8, 16, 32 of 400
@@ -62,7 +62,7 @@ fn moment(values: &[f64], power: impl Fn(f64) -> f64) -> f64 {
     values.iter().map(|&value| power(value)).sum::<f64>() / values.len() as f64
 }
 
-/// Autocorrelation `sum e_i e_(i+L)/sum e_i^2` for values about 0.
+/// Autocorrelation `sum e_i e_(i+L)/sum e_i^2` for values with a mean of 0.
 fn autocorrelation(e: &[f64], distance: usize) -> f64 {
     let products: Vec<f64> = e.iter().zip(&e[distance..]).map(|(a, b)| a * b).collect();
     mean(&products) * products.len() as f64 / e.iter().map(|e| e * e).sum::<f64>()
@@ -79,8 +79,7 @@ mod tests {
         let found = summaries(&Curve::new(&y));
         let near = |k: usize, value: f64| assert!((found[k] - value).abs() < 1e-9, "{k} {found:?}");
         near(0, 0.1_f64.ln());
-        // Differences over 1 have the size 0.2, those over 2 and 4 vanish; their mean over 199 is one of
-        // them.
+        // Differences over 1 are 0.2 in size; those over 2 and 4 vanish. The sum of all 199 is one of them.
         let size = 0.2 * (1.0 - 1.0 / f64::from(199 * 199)).sqrt();
         near(5, size.ln());
         near(7, super::super::curve::LEAST.ln());
@@ -91,12 +90,12 @@ mod tests {
         near(14, 198.0 / 200.0);
         near(24, 0.0);
         near(25, 0.0);
-        // Hann's window takes nothing of so fast an alternation to slow periods.
+        // The Hann window leaks none of such a fast alternation into long periods.
         (26..36).for_each(|k| near(k, 2.0 * super::super::curve::LEAST.ln()));
     }
 
-    /// A swing of 8 periods over the half of the record, of amplitude 0.1: three Fourier coefficients, n/4
-    /// and n/8 twice, of its amplitude.
+    /// A sinusoid of amplitude 0.1 with 8 periods over the half of the record has three Fourier coefficients:
+    /// n/4 and twice n/8 of its amplitude.
     #[test]
     fn a_swing_is_in_its_band() {
         let y: Vec<f64> = (0..400)
@@ -105,7 +104,7 @@ mod tests {
         let found = summaries(&Curve::new(&y));
         let n = 200.0_f64;
         let band = |squares: f64, width: f64| (0.01 * squares * n / width).ln();
-        // Of the periods 7 and 8, and of 9 to 11.
+        // The bands of 7 and 8 periods, and of 9 to 11.
         assert!((found[29] - band(1.0 / 64.0 + 1.0 / 16.0 * 1.0 / 4.0 * 4.0, 2.0)).abs() < 1.0);
         assert!(found[29] > found[28] + 5.0 && found[29] > found[31] + 5.0);
     }

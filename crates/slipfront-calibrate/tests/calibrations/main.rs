@@ -1,5 +1,5 @@
-//! Calibrations: their results for records whose truth is known, and that results are equal however the runs
-//! are made.
+//! Calibrations: their results for records with known true values, and equal results however the runs are
+//! made.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -60,7 +60,7 @@ fn write_record(path: &Path) {
     fs::write(path, format!("time_s,force_n\n{}", lines.collect::<String>())).unwrap();
 }
 
-/// A standard normal for every step, by Box and Muller from two numbers of SplitMix64.
+/// A standard normal number for every step, by the Box-Muller transform of two numbers of SplitMix64.
 fn normal(step: usize) -> f64 {
     let uniform = |k: u64| {
         let z = (2 * step as u64 + k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -127,7 +127,7 @@ fn calibration_files_are_true() {
         }
     }
     assert!(seen >= 3, "only {seen} examples");
-    // The texture that is asked for stands on what a calibration leaves.
+    // The question about a texture takes the result of a calibration as its base.
     let folder = tempfile::tempdir().unwrap();
     let results = folder.path().join("results/sliding");
     fs::create_dir_all(&results).unwrap();
@@ -183,8 +183,8 @@ fn the_reference_has_the_keys_of_the_struct() {
     });
 }
 
-/// The record of the tribometer is the run that the README beside it describes, behind a filter that is
-/// integrated here in steps of the run, with noise of 1 % of its mean.
+/// The record of the tribometer is the run that the README next to it describes, after a filter that is
+/// integrated here with the steps of the run, with noise of 1 % of its mean.
 #[test]
 fn the_record_of_the_tribometer_is_a_run_behind_a_filter() {
     let folder = root().join("cases/calibrations");
@@ -220,11 +220,11 @@ fn the_record_of_the_tribometer_is_a_run_behind_a_filter() {
     let squares: f64 = rows.iter().map(|[time, force]| (force - at(*time)).powi(2)).sum();
     let mean = rows.iter().map(|row| row[1]).sum::<f64>() / rows.len() as f64;
     let noise = (squares / rows.len() as f64).sqrt() / mean;
-    // 2001 values tell a deviation to 1.6 %.
+    // 2001 values give a standard deviation to 1.6 %.
     assert!((noise / 0.01 - 1.0).abs() < 0.08, "{noise}");
 }
 
-/// The example is not refused: its last value comes sooner than the others do, as a logger leaves it that is
+/// The example is not refused, although its last interval is shorter than the others, as when a logger is
 /// stopped.
 #[test]
 fn the_example_is_not_refused() {
@@ -259,7 +259,7 @@ fn the_record_of_the_example_is_a_run_with_noise() {
     let unit = 1e6 * curve.unit_force.unwrap();
     let (mut squares, mut sum) = (0.0, 0.0);
     for [time, force] in &rows {
-        // Rows stand at steps of the run.
+        // Rows are at steps of the run.
         let step = curve
             .time
             .iter()
@@ -271,7 +271,7 @@ fn the_record_of_the_example_is_a_run_with_noise() {
     }
     let (n, mean) = (rows.len() as f64, sum / rows.len() as f64);
     let noise = (squares / n).sqrt() / mean;
-    // A standard deviation of 335 values scatters by 1/sqrt(2 n), 4 %: three times that.
+    // The relative standard error for 335 values is 1/sqrt(2 n), 4 %; the bound is three times that.
     assert!((noise / 0.01 - 1.0).abs() < 0.12, "{noise}");
 }
 
@@ -292,8 +292,8 @@ fn the_truth_lies_within_the_intervals() {
             "{text}"
         );
     }
-    // The level of some micronewtons tells the coefficient, and the slope of loading the mount, within a
-    // tenth of its range.
+    // The level of friction, some micronewtons, determines the coefficient, and the slope of loading
+    // determines the mount, within a tenth of the range.
     for number in [0, 1] {
         let [_, low, high] = told(&found, number);
         assert!(high - low < 0.06, "{text}");
@@ -311,12 +311,12 @@ fn the_truth_lies_within_the_intervals() {
     assert!((case.scales.mu_static_mean - told(&found, 0)[0]).abs() < 1e-12);
 }
 
-/// Number of runs of a calibration of 200, with as many on finer blocks and for a further experiment: 120 of
-/// the calibrated model, 40 at half the time step, and two whose random coefficients differ.
+/// Number of runs of a calibration with 200 training runs, 200 on finer blocks and 200 for a further
+/// experiment, 120 of the calibrated model, and 40 at half the time step.
 const READY: usize = 3 * 200 + 120 + 40;
 
-/// A calibration that was stopped, with a journal cut short, on one thread and on three, gives the same
-/// files.
+/// A calibration that was stopped, and the end of its journal cut off, gives the same files, on one thread
+/// and on three.
 #[test]
 fn a_calibration_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -359,13 +359,13 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     );
     find(&mut again, 3).unwrap();
     drop(again);
-    // A calibration that has ended makes no run again.
+    // A finished calibration repeats no run.
     let mut again = open("stopped", None);
     let known = again.n_kept();
     find(&mut again, 2).unwrap();
     assert_eq!((known, again.n_kept()), (READY, READY));
     drop(again);
-    // Runs that another folder keeps are the same ones.
+    // Training runs in another folder give the same results.
     let shared = folder.path().join("shared");
     fs::create_dir(&shared).unwrap();
     fs::copy(folder.path().join("whole/runs.jsonl"), shared.join("runs.jsonl")).unwrap();
@@ -389,8 +389,9 @@ fn a_calibration_goes_on_to_the_same_bytes() {
     }
 }
 
-/// Records of another law are refused and conditions count: several records are fitted at once, and a record
-/// of another speed is none of this model. A slider that is no sheet under its texture has a note.
+/// Records of another friction law are refused. Conditions count: several records are fitted at once, and a
+/// record at another speed is refused. A note warns of a slider that is too thick for a sheet under its
+/// texture.
 #[test]
 fn records_of_another_law_are_refused_and_conditions_count() {
     let folder = tempfile::tempdir().unwrap();
@@ -420,8 +421,8 @@ fn records_of_another_law_are_refused_and_conditions_count() {
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
 }
 
-/// A record that was computed at the step of the case passes, though its slips begin at whole steps: at a
-/// finer step they would not.
+/// A record that was computed at the step of the case passes, although its slips begin at whole steps, unlike
+/// those at a finer step.
 #[test]
 fn a_run_at_a_coarse_step_passes() {
     let folder = tempfile::tempdir().unwrap();
@@ -448,14 +449,14 @@ fn a_run_at_a_coarse_step_passes() {
     assert_eq!(check.closest.map(|closest| closest.halvings), Some(0));
 }
 
-/// A block on a spring, whose damping and stiffness are unknown.
+/// A block on a spring with unknown damping and stiffness.
 const BLOCK: &str = "[base]\nslider.blocks = [1, 1]\ndrive.v_star = 0.05\ntime.step = 0.2\n\
     friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
 const OF_BLOCK: &str = "[calibrate]\nx = 't_s'\ny = 'mu_1'\nnoise = 0.01\nruns = 300\nfiner_runs = 0\n\
     unknowns = { 'slider.omega_star' = [0.05, 0.5], 'drive.stiffness_star' = [0.1, 0.4] }\n";
 
-/// A record of the block with an Omega* of 0.2 and a stiffness of 0.25, 400 values over 240 t*, behind a
-/// filter of first order with this time constant in t*, by Euler's method in 50 steps of a value.
+/// A record of the block with an Omega* of 0.2 and a stiffness of 0.25, 400 values over 240 t*, after a
+/// first-order filter with this time constant in t*, integrated by Euler's method in 50 steps per value.
 fn write_filtered(path: &Path, constant: f64) {
     let text = "slider = { blocks = [1, 1], omega_star = 0.2 }\ndrive = { v_star = 0.05, stiffness_star = 0.25 }\n\
                 time.step = 0.2\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n";
@@ -485,8 +486,8 @@ fn write_filtered(path: &Path, constant: f64) {
     fs::write(path, format!("t_s,mu_1\n{}", lines.collect::<String>())).unwrap();
 }
 
-/// The filter of an instrument is part of the model: where the file has it, the intervals are about the truth
-/// and the record passes; a file without it, or with half of it, refuses the record.
+/// The filter of an instrument is part of the model. If the file has it, the intervals are around the true
+/// values and the record passes. Without it, or with half of its time constant, the record is refused.
 #[test]
 fn a_filter_is_part_of_the_model() {
     let folder = tempfile::tempdir().unwrap();
@@ -511,7 +512,7 @@ fn a_filter_is_part_of_the_model() {
     for (number, truth) in [0.2, 0.25].into_iter().enumerate() {
         let unknown = &told["unknowns"][number];
         let end = |k: usize| unknown["interval"][k].as_f64().unwrap();
-        // One interval in ten misses, hardly any by half of its width.
+        // One interval in ten misses the true value, but hardly any by half of its width.
         let beyond = (end(0) - truth).max(truth - end(1));
         assert!(beyond < 0.5 * (end(1) - end(0)), "{text}");
     }
@@ -523,7 +524,7 @@ fn a_filter_is_part_of_the_model() {
     }
 }
 
-/// A gain that is not known is an unknown as others are.
+/// An unknown gain can be calibrated like other unknowns.
 #[test]
 fn a_key_of_the_instrument_may_be_unknown() {
     let folder = tempfile::tempdir().unwrap();
@@ -547,7 +548,7 @@ fn a_key_of_the_instrument_may_be_unknown() {
         .unwrap();
     let end = |k: usize| of_gain["interval"][k].as_f64().unwrap();
     assert!(end(0) <= 1.0 && 1.0 <= end(1) && end(1) - end(0) < 0.05, "{text}");
-    // The case that is written has no key of the instrument.
+    // The written case has no key of the instrument.
     assert!(
         !fs::read_to_string(out.join("case.toml"))
             .unwrap()
@@ -555,7 +556,7 @@ fn a_key_of_the_instrument_may_be_unknown() {
     );
 }
 
-/// The block of the case that is written has the coefficients that are told: a single one draws none.
+/// The block of the written case has the reported coefficients: a single block draws no random ones.
 #[test]
 fn the_block_of_the_written_case_has_the_medians() {
     let folder = tempfile::tempdir().unwrap();
@@ -597,12 +598,12 @@ fn the_block_of_the_written_case_has_the_medians() {
         "friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n",
     );
     assert!(!text.contains("at random"), "{text}");
-    // A median is written as a share of its range and back.
+    // A median is converted to a share of its range and back.
     assert!(
         differences.iter().all(|difference| difference.abs() < 1e-12),
         "{differences:?}"
     );
-    // The block has drawn another coefficient, as the text says.
+    // The block has a random coefficient that differs, as the text says.
     let (text, differences) = found("drawn", "");
     assert!(
         text.contains("note: 1 block in contact draws its static and kinetic coefficients at random"),
@@ -614,7 +615,7 @@ fn the_block_of_the_written_case_has_the_medians() {
     );
 }
 
-/// A file or record that cannot be calibrated is refused with its key.
+/// A file or record that cannot be calibrated is refused, with the name of the key.
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
-//! Rate and state of a block that is pulled at steps of speed: a calibration beside a fit of maximum
-//! likelihood, which shares nothing with it.
+//! Rate-and-state friction of a block that is driven with velocity steps: a calibration is compared with an
+//! independent maximum-likelihood fit.
 //!
-//! Records come from the equations of the laboratory, which `velocity_steps` integrates by Runge and Kutta's
-//! method, and are fitted here by Gauss and Newton's.
+//! Records come from the rate-and-state equations, which `velocity_steps` integrates by the Runge-Kutta
+//! method, and are fitted here by the Gauss-Newton method.
 
 #[path = "../support/velocity_steps.rs"]
 mod velocity_steps;
@@ -30,8 +30,8 @@ fn friction(shares: [f64; 3]) -> Vec<f64> {
     fine.into_iter().step_by(STEPS).collect()
 }
 
-/// Estimate of maximum likelihood from a record with normal noise of this standard deviation, and the half
-/// width of each interval of 90 %, `1.645 sqrt(s^2 (J^T J)^-1)`, both as shares of the ranges.
+/// Maximum-likelihood estimate from a record with normal noise of this standard deviation, and the half width
+/// of each interval of 90 %, `1.645 sqrt(s^2 (J^T J)^-1)`, both as shares of the ranges.
 fn most_likely(record: &[f64], noise: f64) -> [[f64; 2]; 3] {
     let squares = |curve: &[f64]| -> f64 { curve.iter().zip(record).map(|(f, y)| (y - f).powi(2)).sum() };
     let mut shares = [0.5; 3];
@@ -103,14 +103,14 @@ fn set_up() -> SetUp {
     }
 }
 
-/// A calibration is held against what no estimate can do better than with many values, maximum likelihood:
+/// A calibration is compared with maximum likelihood, which is the optimal estimate for many values:
 ///
-/// - its intervals hold the estimate of maximum likelihood as often as the truth at least;
-/// - they hold the truth with 90 %;
-/// - they are comparable in width: not narrower, which they could not be and hold the truth, but for the
-///   tenth by which a width scatters that is found from some hundred residuals; and at most twice as wide.
+/// - its intervals contain the maximum-likelihood estimate in about 90 % of the records;
+/// - they contain the true value in about 90 % of the records;
+/// - their widths are comparable: at most twice as wide, and not narrower, since narrower intervals would
+///   miss true values too often. A width from some hundred residuals scatters by a tenth.
 ///
-/// Bounds allow for 30 records, three standard deviations of a share of 90 %: 0.9 - 3 sqrt(0.09/30) = 0.74.
+/// The bound of the share allows for three standard deviations of 30 records: 0.9 - 3 sqrt(0.09/30) = 0.74.
 #[test]
 fn rate_and_state_agrees_with_maximum_likelihood() {
     let set_up = set_up();
@@ -123,7 +123,7 @@ fn rate_and_state_agrees_with_maximum_likelihood() {
     )
     .unwrap_or_else(|error| panic!("{error}"));
     let grids = [set_up.conditions[0].grid.clone()];
-    // Values of a record are not averaged, so that it is a curve as it stands.
+    // Values of a record are not averaged, so a record can be used as a curve without change.
     assert_eq!(grids[0].places().len(), friction([0.5; 3]).len());
     let calibration = Calibration::new(&training, &grids, NOISE);
     let mut draws = ChaCha8Rng::from_seed(*b"records of a block at two speeds");
@@ -132,7 +132,8 @@ fn rate_and_state_agrees_with_maximum_likelihood() {
     let (mut truth_held, mut likely_held) = ([0; 3], [0; 3]);
     let mut ratios = [const { Vec::new() }; 3];
     for _ in 0..RECORDS {
-        // Away from the ends of the ranges, where a calibration knows what a likelihood does not.
+        // Away from the ends of the ranges: near them, a calibration uses the bounds, which the likelihood
+        // ignores.
         let truth: [f64; 3] = std::array::from_fn(|_| 0.2 + 0.6 * uniform());
         let plain = friction(truth);
         let noise = NOISE * plain.iter().sum::<f64>() / plain.len() as f64;

@@ -1,19 +1,18 @@
-//! Rate and state of a block that is pulled at steps of speed: the equations of the laboratory, without
-//! inertia and in units in which the normal force is 1, integrated apart from the library; and the case of
-//! the library.
+//! Rate-and-state friction of a block that is driven with velocity steps: the equations without inertia, in
+//! units of the normal force, integrated independently of the library; and the case of the library.
 
 use std::path::Path;
 
 use slipfront_study::{Base, StudyError, StudyFile};
 
-/// Coefficient of steady sliding at [`V_0`], and coefficient by which slipfront scales forces.
+/// Coefficient of steady sliding at [`V_0`]; slipfront scales forces by this coefficient.
 pub(crate) const MU_0: f64 = 0.6;
 pub(crate) const V_0: f64 = 0.005;
 /// Stiffness of the drive spring: stiff enough for stable sliding anywhere in the ranges, (b - a)/(mu_0 D_c)
 /// < 0.14.
 pub(crate) const STIFFNESS: f64 = 1.0;
-/// Speeds of the drive, each until a time t* at which a value of a record stands and a step of a run ends.
-/// They are so low that inertia, of the order of V sqrt(k), is lost in the noise.
+/// Speeds of the drive, each until a time t* at which the record has a value and a step of the run ends. They
+/// are so low that the effect of inertia, of the order of V sqrt(k), is negligible compared with the noise.
 pub(crate) const SPEEDS: [(f64, f64); 5] = [
     (0.005, 600.0),
     (0.0015, 1400.0),
@@ -27,15 +26,16 @@ pub(crate) const SPACING: f64 = 8.0;
 pub(crate) const KEYS: [&str; 3] = ["friction.a", "friction.b", "friction.d_c_star"];
 pub(crate) const RANGES: [[f64; 2]; 3] = [[0.005, 0.03], [0.005, 0.03], [0.3, 3.0]];
 
-/// Friction of a block at these shares of the ranges, in so many steps from one value of a record to the
-/// next, with the law of ageing or of slip, by Runge and Kutta's method:
+/// Friction of a block at these shares of the ranges, by the ageing law or the slip law, integrated by the
+/// Runge-Kutta method in `steps` steps from one value of a record to the next:
 ///
 /// ```text
 /// dF/dt = k (V(t) - v),   v = V_0 exp((F - mu_0 - b ln(V_0 theta/D_c))/a)
 /// ageing dtheta/dt = 1 - v theta/D_c,   slip dtheta/dt = -v theta/D_c ln(v theta/D_c)
 /// ```
 ///
-/// The fastest rate is k V/(a/mu_0) = 0.6 per t*: a step of 1 is off by 0.6^5/120 of what changes, 6e-4.
+/// The fastest rate is k V/(a/mu_0) = 0.6 per t*: with a step of 1, the error is 0.6^5/120 = 6e-4 of the
+/// change.
 pub(crate) fn friction(shares: &[f64], steps: usize, is_slip_law: bool) -> Vec<f64> {
     let value = |j: usize| RANGES[j][0] + shares[j] * (RANGES[j][1] - RANGES[j][0]);
     let (a, b, d_c) = (value(0) / MU_0, value(1) / MU_0, value(2));
@@ -67,7 +67,7 @@ pub(crate) fn friction(shares: &[f64], steps: usize, is_slip_law: bool) -> Vec<f
     values
 }
 
-/// The case of the block, with its program of speeds.
+/// The case of the block, with its velocity steps.
 pub(crate) fn base() -> Result<Base, StudyError> {
     let mut program: Vec<String> = SPEEDS
         .iter()

@@ -9,9 +9,9 @@ use crate::figure_data::FigureData;
 use crate::figures::lattice;
 use crate::runner::FigureRunner;
 
-/// Blocks a side of the part of the lattice that is drawn.
+/// Number of blocks along a side of the drawn part of the lattice.
 const BLOCKS: i32 = 3;
-/// Half the edge of a block, over the distance of two.
+/// Half the edge of a block, over the distance between two blocks.
 const HALF: f64 = 0.14;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -43,7 +43,7 @@ fn from_above(drawn: &mut Sketch) {
         for (di, dj, colour) in [(1, 0, 0), (0, 1, 0), (1, 1, 1), (-1, 1, 1)] {
             let (to_i, to_j) = (i + di, j + dj);
             if (0..BLOCKS).contains(&to_i) && (0..BLOCKS).contains(&to_j) {
-                // Diagonals cross where they are straight.
+                // Move the zigzags of diagonals away from the middle, so that they cross at straight parts.
                 let middle = if colour == 0 { 0.5 } else { 0.3 };
                 let spring = spring(place(i, j), place(to_i, to_j), middle);
                 add(drawn, StrokeStyle::Line(colour), spring);
@@ -110,7 +110,7 @@ fn body(drawn: &mut Sketch, [x, y]: [f64; 2], half: f64) {
     add(drawn, StrokeStyle::Body, corners.map(corner).to_vec());
 }
 
-/// A line between two points with a zigzag about the place `middle`, from 0 to 1, of its length.
+/// A line between two points with a zigzag around the position `middle`, from 0 to 1 along its length.
 fn spring([x, y]: [f64; 2], [to_x, to_y]: [f64; 2], middle: f64) -> Vec<[f64; 2]> {
     const TURNS: i32 = 7;
     const AMPLITUDE: f64 = 0.055;

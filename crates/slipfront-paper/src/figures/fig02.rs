@@ -40,9 +40,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Histograms of both coefficients over their means, beside the Gaussian density.
+/// Histograms of both coefficients over their means, compared with the Gaussian density.
 fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut FigureData) {
-    // Bins of half a standard deviation, to three to both sides.
+    // Bins of half a standard deviation, up to three standard deviations on either side.
     let edge = |k: i32| 1.0 + 0.5 * sigma * f64::from(k);
     let bins: Vec<[f64; 2]> = (-6..6).map(|k| [edge(k), edge(k + 1)]).collect();
     let density =
@@ -93,8 +93,8 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     Response::of_values(label, &middles, &shares)
 }
 
-/// Kolmogorov-Smirnov distance between a sample and the standard Gaussian, times sqrt(n): below 1.36
-/// with 95 % confidence if it is one.
+/// Kolmogorov-Smirnov distance between a sample and the standard Gaussian, times sqrt(n): below 1.36 with
+/// 95 % confidence if the sample is Gaussian.
 fn distance_to_normal(mut sorted: Vec<f64>) -> f64 {
     let normal = Normal::standard();
     sorted.sort_by(f64::total_cmp);
@@ -115,7 +115,7 @@ mod tests {
         let normal = Normal::standard();
         let at = |k: usize| (k as f64 + 0.5) / 400.0;
         let gaussian: Vec<f64> = (0..400).map(|k| normal.inverse_cdf(at(k))).collect();
-        // Of the same mean and deviation.
+        // A uniform distribution with the same mean and standard deviation.
         let uniform: Vec<f64> = (0..400).map(|k| 12f64.sqrt() * (at(k) - 0.5)).collect();
         assert!(distance_to_normal(gaussian) < 0.1);
         assert!(distance_to_normal(uniform) > 1.0);

@@ -7,7 +7,7 @@ use crate::run::{FigureRun, mu_star, sliding_percent};
 use crate::runner::FigureRunner;
 use crate::statistics::range;
 
-/// The cases whose printed speed does not make V* = 0.03.
+/// The cases with a printed speed that does not give V* = 0.03.
 const CORRECTED: [u32; 3] = [3, 6, 7];
 /// V* of Table 1.
 const V_STAR: f64 = 0.03;
@@ -70,7 +70,7 @@ pub(super) fn measure_table(runner: &mut FigureRunner, data: &mut FigureData) ->
     Ok(())
 }
 
-/// Fig. 3: the curves of the eight cases over each other.
+/// Fig. 3: the curves of the eight cases in one picture.
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let corrected = runs(runner, true)?;
     let printed = runs(runner, false)?;
@@ -116,7 +116,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Case 8 on seven other surfaces than that of all eight cases.
+/// Case 8 on seven surfaces that differ from the common one of all eight cases.
 fn other_surfaces(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let until = main.instant('E')?.time_star;
     let cases = (2..=8).map(|seed| runner.case("table1/case8", &[&format!("friction.seed={seed}")]));

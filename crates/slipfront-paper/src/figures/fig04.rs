@@ -1,4 +1,4 @@
-//! Fig. 4: contact stress at the instants A-F, and the paper's reading of it.
+//! Fig. 4: contact stress at the instants A-F, and the paper's interpretation.
 
 use slipfront::observe::{Field, Frame};
 
@@ -68,7 +68,7 @@ fn before_slip(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -
     let drive = &run.case.model.drive;
     let (mut error, mut motion) = (0.0_f64, 0.0_f64);
     for (_, frame) in &run.record.frames {
-        // In units of P mu_s, not yet over its maximum.
+        // In units of P mu_s, not yet divided by its maximum.
         let expected = drive.k_drive * drive.v_star * frame.time_star;
         for &stress in run.field(frame, Field::ContactStress)? {
             error = error.max((f64::from(stress) / expected - 1.0).abs());
@@ -84,19 +84,19 @@ fn before_slip(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -
     Ok(())
 }
 
-/// The block that slips first: its place among all, ordered by mu_si from the lowest.
+/// Rank of the block that slips first among all blocks, ordered by mu_si from the lowest.
 fn first_slip_rank(run: &FigureRun) -> Result<f64, PaperError> {
     let first = run.first_block()?;
     let mu_static = &run.case.model.surface.mu_static;
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
 }
 
-/// Fall of the contact stress of the first block to slip in the 2 t* after its slip, over its rise in the 2
-/// t* before. A wave goes over two blocks in that time, so that the fall is that of the block's own stress,
-/// not that of the slider's.
+/// Fall of the contact stress of the first block to slip within 2 t* after its slip, over its rise within
+/// 2 t* before. In that time, a wave travels only two blocks, so the fall is local, not that of the whole
+/// slider.
 fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, run.first_block()?);
-    // The last step at which the block still holds.
+    // The last step at which the block still sticks.
     let held = first - run.case.time_plan.dt_star;
     let mut times = vec![held - 2.0, held];
     times.extend((1..=4).map(|k| held + 0.5 * f64::from(k)));
@@ -121,13 +121,13 @@ fn slipped_at_peak(run: &FigureRun) -> Result<f64, PaperError> {
     Ok(100.0 * slipped as f64 / run.case.model.surface.n_contact() as f64)
 }
 
-/// Time from the peak to the first slip of the last block, % of t_s*.
+/// Time from the peak until every block has slipped, % of t_s*.
 fn rest_slips_within(run: &FigureRun) -> Result<f64, PaperError> {
     let onset = run.record.summary.onset_time_star;
     Ok(100.0 * (run.time_of_share(1.0)? - onset) / onset)
 }
 
-/// Blocks whose contact stress is lower at E than at an earlier instant, %.
+/// Blocks with a lower contact stress at E than at an earlier instant, %.
 fn falls_until_e(run: &FigureRun, letter: char) -> Result<f64, PaperError> {
     let stress = |letter| run.field(run.instant(letter)?, Field::ContactStress);
     let (before, after) = (stress(letter)?, stress('E')?);

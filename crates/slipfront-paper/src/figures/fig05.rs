@@ -30,7 +30,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         stress_maps(maps, 3),
     );
     whole_curves(&runs, data);
-    // Each surface against the mean of the largest size: scatter counts as much as bias, as for one run.
+    // Compare each surface with the mean of the largest size, so the error includes scatter as well as bias,
+    // as for a single run.
     let long = runner.study("fig05_long")?;
     for (sweep, quantity) in [(&sweep, "static_friction_star"), (&long, "kinetic_friction_star")] {
         let largest_size = mean(&sweep.values(&[2], quantity));

@@ -1,5 +1,5 @@
-//! Fig. 6: onset time and number of time steps against speed, and the properties of the material that decide
-//! on the onset.
+//! Fig. 6: onset time and number of time steps against speed, and the material properties that determine the
+//! onset.
 
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
@@ -51,7 +51,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Exponent of a power law through the means, by least squares of logarithms.
+/// Exponent of a power law, fitted to the means by least squares of logarithms.
 fn slope(x: &[f64], y: &[MeasuredNumber]) -> f64 {
     let (x, y): (Vec<f64>, Vec<f64>) = x
         .iter()
@@ -88,8 +88,8 @@ fn material(sweep: &ParameterSweep, data: &mut FigureData) {
     let load = [named("P x 2"), named("mu_s x 2")].map(|number| number.value);
     data.value("least_factor_of_load", smallest(load));
     data.number("factor_of_speed", named("V x 2"));
-    // t* as printed has no l in it (D4): the same slider made of larger blocks would begin to slide later in
-    // it.
+    // t* as printed does not contain l (D4): by that definition, the same slider would begin to slide later
+    // with larger blocks.
     data.number("factor_of_block_size", named("l x 2"));
     data.number("onset_star_factor_of_block_size", star("l x 2"));
     let rows = names.iter().enumerate().map(|(k, name)| {

@@ -1,4 +1,4 @@
-//! Fig. 7: a fast slider, which the paper calls unstable, in several time steps (D7, D11).
+//! Fig. 7: a fast slider, which the paper calls unstable, with several time steps (D7, D11).
 
 use crate::drawing::Drawing;
 use crate::error::PaperError;
@@ -8,8 +8,7 @@ use crate::runner::FigureRunner;
 use crate::statistics::{largest, range, smallest};
 use crate::sweep::ParameterSweep;
 
-/// Difference of static friction that no longer counts: a tenth of the scatter from surface to surface, 0.015
-/// (Fig. 12).
+/// Negligible difference of static friction: a tenth of the scatter over surfaces, 0.015 (Fig. 12).
 const SAME: f64 = 0.0015;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -46,10 +45,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Static friction in steps from coarse to fine, the paper's among them (Eq. 13), at several speeds (D11).
+/// Static friction for time steps including the paper's (Eq. 13), at several speeds (D11).
 fn steps(sweep: &ParameterSweep, data: &mut FigureData) {
-    // At a speed: the steps and static friction in each, of which the first step is the paper's and the last
-    // the finest.
+    // A quantity at one speed for all steps: the first step is the paper's, and the last is the finest.
     let [slow, fast] = [0.01, 0.2].map(|v| sweep.level(v));
     let over_steps = |speed: usize, quantity: &str| -> Vec<f64> {
         let steps = 0..sweep.axis(1).len();
@@ -66,7 +64,7 @@ fn steps(sweep: &ParameterSweep, data: &mut FigureData) {
     };
     let of_paper_step = (0..sweep.axis(0).len()).map(|speed| errors(speed)[0]);
     data.value("error_of_paper_step", largest(of_paper_step));
-    // How many of the paper's steps go into the coarsest step that gives the same static friction.
+    // Ratio of the coarsest step with the same static friction to the paper's step.
     let same = over_steps(slow, "dt_star").into_iter().zip(errors(slow));
     let same: Vec<f64> = same
         .filter(|(_, error)| *error < SAME)
@@ -76,7 +74,7 @@ fn steps(sweep: &ParameterSweep, data: &mut FigureData) {
     data.value("paper_steps_in_one_that_does", largest(same) / paper_step);
 }
 
-/// Eq. 4 as printed: the step in which kinetic friction is as the paper has it, about R*, at several speeds
+/// Eq. 4 as printed: the time step at which kinetic friction is about R*, as in the paper, at several speeds
 /// (D11).
 fn literal(sweep: &ParameterSweep, data: &mut FigureData) {
     let (speeds, steps) = (sweep.axis(0), sweep.axis(1));
@@ -100,7 +98,7 @@ fn literal(sweep: &ParameterSweep, data: &mut FigureData) {
     );
 }
 
-/// Zero of values that fall through zero between two places; NaN if they do not.
+/// Position at which values fall through zero, interpolated between two places; NaN if they do not.
 fn zero(places: &[f64], values: &[f64]) -> f64 {
     let crossing = (1..values.len()).find(|&k| values[k - 1] > 0.0 && values[k] <= 0.0);
     crossing.map_or(f64::NAN, |k| {

@@ -9,10 +9,10 @@ use crate::runner::FigureRunner;
 use crate::statistics::{largest, range, rises, smallest};
 use crate::sweep::ParameterSweep;
 
-/// The dampings that are drawn.
+/// Values of damping that are drawn.
 const DRAWN: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
-/// Rise of N* from one damping to the next, in % of the blocks, from which on it is called a jump. In
-/// stick-slip N* rises by less than 3 from each to the next.
+/// Least rise of N* from one value of damping to the next that counts as a jump, in % of the blocks. In
+/// stick-slip, N* rises by less than 3 % from each value to the next.
 const JUMP: f64 = 5.0;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -24,7 +24,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         Drawing::Curves(drawn.into()),
     );
     let first_slip = smallest(on_each(&runs, FigureRun::first_slip)?);
-    // One step short of it: friction may differ from where the first block moves.
+    // One step before the first slip, since friction may differ from there on.
     let before = [0.0, first_slip - runs[0].case.time_plan.dt_star];
     let difference = |window| runs[0].largest_difference_of(&runs, window, mu_star);
     data.value("difference_before_slip", difference(before));

@@ -7,8 +7,8 @@ use crate::run::{FigureRun, curves, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises};
 
-/// Ends of the windows of time, from the end of the transition on, over which the kinetic friction of the
-/// lowest R* is averaged: the end of the run, 8/V*, comes last.
+/// Ends of the time windows, from the end of the transition on, over which the kinetic friction of the lowest
+/// R* is averaged; the last one is the end of the run, 8/V*.
 const WINDOW_ENDS: [f64; 6] = [150.0, 160.0, 180.0, 200.0, 220.0, 266.7];
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -19,7 +19,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "Friction and sliding blocks for four ratios of kinetic to static friction.",
         curves(&runs, |k| format!("R* = {}", ratios[k])),
     );
-    // By how much friction falls from its peak, for each surface.
+    // Fall of friction from its peak, for each surface.
     let fall = |k: usize| {
         let [peaks, levels] =
             ["static_friction_star", "kinetic_friction_star"].map(|quantity| sweep.values(&[k], quantity));
@@ -38,7 +38,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     excess_of_lowest(runner, data)
 }
 
-/// Kinetic friction above R* at the lowest R*, by the window over which it is averaged.
+/// Excess of kinetic friction over R* at the lowest R*, by the window over which it is averaged.
 fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let runs = runner.run(runner.plan("fig10_windows")?.cases(&[])?)?;
     let excess_in = |window: &dyn Fn(&FigureRun) -> Result<[f64; 2], PaperError>| {

@@ -1,4 +1,4 @@
-//! Fig. 11: places at which slip begins, and the spread of its fronts over a rough surface.
+//! Fig. 11: places where slip begins, and the spread of slip fronts over a rough surface.
 
 use slipfront::Lattice;
 
@@ -12,7 +12,7 @@ use slipfront_plot::FieldMap;
 
 /// Minima of mu_si that are marked.
 const MARKED: usize = 6;
-/// Shares of the slider that have slipped in the panels b-d.
+/// Shares of the slider that have slipped in panels b-d.
 const SHARES: [f64; 3] = [0.03, 0.2, 0.6];
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -24,8 +24,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let places = on_each(&runs, FigureRun::first_block)?;
     let repeated = (0..places.len()).filter(|&k| places[..k].contains(&places[k]));
     data.value("repeated_first_places", repeated.count() as f64);
-    // The same random numbers with another spread: the first slip is expected at the same block, at another
-    // time.
+    // With the same random numbers and another spread, the first slip is expected at the same block, but at
+    // another time.
     let mut times = Vec::new();
     let mut moved = 0;
     for sigma in ["0.025", "0.05", "0.1"] {
@@ -74,7 +74,7 @@ fn draw(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Blocks whose coefficient is below those of all their neighbours, the lowest first.
+/// Blocks with a coefficient below those of all their neighbours, the lowest first.
 pub(super) fn minima(lattice: &Lattice, mu_static: &[f64]) -> Vec<usize> {
     let mut minima: Vec<usize> = (0..mu_static.len())
         .filter(|&block| neighbours(lattice, block).all(|neighbour| mu_static[neighbour] > mu_static[block]))
@@ -83,7 +83,7 @@ pub(super) fn minima(lattice: &Lattice, mu_static: &[f64]) -> Vec<usize> {
     minima
 }
 
-/// The blocks around a block, those at its corners included.
+/// The blocks around a block, including those at its corners.
 pub(super) fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item = usize> {
     let (i, j) = lattice.column_row(block);
     let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [dx, dy]));

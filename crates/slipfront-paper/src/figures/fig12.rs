@@ -10,9 +10,9 @@ use crate::statistics::{deviation, distances, farthest, largest, mean, range, ra
 use crate::sweep::ParameterSweep;
 use slipfront_plot::Responses;
 
-/// Surfaces from which the paper takes each mean.
+/// Number of surfaces in each mean of the paper.
 const SURFACES: usize = 5;
-/// The largest deviation from such a mean that the paper has seen.
+/// The largest deviation from such a mean in the paper.
 const DEVIATION: f64 = 0.015;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -50,8 +50,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     kinetic(runner, data)
 }
 
-/// Share of groups of five surfaces that agree as closely as the paper's, at every point of the figure with a
-/// spread.
+/// Share of groups of five surfaces with as little scatter as the paper's, at every point of the figure with
+/// a spread.
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_surfaces")?;
     let farthest_of = |five: &[f64]| farthest(five, mean(five));
@@ -93,8 +93,8 @@ fn standard_deviation(sample: &[f64]) -> f64 {
     deviation(sample) * (n / (n - 1.0)).sqrt()
 }
 
-/// The share of fives whose scatter is below 0.015 at all points from this speed on, %. Fives are surfaces at
-/// equal distances in the list, which closes to a ring.
+/// Share of groups of five surfaces with a scatter below 0.015 at all points from this speed on, %. A group
+/// has surfaces at equal distances in the cyclic list.
 fn fives_within_percent(sweep: &ParameterSweep, first_speed: usize, scatter: Scatter) -> f64 {
     let points = (0..sweep.axis(0).len())
         .flat_map(|spread| (first_speed..sweep.axis(1).len()).map(move |speed| [spread, speed]));
@@ -118,7 +118,7 @@ fn fives_within_percent(sweep: &ParameterSweep, first_speed: usize, scatter: Sca
 fn kinetic(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_kinetic")?;
     let levels = sweep.axis(0).len();
-    // Surface by surface, against no spread at all.
+    // Paired by surface, compared with no spread.
     let change = |quantity: &str| {
         let none = sweep.values(&[0], quantity);
         largest((1..levels).flat_map(|k| distances(&sweep.values(&[k], quantity), &none)))

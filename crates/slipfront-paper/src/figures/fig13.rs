@@ -1,4 +1,4 @@
-//! Fig. 13: the outlines of Eq. 17, and the size that Eq. 18 gives them (D5).
+//! Fig. 13: the outlines of Eq. 17, and their size by Eq. 18 (D5).
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use slipfront_case::case_file;
 use slipfront_case::case_file::CavitySize;
 use slipfront_plot::{Shape, Sketch, Stroke, StrokeStyle};
 
-/// Corners of a drawn outline.
+/// Number of corners of a drawn outline.
 const CORNERS: usize = 360;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -32,7 +32,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         let asked = case.texture.asked_percent.unwrap_or(f64::NAN);
         misses.push((case.texture.meshed_percent - asked).abs());
         if let CavitySize::Coverage(percent) = cavity.size {
-            // Eq. 18 as printed has N^2 where the area is N l^2.
+            // Eq. 18 as printed has N^2 in place of N; the area of the slider is N l^2.
             let n = case.model.lattice.n_blocks() as f64;
             let lambda_square =
                 n * n * percent / (100.0 * 0.5 * TAU * (1.0 - f64::from(cavity.s) * cavity.w.powi(2)));
@@ -58,14 +58,14 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// Eq. 17 at the area of a circle of radius 1.
+/// Outline of Eq. 17 with the area of a circle of radius 1.
 fn outline(s: u32, w: f64) -> Vec<[f64; 2]> {
     let lambda = 1.0 / (1.0 - f64::from(s) * w * w).sqrt();
     let point = |k: usize| on_outline(s, w, TAU * k as f64 / CORNERS as f64).map(|at| lambda * at);
     (0..CORNERS).map(point).collect()
 }
 
-/// Eq. 17 for lambda = 1 about the origin.
+/// Point of Eq. 17 for lambda = 1 about the origin.
 fn on_outline(s: u32, w: f64, phi: f64) -> [f64; 2] {
     let s = f64::from(s);
     [
@@ -74,7 +74,7 @@ fn on_outline(s: u32, w: f64, phi: f64) -> [f64; 2] {
     ]
 }
 
-/// A cavity with the arms that lead to a point of its outline.
+/// A cavity, with the vectors that add up to a point of its outline.
 fn parameters() -> Sketch {
     let (s, w, phi) = (3, 0.2, TAU / 10.0);
     let circle = |radius: f64, from: f64, until: f64| -> Vec<[f64; 2]> {
@@ -112,7 +112,7 @@ fn parameters() -> Sketch {
     }
 }
 
-/// Number of places of an outline that lie farther out than those before and after: its vertices.
+/// Number of vertices of an outline: points that are farther from the middle than their neighbours.
 fn farthest(points: &[[f64; 2]]) -> usize {
     let radius = |k: usize| {
         let [x, y] = points[k % points.len()];
@@ -138,7 +138,7 @@ mod tests {
                     x * next_y - next_x * y
                 })
                 .sum();
-            // A polygon of 360 corners in a unit circle lacks 5e-5 of its area.
+            // The area of a polygon with 360 corners in a unit circle is too small by 5e-5.
             assert!((0.5 * twice / (0.5 * TAU) - 1.0).abs() < 2e-4, "{s} {w}: {twice}");
         }
         assert_eq!(farthest(&outline(3, 1.0 / 3.0)), 4);

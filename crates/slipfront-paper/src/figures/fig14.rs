@@ -74,8 +74,8 @@ fn nearness(run: &FigureRun, share: f64) -> f64 {
     mean_distance(slipped(run, share).unwrap_or_default()) / mean_distance(all)
 }
 
-/// Share of the local minima of mu_si that slip for the first time before the mean of their neighbours, %.
-/// Where fronts do not heed them it is one half.
+/// Share of the local minima of mu_si that slip earlier than the mean of their neighbours, %. It is one half
+/// if minima have no effect on the fronts.
 fn early_minima(run: &FigureRun) -> f64 {
     let model = &run.case.model;
     let times = &run.record.first_slip_time_star;
@@ -89,7 +89,7 @@ fn early_minima(run: &FigureRun) -> f64 {
     100.0 * minima.iter().filter(is_early).count() as f64 / minima.len() as f64
 }
 
-/// Share of the blocks that slip at the very first that touch the cavity, %.
+/// Share of the first slipping blocks that touch the cavity, %.
 fn first_at_rim(run: &FigureRun) -> f64 {
     let (lattice, textured) = (&run.case.model.lattice, &run.case.model.surface.textured);
     let times = &run.record.first_slip_time_star;
@@ -116,7 +116,8 @@ fn asymmetry(run: &FigureRun) -> f64 {
     100.0 * mean(&differences) / range(&run.slip_times())
 }
 
-/// Extent of the slipped area along the drive over that across it, as root mean squares about the cavity.
+/// Extent of the slipped area along the drive over that across it, as root mean square distances from the
+/// cavity.
 fn elongation(run: &FigureRun, share: f64) -> Result<f64, PaperError> {
     let (mut along, mut across) = (0.0, 0.0);
     for block in slipped(run, share)? {

@@ -38,7 +38,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let (one, ten, last) = (sweep.level(1.0), sweep.level(10.0), areas.len() - 1);
     data.number("one_percent", numbers[0][one]);
     data.value("least_rise_with_area", smallest(rises(&means[0])));
-    // Percent of friction for each percent of area, from nothing to 10 % and from there on.
+    // Percent of friction per percent of area, from 0 to 10 % and beyond.
     let first = means[0][ten] / areas[ten];
     let beyond = (means[0][last] - means[0][ten]) / (areas[last] - areas[ten]);
     data.value("slope_beyond_ten_over_before", beyond / first);
@@ -60,7 +60,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     starting_points(runner, data)
 }
 
-/// Places where slip begins before the peak without a texture, by the spread of the local static
+/// Number of places where slip begins before the peak without a texture, for each spread of the local static
 /// coefficients.
 fn starting_points(runner: &FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.plan("fig15_starts")?;

@@ -63,7 +63,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let others: Vec<f64> = others.map(|(mean, _)| *mean).collect();
     data.value("spread_without_sharp_triangle", range(&others));
     data.value("farthest_from_circle_percent", farthest(&means, means[0]));
-    // Round and sharp stand in pairs after the circle.
+    // After the circle, round and sharp shapes are in pairs.
     let pairs = means[1..].chunks_exact(2).map(|pair| (pair[1] - pair[0]).abs());
     let pairs: Vec<f64> = pairs.collect();
     data.value("sharpness_percent", largest(pairs.iter().copied()));

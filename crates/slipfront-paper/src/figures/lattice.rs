@@ -1,4 +1,4 @@
-//! Elastic constants of the slider from the springs k_1 and k_2, by stretching it.
+//! Elastic constants of the slider that follow from the springs k_1 and k_2, measured by stretching it.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ fn forces(model: &Arc<Model>, [stretch_x, stretch_y]: [f64; 2]) -> Vec<[f64; 2]>
         state.displacement.x[block] = stretch_x * i as f64;
         state.displacement.y[block] = stretch_y * j as f64;
     }
-    // At step 0 nothing has moved yet: any time step will do.
+    // At step 0, nothing has moved yet, so the time step has no effect.
     let simulation = Simulation::new(model.clone(), 0.1, Some(state), Execution::default());
     let snapshot = simulation.snapshot();
     (0..lattice.n_blocks())
@@ -34,7 +34,7 @@ fn forces(model: &Arc<Model>, [stretch_x, stretch_y]: [f64; 2]) -> Vec<[f64; 2]>
         .collect()
 }
 
-/// Contraction across for each unit of stretch along x that leaves a free edge without force.
+/// Lateral contraction per unit of stretch along x for which a free edge is without force.
 fn poisson_ratio(model: &Arc<Model>) -> f64 {
     let lattice = &model.lattice;
     let edge = lattice.block(lattice.nx / 2, 0);
@@ -42,7 +42,7 @@ fn poisson_ratio(model: &Arc<Model>) -> f64 {
     force([1.0, 0.0]) / force([0.0, 1.0])
 }
 
-/// Stress at the ends over strain, in units of E, of a slider stretched along x whose sides are free.
+/// Stress at the ends over strain, in units of E, of a slider that is stretched along x and has free sides.
 fn young_modulus(model: &Arc<Model>) -> f64 {
     let lattice = &model.lattice;
     let forces = forces(model, [1.0, -poisson_ratio(model)]);
@@ -69,19 +69,19 @@ mod tests {
         ))
     }
 
-    /// Each of n rows pulls with k_1 = 3/4 and each of n - 1 pairs of rows with its diagonals, (2/3) k_2 =
-    /// 1/4.
+    /// Each of n rows contributes k_1 = 3/4 to the stiffness, and the diagonals of each of n - 1 pairs of
+    /// rows contribute (2/3) k_2 = 1/4.
     #[test]
     fn a_strip_lacks_a_quarter_of_a_row() {
         for n in [5, 25, 100] {
             let model = model(Lattice::free(9, n));
-            // Springs turn by a millionth, the strain.
+            // Springs rotate by a millionth, the strain.
             assert!((poisson_ratio(&model) - 1.0 / 3.0).abs() < 1e-5);
             assert!((young_modulus(&model) - (1.0 - 0.25 / n as f64)).abs() < 1e-5);
         }
     }
 
-    /// The stretch is an equilibrium: no force acts on a block but at the two ends that are pulled.
+    /// The stretch is an equilibrium: forces act only on blocks at the two pulled ends.
     #[test]
     fn a_uniform_stretch_is_an_equilibrium() {
         let model = model(Lattice::free(9, 7));

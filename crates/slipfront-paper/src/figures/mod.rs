@@ -1,4 +1,4 @@
-//! The figures and tables of the paper. Each has a file with its cases, measurements and drawings.
+//! The figures and tables of the paper. Each has its own file with cases, measurements and drawings.
 
 mod fig01;
 mod fig02;

@@ -1,4 +1,4 @@
-//! `report.html`: one file that opens from disk, prints, and reads on a phone.
+//! `report.html`: a single file that can be opened from disk, printed, and read on a phone.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as BASE64;
@@ -16,7 +16,7 @@ use slipfront_plot::Picture;
 
 const STYLE: &str = include_str!("style.css");
 
-/// The whole page; `drawn` holds the pictures of each figure.
+/// The whole page; `drawn` contains the pictures of each figure.
 pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
     let page = html! {
         : doctype::HTML;
@@ -143,7 +143,7 @@ fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Raw<String> {
     }))
 }
 
-/// Text with Greek letters for their names, and subscripts for what stands behind an underscore.
+/// Text with Greek letters in place of their names, and the characters after an underscore as subscripts.
 fn text(text: &str) -> Raw<String> {
     let text = greek(text);
     let mut parts = text.split('_');
@@ -196,7 +196,7 @@ fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Pictur
     }))
 }
 
-/// The physical width that the picture is made for.
+/// The physical width of the picture.
 fn width(svg: &str) -> String {
     let begin = svg.split_once("width=\"");
     let width = begin.and_then(|(_, rest)| rest.split_once('"'));

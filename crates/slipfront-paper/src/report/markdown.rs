@@ -8,7 +8,7 @@ use crate::figure_data::Panel;
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
 
-/// The first line of the page, by which a page of an earlier call is recognised.
+/// The first line of the page, which identifies a page of an earlier call.
 pub(super) const TITLE: &str = "# The paper, claim by claim\n";
 
 /// The text of `paper.md`.
@@ -55,12 +55,13 @@ pub fn page(paper: &Paper) -> String {
     text
 }
 
-/// A text in italics, with symbols. Its stars, those of dimensionless quantities, would end the italics.
+/// A text in italics, with symbols. The stars of dimensionless quantities are escaped, since they would end
+/// the italics.
 fn emphasised(text: &str) -> String {
     format!("*{}*", greek(text).replace('*', "\\*"))
 }
 
-/// Number of verdicts in which the paper's step differs.
+/// Number of verdicts that differ with the paper's step, in words.
 fn other_verdicts(paper: &Paper) -> String {
     let pairs = paper.results.iter().zip(&paper.results_by_paper_step);
     match pairs.filter(|(one, other)| one.verdict != other.verdict).count() {

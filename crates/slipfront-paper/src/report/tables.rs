@@ -63,7 +63,7 @@ pub(super) fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
     csv(rows.iter())
 }
 
-/// Every number that was measured, those of claims among them.
+/// All measured numbers, including those of claims.
 pub(super) fn numbers_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
     let mut rows = vec![["quantity", "value", "low", "high"].map(str::to_owned).to_vec()];
     for (name, number) in paper

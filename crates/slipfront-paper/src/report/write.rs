@@ -19,7 +19,7 @@ use slipfront_study::project_folder::{Batch, Others, ResultFiles};
 /// Writes pictures, tables and the report to a folder.
 ///
 /// # Errors
-/// When a picture cannot be drawn, a file not be written, or one in its place was edited.
+/// When a picture cannot be drawn, a file cannot be written, or an existing file was edited.
 pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
     let figures = paper.figures.par_iter();
     let drawn: Vec<Vec<Picture>> = figures.map(|(_, data)| draw(data)).collect::<Result<_, _>>()?;
@@ -35,7 +35,7 @@ pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
     ] {
         batch.write(name, |to| to.write_all(&bytes))?;
     }
-    // Figures that an earlier call has left there took hours.
+    // Keep figures of earlier calls, which took hours.
     Ok(batch.place(Others::Stay)?)
 }
 
@@ -63,7 +63,7 @@ fn draw(data: &FigureData) -> Result<Vec<Picture>, PaperError> {
     panels.collect()
 }
 
-/// The first file of others that [`write_docs`] would replace in a folder.
+/// The first foreign file that [`write_docs`] would replace in a folder.
 pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     let page = folder.join(PAGE);
     if begins_with(&page, markdown::TITLE.as_bytes()) {
@@ -86,14 +86,14 @@ const IMAGES: &str = "images";
 /// Beginning of the pictures' names.
 const PICTURE: &str = "paper-";
 
-/// Writes the claims table as `paper.md` with all pictures, as they stand in `docs/validation`.
+/// Writes the claims table as `paper.md` and all pictures, as in `docs/validation`.
 ///
 /// # Errors
-/// When a picture cannot be drawn or a file not be written.
+/// When a picture cannot be drawn or a file cannot be written.
 pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     let write_file =
         |path: PathBuf, bytes: &[u8]| write_with_folders(&path, bytes).map_err(FolderError::write(&path));
-    // First, since it tells that the pictures are of an earlier call.
+    // The page comes first, since it identifies the pictures as those of an earlier call.
     write_file(folder.join(PAGE), page(paper).as_bytes())?;
     for (_, data) in &paper.figures {
         for (panel, picture) in data.panels.iter().zip(draw(data)?) {

@@ -34,12 +34,13 @@ fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, slipfr
     )
 }
 
-/// A folder of figures is as it was written and as its data give it, until a file or the data are spoilt.
+/// A folder of figures equals its list and the results that follow from its data, until a file or the data
+/// are changed.
 fn verified(folder: &Path) {
     let verify = |extent| slipfront_paper::verify(folder, extent, &AtomicBool::new(false)).unwrap();
     let whole = verify(Extent::Derived);
     assert_eq!((whole.differences, whole.not_derived), (Vec::new(), None));
-    // A list that fits a spoilt file is seen by what the data give.
+    // If the list fits a changed file, the results that follow from the data show the change.
     let mut spoilt = ResultFiles::new(folder, "paper", true).begin();
     spoilt.write("claims.csv", |to| to.write_all(b"spoilt")).unwrap();
     spoilt.place(Others::Stay).unwrap();
@@ -79,7 +80,7 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     assert!(report.contains("Every figure and claim of <cite>"));
     let pictures: usize = paper.figures.iter().map(|(_, found)| found.panels.len()).sum();
     assert_eq!(report.matches("data:image/png;base64,").count(), pictures);
-    // Nothing is fetched when it is opened.
+    // The report loads nothing from the network.
     assert!(!report.contains("src=\"http") && !report.contains("<link") && !report.contains("<script"));
     for (_, found) in &paper.figures {
         for panel in &found.panels {
@@ -95,7 +96,7 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
 
     verified(folder.path());
 
-    // docs/validation/paper.md is a full run's: its claims, criteria and verdicts are these.
+    // docs/validation/paper.md comes from a full run, but its claims, criteria and verdicts must equal these.
     let page = slipfront_paper::docs_page(&paper);
     let (here, told) = (
         rows(&page),
@@ -109,7 +110,7 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
             claim.number
         );
         if let Some(here) = here.get(&claim.number) {
-            // Number, claim, place, criterion, verdict: all but the measured numbers.
+            // Number, claim, place, criterion, verdict: all except the measured numbers.
             for column in [0, 1, 2, 4, 5] {
                 assert_eq!(here[column], told[column], "claim {}", claim.number);
             }
@@ -118,7 +119,7 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     assert_eq!(told.len(), slipfront_paper::claims().unwrap().len());
 }
 
-/// Counts of claims in the documentation follow the list.
+/// Counts of claims in the documentation agree with the list.
 #[test]
 fn the_documentation_counts_the_claims() {
     let claims = slipfront_paper::claims().unwrap();
@@ -140,13 +141,13 @@ fn the_documentation_counts_the_claims() {
         ),
     ];
     for (page, sentence) in pages {
-        // A page breaks its lines anywhere.
+        // A page may have line breaks anywhere.
         let words: Vec<&str> = page.split_whitespace().collect();
         assert!(words.join(" ").contains(&sentence), "{sentence}");
     }
 }
 
-/// Eq. 18 has N^2 where N is meant: the cavity is N = 2500 times as large.
+/// Eq. 18 has N^2 in place of N: the cavity is N = 2500 times too large.
 #[test]
 fn the_cavity_as_printed_is_too_large_by_the_number_of_blocks() {
     let folder = tempfile::tempdir().unwrap();
@@ -233,7 +234,8 @@ fn figures_are_known_by_their_short_names_too() {
     );
 }
 
-/// A stopped call loses no finished figure: a stored figure is not run again, so that no signal can end it.
+/// A stopped call loses no finished figure: a stored figure is not run again, so a signal cannot interrupt
+/// it.
 #[test]
 fn a_finished_figure_is_not_run_again() {
     let folder = tempfile::tempdir().unwrap();

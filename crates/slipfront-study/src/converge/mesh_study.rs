@@ -1,4 +1,4 @@
-//! The study of one slider on blocks of twice its size, of its own, of half of it, and so on.
+//! The study of one slider on blocks of twice, once and half the given size, and so on.
 
 use std::path::{Path, absolute};
 
@@ -18,19 +18,19 @@ pub const MAX_LEVELS: u8 = 7;
 /// Number of surfaces of a mesh if coefficients scatter.
 const REPLICATES: i64 = 5;
 
-/// The study of a case on several meshes. The runs of a mesh differ by their seeds alone; if the case has
-/// textures, every run is paired with one without them.
+/// The study of a case on several meshes. The runs on a mesh differ only by their seeds. If the case has
+/// textures, every run is paired with one without textures.
 #[derive(Clone, Debug)]
 pub struct MeshStudy {
-    /// The study, whose only axis is the size of the blocks.
+    /// The study; its only axis is the size of the blocks.
     pub file: StudyFile,
     /// Runs of the study.
     pub plan: Plan,
 }
 
 impl MeshStudy {
-    /// The case on `levels` meshes, the second of which is its own, with `replicates` surfaces on each, by
-    /// default 5 if coefficients scatter, else 1.
+    /// The case on `levels` meshes with `replicates` surfaces on each. The second mesh is that of the case.
+    /// The default of `replicates` is 5 if coefficients scatter, and 1 otherwise.
     ///
     /// # Errors
     /// When there are too few or too many meshes, when the case cannot be put on these blocks, or when no
@@ -46,7 +46,7 @@ impl MeshStudy {
         let replicates = replicates.unwrap_or_else(|| default_replicates(case));
         let table = study_table(case, &overrides(case, levels)?, replicates)?;
         let name = format!("{}-meshes", case.name);
-        // Every file is named by its whole path.
+        // The table names every file by its full path.
         let file = StudyFile::parse(&portable_text(table)?, &name, &name, Path::new(""))?;
         let plan = Plan::new(&file, None)?;
         refuse_bare(&plan)?;
@@ -63,7 +63,7 @@ fn overrides(case: &Case, levels: i64) -> Result<Vec<Vec<Override>>, CaseError> 
 
 /// Contents of the study file.
 fn study_table(case: &Case, on_meshes: &[Vec<Override>], replicates: i64) -> Result<Table, StudyError> {
-    // Each key with its values on all meshes, those alone that differ between meshes or from the case.
+    // Each key with its values on all meshes, but only keys that differ between meshes or from the case.
     let mut zip = Table::new();
     for set in on_meshes.iter().flatten() {
         let list = zip.entry(set.key()).or_insert_with(|| Value::Array(Vec::new()));
@@ -88,7 +88,7 @@ fn study_table(case: &Case, on_meshes: &[Vec<Override>], replicates: i64) -> Res
     ]))
 }
 
-/// The case file, which names the copies in a run folder, with the files that were copied in their place.
+/// The case file with the original files in place of the copies that it names in a run folder.
 fn reading_originals(case: &Case) -> CaseFile {
     let mut file = case.file.clone();
     for named in file.files_mut().0 {
@@ -100,7 +100,7 @@ fn reading_originals(case: &Case) -> CaseFile {
     file
 }
 
-/// Default number of replicates: five if surfaces differ by their seeds, else one.
+/// Default number of replicates: five if surfaces with different seeds differ, and one otherwise.
 fn default_replicates(case: &Case) -> i64 {
     let groups = &case.groups;
     if groups.sigma_static_star > 0.0 || groups.sigma_kinetic_star > 0.0 {
@@ -110,7 +110,7 @@ fn default_replicates(case: &Case) -> i64 {
     }
 }
 
-/// Refuses textures that the blocks of a mesh are too large for.
+/// Refuses a mesh with blocks that are too large for the textures.
 fn refuse_bare(plan: &Plan) -> Result<(), StudyError> {
     let is_bare = |position: &usize| plan.has_reference() && plan.texture_percent(*position) == 0.0;
     let Some(position) = (0..plan.points.len()).find(is_bare) else {

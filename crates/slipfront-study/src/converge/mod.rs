@@ -1,5 +1,5 @@
 //! The mesh error of a result: one slider on blocks of twice, once and half the size, and so on, as a study
-//! whose only axis is the size of the blocks.
+//! with the size of the blocks as its only axis.
 //!
 //! For values `q_1, q_2, q_3` on three meshes, each with blocks of half the size of the one before, with
 //! `d = q_2 - q_1` and `e = q_3 - q_2`:
@@ -8,9 +8,8 @@
 //! order p = log2(|d|/|e|), at least 1/2 and at most 2;  error of the mesh = max(|e|, max(|e|, |d|/4)/(2^p - 1))
 //! ```
 //!
-//! A last difference that is smaller than a method of second order leaves is an accident of the outlines as
-//! they are meshed: `|d|/4` stands in its place. No limit is claimed where the differences do not decrease,
-//! `|e| >= |d|`.
+//! A last difference that is smaller than for second-order convergence is due to chance in the meshed
+//! outlines, and `|d|/4` replaces it. If the differences do not decrease, `|e| >= |d|`, no limit is given.
 
 mod mesh_study;
 pub(crate) mod on_meshes;
@@ -40,10 +39,10 @@ pub fn is_written(folder: &Path, axes: &[Axis]) -> bool {
     is_over_meshes(axes) && CONVERGENCE.iter().any(|name| folder.join(name).exists())
 }
 
-/// Writes the tables and pictures of a study over meshes to its folder, and the comparison of the meshes.
+/// Writes the tables and pictures of a study over meshes and the comparison of the meshes to its folder.
 ///
 /// # Errors
-/// When a run failed, which the tables name, or when the system refuses to write.
+/// When a run failed (the tables name it), or when the system refuses to write.
 pub fn write(
     plan: &Plan,
     results: &StudyResults,
@@ -61,8 +60,7 @@ pub fn write(
     Ok(found)
 }
 
-/// Writes the comparison of the meshes to a batch of files: as `convergence.json`, and as a text for a
-/// person.
+/// Writes the comparison of the meshes to a batch of files: as `convergence.json`, and as text for a reader.
 pub(crate) fn stage(plan: &Plan, results: &StudyResults, batch: &mut Batch) -> Result<OnMeshes, StudyError> {
     let [numbers, words] = CONVERGENCE;
     let found = OnMeshes::of(plan, results)?;

@@ -66,14 +66,14 @@ pub enum Verdict {
     Converges {
         /// Order of convergence, 1/2 to 2.
         order: f64,
-        /// Error that the finest mesh leaves.
+        /// Remaining error on the finest mesh.
         mesh_error: f64,
     },
-    /// All meshes have one value.
+    /// All meshes give the same value.
     Equal,
     /// Differences do not decrease; the values on the meshes differ by up to `spread`.
     Open {
-        /// Largest value less smallest of the last three meshes.
+        /// Difference of the largest and smallest value on the last three meshes.
         spread: f64,
     },
 }
@@ -96,7 +96,7 @@ impl Verdict {
             return Self::Open { spread: high - low };
         }
         let order = libm::log2(before / last).clamp(0.5, 2.0);
-        // At most of second order.
+        // The order is limited to 2.
         let richardson = last.max(0.25 * before) / (libm::exp2(order) - 1.0);
         Self::Converges {
             order,
@@ -120,7 +120,7 @@ pub(super) fn meshes(plan: &Plan) -> Vec<Mesh> {
     points.map(mesh).collect()
 }
 
-/// Comparisons of every quantity of which all meshes have a value.
+/// Comparisons of every quantity that has a value on all meshes.
 fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
     let of = |name: &&str| {
         let samples = (0..plan.points.len()).map(|position| results.sample(plan, position, name));
@@ -138,8 +138,8 @@ fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
 }
 
 impl Convergence {
-    /// The mean on the finest mesh and the error that is claimed for it, of the mesh and of the scatter over
-    /// surfaces together; none if no limit is claimed.
+    /// The mean on the finest mesh and its total error, from the mesh and from the scatter over surfaces;
+    /// none if no limit is given.
     pub(crate) fn result(&self) -> Option<[f64; 2]> {
         let (mean, half) = (*self.means.last()?, self.half_widths.last()?.unwrap_or(0.0));
         match self.verdict {
@@ -155,10 +155,10 @@ impl Convergence {
 pub struct OnMeshes {
     /// The meshes, the coarsest first.
     pub meshes: Vec<Mesh>,
-    /// The quantities of which all meshes have a value.
+    /// The quantities that have a value on all meshes.
     pub quantities: Vec<Convergence>,
-    /// Lengths of the material that equal the length of a block: with any of them every mesh is another
-    /// material, and no limit is one of this slider.
+    /// Lengths of the material that equal the length of a block. With any of them, every mesh is a different
+    /// material, and a limit would not belong to this slider.
     pub lengths_of_a_block: Vec<String>,
 }
 
@@ -176,16 +176,16 @@ impl OnMeshes {
         })
     }
 
-    /// The value of a quantity on the finest mesh and its error; none if no limit is claimed.
+    /// The value of a quantity on the finest mesh and its error; none if no limit is given.
     pub(crate) fn result_of(&self, quantity: &str) -> Option<[f64; 2]> {
         let found = self.quantities.iter().find(|found| found.quantity == quantity);
         found.filter(|_| self.lengths_of_a_block.is_empty())?.result()
     }
 
-    /// Refuses a comparison in the folder of a study in which no quantity has a value on every mesh.
+    /// Refuses a comparison in the folder of a study if no quantity has a value on every mesh.
     ///
     /// # Errors
-    /// A sentence that names the table of the runs.
+    /// A sentence with the name of the table of runs.
     pub fn expect_values(&self, folder: &Path) -> Result<(), StudyError> {
         if self.quantities.is_empty() {
             let path = folder.join("runs.csv");
@@ -212,7 +212,7 @@ mod tests {
             else {
                 panic!("order {order}");
             };
-            // Rounding of values near 20 over differences of 1/512 at least.
+            // The bound allows for rounding of values near 20, over differences of at least 1/512.
             assert!((found - f64::min(order, 2.0)).abs() < 1e-11, "{order} {found}");
             assert!(
                 mesh_error >= (values[3] - 20.0) * (1.0 - 1e-11),
@@ -227,7 +227,7 @@ mod tests {
         assert!((mesh_error - 1.2375 / 12.0).abs() < 1e-12);
         assert_eq!(Verdict::on(&[1.0, 2.0, 3.0]), Verdict::Open { spread: 2.0 });
         assert_eq!(Verdict::on(&[9.0, 1.0, 1.0, 1.0]), Verdict::Equal);
-        // A slower fall than that of the square root of the mesh is taken for it.
+        // Convergence of an order below 1/2 is treated as order 1/2.
         let slow = Verdict::on(&[0.0, 1.0, 1.9]);
         let Verdict::Converges { order, mesh_error } = slow else {
             panic!("{slow:?}");

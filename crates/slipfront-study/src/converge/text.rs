@@ -1,4 +1,4 @@
-//! Comparison of several meshes, as a text.
+//! Comparison of several meshes, as text.
 
 use slipfront_base::number_format::{four_digits, with_half_width};
 use slipfront_base::text::note;
@@ -56,7 +56,7 @@ fn on_meshes(found: &OnMeshes) -> String {
     table(&header, &rows)
 }
 
-/// The value on the finest mesh, where this is a material of its own.
+/// The value on the finest mesh, if every mesh is a different material.
 fn of_another_material(one: &Convergence) -> String {
     format!(
         "{}: {} on the finest mesh; this value depends on the mesh",
@@ -80,7 +80,7 @@ fn sentence(one: &Convergence) -> String {
             two_digits(mesh_error)
         ),
         Verdict::Equal => format!("{name}: {} on every mesh{of_surfaces}", four_digits(value)),
-        // What seeds scatter by hides what the mesh does.
+        // The scatter over seeds hides the effect of the mesh.
         Verdict::Open { spread } if spread <= half => format!(
             "{name}: {}; the last three meshes differ by {}, within the scatter between surfaces: use more --replicates",
             with_error(value, spread + half),
@@ -105,7 +105,7 @@ fn two_digits(error: f64) -> String {
     format!("{error:.places$}")
 }
 
-/// Places behind the point down to the second digit of a number.
+/// Number of decimal places up to the second significant digit of a number.
 fn places_of(number: f64) -> usize {
     if number == 0.0 {
         return 0;

@@ -13,7 +13,7 @@ use crate::error::StudyError;
 /// Name of the list of result files and their checksums.
 pub const CHECKSUMS: &str = "checksums.json";
 
-/// Content of a list: the result files, with the program that made them.
+/// Content of a list: the result files, and the program that made them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Checksums {
     /// Content of the folder, such as `study`.
@@ -26,7 +26,7 @@ pub struct Checksums {
     pub build: String,
     /// The result files, in the order of their names.
     pub files: Vec<ManifestFile>,
-    /// Whether the results are complete, and not those of work that goes on.
+    /// Whether the results are complete, as opposed to those of unfinished work.
     pub is_complete: bool,
     /// Files that were still to be replaced or removed when the list was written.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -54,7 +54,7 @@ impl Checksums {
         if seal(&bytes).as_ref() != Some(&list.seal) {
             return Err(damaged("its seal is wrong: it was changed afterwards"));
         }
-        // A list of somebody else must lead to no file outside of its folder.
+        // A list from elsewhere must not lead to files outside of its folder.
         let is_inside = |file: &ManifestFile| {
             let mut parts = Path::new(&file.name).components();
             parts.all(|part| matches!(part, Component::Normal(_)))

@@ -13,8 +13,8 @@ use slipfront_run::folder_error::FolderError;
 /// Folder of the copies.
 const FOLDER: &str = "inputs";
 
-/// The plain name of a file: its path below the case, or the last part of a path that leads elsewhere. A copy
-/// has the plain name of its original.
+/// The plain name of a file: its path below the folder of the case, or the last part of a path elsewhere. A
+/// copy has the plain name of its original.
 pub(crate) fn plain_name(written: &str) -> String {
     let path = Path::new(written);
     let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
@@ -44,7 +44,7 @@ impl Copy {
     }
 }
 
-/// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
+/// Replaces the names of all files of a study, which are relative to `folder`, by those of copies.
 pub(crate) fn copy(study: &mut Table, folder: &Path) -> Result<Vec<Copy>, FolderError> {
     let mut copies = Vec::new();
     visit_table(study, folder, &mut copies)?;
@@ -52,7 +52,7 @@ pub(crate) fn copy(study: &mut Table, folder: &Path) -> Result<Vec<Copy>, Folder
 }
 
 fn visit_table(table: &mut Table, folder: &Path, copies: &mut Vec<Copy>) -> Result<(), FolderError> {
-    // An axis names the key beside its values.
+    // In an axis, the key and its values are in the same table.
     let lists_files = table.get("key").and_then(Value::as_str).is_some_and(names_a_file);
     for (key, value) in table.iter_mut() {
         let is_file = names_a_file(key) || (lists_files && key == "list");
@@ -74,7 +74,7 @@ fn visit(value: &mut Value, is_file: bool, folder: &Path, copies: &mut Vec<Copy>
 }
 
 fn replace(name: &mut String, original: PathBuf, copies: &mut Vec<Copy>) -> Result<(), FolderError> {
-    // Every point was valid, so that a file that is not there is one that no point reads.
+    // Every point was valid, so no point reads a missing file.
     let Some(hash) = hash(&original).map_err(FolderError::read(&original))? else {
         return Ok(());
     };
@@ -95,7 +95,7 @@ fn replace(name: &mut String, original: PathBuf, copies: &mut Vec<Copy>) -> Resu
 fn hash(path: &Path) -> std::io::Result<Option<blake3::Hash>> {
     match std::fs::metadata(path) {
         Ok(metadata) if metadata.is_file() => {}
-        // A pipe would be waited for, and a device never ends.
+        // Opening a pipe would wait, and a device never ends.
         Ok(_) => return Ok(None),
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             return Ok(None);
@@ -124,7 +124,7 @@ mod tests {
         }
     }
 
-    /// A file without end is not copied. No point reads it, so that no case has noticed it.
+    /// A file without end is not copied. No point reads it, so no case has detected it.
     #[cfg(unix)]
     #[test]
     fn what_never_ends_is_not_copied() {

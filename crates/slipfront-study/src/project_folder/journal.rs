@@ -1,7 +1,7 @@
-//! Journals: a line for every run that has ended, appended and forced to the disk.
+//! Journals: a line for every finished run, appended and synced to disk.
 //!
-//! A line that a crash cut short, or that was damaged later, fails its checksum, and its run counts as not
-//! done. Before anything is appended, a part of a line at the end of the file is cut off.
+//! A line that is incomplete after a crash, or damaged later, fails its checksum, and its run counts as not
+//! done. Before anything is appended, an incomplete line at the end of the file is cut off.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -14,7 +14,7 @@ use slipfront_base::unfinished::clear_unfinished;
 use super::line::{JournalEntry, Line, looks_like_ours, may_begin_ours, parse_line, to_line};
 use crate::error::StudyError;
 
-/// A file of entries, a line each, open for one process alone.
+/// A file with an entry on each line, open in only one process.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -22,26 +22,26 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Opens the file of this name in a folder, unless another process has it open, and makes an empty one
-    /// where there is none. Returns the entries in it, and the number of lines that failed their checksum.
+    /// Opens the file of this name in a folder, unless another process has it open; creates it if it is
+    /// missing. Returns the entries in it, and the number of lines that failed their checksum.
     pub fn open<T: JournalEntry>(folder: &Path, name: &str) -> Result<(Self, Vec<T>, usize), StudyError> {
         let path = folder.join(name);
         let mut file = open_locked(&path, folder)?;
-        // A study that has changed since it was killed may not write the same files again.
+        // If the study was killed and has changed since, it may not write the same files again.
         clear_unfinished(folder);
         let lines = JournalLines::read(&mut file).map_err(failed("open", &path))?;
         lines.expect_ours(&path)?;
         lines.repair_end(&mut file).map_err(failed("write to", &path))?;
         file.seek(SeekFrom::End(0)).map_err(failed("open", &path))?;
-        // A new file survives a power cut only once its folder is on the disk.
+        // A new file survives a power failure only once its folder is synced.
         if lines.bytes == 0 {
             sync_folder(folder).map_err(failed("write to", &path))?;
         }
         Ok((Self { path, file }, lines.entries, lines.damaged))
     }
 
-    /// Reads the file of this name in a folder, whoever has it open: the entries in it, and the number of
-    /// lines that failed their checksum.
+    /// Reads the file of this name in a folder, even if another process has it open: returns its entries, and
+    /// the number of lines that failed their checksum.
     ///
     /// # Errors
     /// When the file cannot be read, or has no entries of this kind.
@@ -50,8 +50,8 @@ impl Journal {
         Ok((lines.entries, lines.damaged))
     }
 
-    /// Copies a file of entries of this kind, called `name`, from one folder to another. It is looked at
-    /// before: what is no entry is not copied, however long it is.
+    /// Copies a file of entries of this kind, called `name`, from one folder to another. It is checked first,
+    /// so a file without such entries is not copied, however long it is.
     pub fn copy<T: JournalEntry>(from: &Path, to: &Path, name: &str) -> Result<(), StudyError> {
         let path = from.join(name);
         let bytes = JournalLines::<T>::read_at(&path)?.bytes;
@@ -61,7 +61,7 @@ impl Journal {
         copied.map(drop).map_err(failed("write to", &to))
     }
 
-    /// Appends entries, each as a line, and waits until they are on the disk; earlier entries stay whole.
+    /// Appends entries, each as a line, and waits until they are on disk; earlier entries stay intact.
     ///
     /// # Errors
     /// When the system refuses to write.
@@ -75,7 +75,7 @@ impl Journal {
         let before = before.map_err(failed("write to", path))?;
         let appended = file.write_all(&lines).and_then(|()| file.sync_data());
         appended.map_err(|source| {
-            // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
+            // Complete lines stay. If an incomplete line cannot be cut off, the next start does it.
             let length = file.metadata().map_or(0, |file| file.len());
             let there = length.saturating_sub(before) as usize;
             let there = &lines[..lines.len().min(there)];
@@ -108,7 +108,7 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
             path: path.to_owned(),
         });
     }
-    // Some file systems of clusters have no locks; the study runs there without one.
+    // Some file systems of clusters do not support locks; the study runs there without one.
     if let Err(TryLockError::WouldBlock) = file.try_lock() {
         return Err(StudyError::Busy {
             path: folder.to_owned(),
@@ -117,7 +117,7 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
     Ok(file)
 }
 
-/// The longest line of a journal: hundreds of times what a run takes.
+/// Largest length of a line in a journal: hundreds of times that of a run.
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
 /// The contents of a journal.
@@ -127,19 +127,19 @@ struct JournalLines<T> {
     damaged: usize,
     /// Whether a line is an entry or may once have been one.
     ours: bool,
-    /// Whether a line is whole, but no entry of this kind.
+    /// Whether a line is complete, but not an entry of this kind.
     is_of_others: bool,
     /// Whether a line is longer than any entry.
     too_long: bool,
     bytes: u64,
     /// Whether the last line is an entry without a line break.
     lacks_break: bool,
-    /// Position at which the last line begins, if it is a part of a line.
+    /// Position of the beginning of the last line, if that line is incomplete.
     cut_at: Option<u64>,
 }
 
 impl<T: JournalEntry> JournalLines<T> {
-    /// Reads a file that may be open elsewhere, unless it is none of such entries.
+    /// Reads a file that may be open elsewhere, and refuses one without such entries.
     fn read_at(path: &Path) -> Result<Self, StudyError> {
         let read = open_limited(path, u64::MAX).and_then(|mut file| Self::read(&mut file));
         let lines = read.map_err(failed("read", path))?;
@@ -147,7 +147,7 @@ impl<T: JournalEntry> JournalLines<T> {
         Ok(lines)
     }
 
-    /// Reads line by line: a file of any length takes no more memory than its entries.
+    /// Reads line by line, so a file of any length takes no more memory than its entries.
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut file = BufReader::new(file);
         let mut lines = Self {
@@ -180,7 +180,7 @@ impl<T: JournalEntry> JournalLines<T> {
                     lines.entries.push(entry);
                     lines.lacks_break = !broken;
                 }
-                // Its run counts as not made, as that of a damaged line.
+                // Its run counts as not done, as for a damaged line.
                 Some(Line::OfOtherVersion) => lines.damaged += 1,
                 Some(Line::OfOtherKind) => lines.is_of_others = true,
                 None => {
@@ -192,8 +192,8 @@ impl<T: JournalEntry> JournalLines<T> {
         Ok(lines)
     }
 
-    /// Makes the file end with a line break, so that the next entry begins a line: an entry that lacks its
-    /// line break gets it, and a part of an entry is cut off.
+    /// Makes the file end with a line break, so that the next entry begins a new line: adds a missing line
+    /// break, or cuts off an incomplete entry.
     fn repair_end(&self, file: &mut File) -> std::io::Result<()> {
         match self.cut_at {
             Some(begin) => file.set_len(begin),

@@ -1,4 +1,4 @@
-//! The files that a project is made of, which its folder keeps so that it can be repeated from there.
+//! The inputs of a project, which its folder keeps so that the project can be repeated from there.
 
 use std::io::Write;
 use std::path::Path;
@@ -10,14 +10,14 @@ use super::kind::ProjectKind;
 use super::result_files::{Batch, Others, ResultFiles};
 use crate::error::StudyError;
 
-/// The files from which a project is repeated.
+/// The files that are needed to repeat a project.
 pub struct Given {
     /// The text of the project's file, with its base case inside.
     pub text: String,
     /// Copies of the files that the text names.
     pub copies: Vec<Copy>,
-    /// Files that the command was given beside the text, such as measured records, by their names in the
-    /// folder.
+    /// Files that the command was given in addition to the text, such as measured records, by their names in
+    /// the folder.
     pub others: Vec<(String, Vec<u8>)>,
 }
 
@@ -33,7 +33,7 @@ impl Given {
             || self.copies.iter().any(|copy| copy.differs_in(folder))
     }
 
-    /// Writes the files to a batch of a folder, in which `force` replaces files of others.
+    /// Writes the files to a batch for a folder; `force` replaces foreign files there.
     pub(crate) fn stage(&self, kind: &ProjectKind, folder: &Path, force: bool) -> Result<Batch, StudyError> {
         let mut batch = ResultFiles::new(folder, kind.name, force).begin();
         batch.copy_all(&self.copies)?;
@@ -44,11 +44,11 @@ impl Given {
         Ok(batch)
     }
 
-    /// Writes the files to a folder, in which `force` replaces files of others; results join them there.
+    /// Writes the files to a folder, where results will be added; `force` replaces foreign files there.
     ///
     /// # Errors
-    /// When the folder holds another project, or files in their places that were edited or are not
-    /// slipfront's; when the system refuses to write.
+    /// When the folder contains another project, or edited or foreign files with these names; when the system
+    /// refuses to write.
     pub fn place(&self, kind: &ProjectKind, folder: &Path, force: bool) -> Result<ResultFiles, StudyError> {
         if self.differs_in(kind, folder) {
             return Err(StudyError::Changed {

@@ -1,4 +1,4 @@
-//! Kinds of projects, such as studies and designs: the names that each has for the files of its folder.
+//! Kinds of projects, such as studies and designs, and their names for the files of a folder.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::journal::Journal;
 use super::line::JournalEntry;
 use crate::error::StudyError;
 
-/// A kind of projects, each of which has its results in a folder.
+/// A kind of project with a results folder.
 #[derive(Debug)]
 pub struct ProjectKind {
     /// Name of the kind in messages, such as `design`.
@@ -33,9 +33,9 @@ impl ProjectKind {
         folder.join(self.file).exists() && folder.join(self.journal).exists()
     }
 
-    /// Loads a file of this kind by `parse`, which takes its text, its path, the name of the project, and the
-    /// folder of the file. The project has the name of the file without the ending, or, where the file is the
-    /// one that a results folder keeps, the name of this folder.
+    /// Loads a file of this kind by `parse`, which receives its text, its path, the name of the project, and
+    /// the folder of the file. The name of the project is that of the file without the ending, or that of the
+    /// folder if the file is the copy in a results folder.
     ///
     /// # Errors
     /// When the file cannot be read, or `parse` refuses its text.
@@ -53,10 +53,10 @@ impl ProjectKind {
         parse(&text, &path.display().to_string(), &name, folder)
     }
 
-    /// Whether the folder has a journal of this kind. One that has none must be new or empty.
+    /// Whether the folder has a journal of this kind. A folder without one must be new or empty.
     ///
     /// # Errors
-    /// When the folder holds other things, or cannot be read.
+    /// When the folder contains other things, or cannot be read.
     pub fn is_used(&self, folder: &Path) -> Result<bool, StudyError> {
         let is_used = folder.join(self.journal).exists();
         let is_free = || Ok(!folder.is_dir() || is_empty(folder)?);
@@ -67,7 +67,7 @@ impl ProjectKind {
         }
     }
 
-    /// The error of a folder that holds other things than a project of this kind.
+    /// The error for a folder that contains something other than a project of this kind.
     pub fn other_things(&self, folder: &Path) -> StudyError {
         StudyError::OtherThings {
             what: self.name,
@@ -75,11 +75,11 @@ impl ProjectKind {
         }
     }
 
-    /// Opens the journal in a folder, which is made where it is missing, unless another process works there;
-    /// returns it, the runs in it, and the number of its damaged lines.
+    /// Opens the journal in a folder, unless another process uses it, and creates the folder if it is
+    /// missing. Returns the journal, its runs, and the number of its damaged lines.
     ///
     /// # Errors
-    /// When another process has it open, when it is no journal of this kind, or when the system refuses.
+    /// When another process has it open, when it is not a journal of this kind, or when the system refuses.
     pub fn open_journal<T: JournalEntry>(
         &self,
         folder: &Path,

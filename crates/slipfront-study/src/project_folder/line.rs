@@ -13,14 +13,14 @@ pub(crate) fn to_line(entry: &impl Serialize) -> Vec<u8> {
 
 /// An entry that a line of a journal can hold.
 pub trait JournalEntry: DeserializeOwned {
-    /// Keys of which every entry of this kind has one, in any version of slipfront.
+    /// Keys, at least one of which is in every entry of this kind in any version of slipfront.
     const KEYS: &'static [&'static str];
 }
 
-/// A whole line of a journal.
+/// A complete line of a journal.
 pub(super) enum Line<T> {
     Entry(T),
-    /// An entry of this kind that another version of slipfront has written.
+    /// An entry of this kind, written by another version of slipfront.
     OfOtherVersion,
     OfOtherKind,
 }
@@ -50,14 +50,14 @@ pub(super) fn looks_like_ours(line: &[u8]) -> bool {
 }
 
 /// Whether the last line may be the beginning of an entry: it ends within the checksum, or consists of zeros,
-/// which a power cut can leave.
+/// as after a power failure.
 pub(super) fn may_begin_ours(line: &[u8]) -> bool {
     let (sum, blank) = line.split_at(line.len().min(CHECKSUM));
     let is_beginning = sum.iter().all(u8::is_ascii_hexdigit) && b" ".starts_with(blank);
     is_beginning || line.iter().all(|&byte| byte == 0)
 }
 
-/// Characters of a checksum.
+/// Number of characters of a checksum.
 const CHECKSUM: usize = 16;
 
 fn checksum(bytes: &[u8]) -> String {

@@ -2,7 +2,7 @@
 
 use slipfront_base::number_format::count;
 
-/// Sentences about a journal with some `damaged` lines, and about the runs in it, which were `kept`.
+/// Notes on a journal with `damaged` lines and `kept` runs.
 pub fn notes_of_use(damaged: usize, kept: usize) -> Vec<String> {
     let mut notes = Vec::new();
     if damaged > 0 {

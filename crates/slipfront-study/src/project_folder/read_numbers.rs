@@ -1,4 +1,4 @@
-//! Numbers that a report has written to a results folder, read again.
+//! Reads numbers that a report has written to a results folder.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use slipfront_run::folder_error::FolderError;
 
 use crate::error::StudyError;
 
-/// Reads the part of a file of JSON that `T` has.
+/// Reads the part of a JSON file that `T` describes.
 ///
 /// # Errors
 /// When the file cannot be read, or lacks this part.

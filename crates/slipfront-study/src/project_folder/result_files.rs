@@ -1,11 +1,10 @@
-//! The files of a results folder that slipfront has written, with their checksums in `checksums.json`: they
-//! take their names together, and a file that was edited since, or that somebody else has put there, is
-//! neither replaced nor removed.
+//! The files that slipfront has written to a results folder, with their checksums in `checksums.json`. The
+//! files of a batch get their names together. A file that was edited afterwards, or that somebody else has
+//! put there, is neither replaced nor removed.
 //!
 //! All files of a batch are first written under hidden names. Then the list is written, with the checksums of
-//! the new files and of the files that they replace, and only then do they take their names. So whatever is
-//! found after a kill is known to be slipfront's, and the folder equals its list only when everything is
-//! there.
+//! the new files and of the files that they replace. Only then are the files renamed. So after a kill, all
+//! files are still known to be slipfront's, and the folder equals its list only when everything is there.
 
 use std::fs::File;
 use std::io::Write;
@@ -24,7 +23,7 @@ use super::checksums::Checksums;
 use super::input_copies::Copy;
 use crate::error::StudyError;
 
-/// Result files of a folder that one process alone works in.
+/// Result files of a folder that only one process uses.
 #[derive(Clone, Debug)]
 pub struct ResultFiles {
     folder: PathBuf,
@@ -32,18 +31,17 @@ pub struct ResultFiles {
     of: &'static str,
     /// Whether edited and foreign files are replaced.
     force: bool,
-    /// Files that the results are made from, which belong to every batch.
+    /// Inputs of the results, which belong to every batch.
     given: Vec<ManifestFile>,
-    /// Names of files of the user in the folder, which the results are made from as well: they are neither
-    /// replaced nor removed.
+    /// Names of the user's own input files in the folder, which are neither replaced nor removed.
     kept: Vec<String>,
     /// The look of the pictures.
     look: PictureLook,
 }
 
 impl ResultFiles {
-    /// The result files of a folder; `of` says what they are of, such as `study`. Edited and foreign files
-    /// may be replaced by `force`.
+    /// The result files of a folder. `of` names the content, such as `study`; `force` allows the replacement
+    /// of edited and foreign files.
     pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -55,14 +53,14 @@ impl ResultFiles {
         }
     }
 
-    /// The files with pictures of another look than the usual one.
+    /// The files with pictures in another look.
     #[must_use]
     pub fn with_look(self, look: PictureLook) -> Self {
         Self { look, ..self }
     }
 
-    /// Refuses a folder with files that were edited since they were written, before work begins whose results
-    /// replace them.
+    /// Refuses a folder with files that were edited after they were written. To be called before the work
+    /// that replaces them begins.
     ///
     /// # Errors
     /// When there are such files, unless they may be replaced.
@@ -77,7 +75,7 @@ impl ResultFiles {
         self.refuse(edited)
     }
 
-    /// A batch of files that are to be written.
+    /// A new batch of files to write.
     pub fn begin(&self) -> Batch {
         Batch {
             files: self.clone(),
@@ -87,8 +85,8 @@ impl ResultFiles {
         }
     }
 
-    /// The list in the folder; an empty one if there is none, or, where edited files are replaced, none that
-    /// can be used.
+    /// The list in the folder; an empty one if there is none, or if it cannot be used and edited files may be
+    /// replaced.
     fn list(&self) -> Result<Checksums, StudyError> {
         match Checksums::read(&self.folder) {
             Err(StudyError::Checksums { .. }) if self.force => Ok(Checksums::default()),
@@ -96,10 +94,10 @@ impl ResultFiles {
         }
     }
 
-    /// Whether a name is free, or holds a file of the list or the file that is to be written there.
+    /// Whether a name is free, or its file equals one of the list or the new file.
     fn is_own(&self, name: &str, list: &Checksums, new: Option<&ManifestFile>) -> Result<bool, StudyError> {
         let path = self.folder.join(name);
-        // A link in the place of a folder leads to files of somebody else.
+        // A link in place of a folder leads to foreign files.
         for above in path.ancestors().skip(1).take_while(|above| *above != self.folder) {
             let found = found_at(above).map_err(FolderError::read(above))?;
             if found.is_some_and(|found| !found.is_dir()) {
@@ -156,7 +154,7 @@ impl ResultFiles {
     }
 }
 
-/// Files that take their names together.
+/// Files that get their names together.
 pub struct Batch {
     files: ResultFiles,
     /// Files under hidden names.
@@ -167,7 +165,7 @@ pub struct Batch {
     replaceable: Option<String>,
 }
 
-/// Fate of files of earlier batches that a batch does not write.
+/// Treatment of files of earlier batches that a batch does not write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Others {
     /// Files of earlier batches stay.
@@ -190,8 +188,8 @@ impl Batch {
         let staged = self.expect_folder(name).and_then(|()| {
             let stage = || {
                 make_folders(folder_of(&path))?;
-                // There may be more of them than can be open; whoever works in the folder keeps other
-                // processes out.
+                // There may be too many files to keep them open. The caller has locked the folder against
+                // other processes.
                 let file = write_beside(&path, fill)?.into_temp_path();
                 let listed = ManifestFile::of_copy(name, &file)?;
                 Ok((file, listed))
@@ -210,8 +208,8 @@ impl Batch {
         &self.files.look
     }
 
-    /// Draws a picture in the size that is asked for, and writes it in its formats; a picture that is not
-    /// among those asked for is passed over.
+    /// Draws a picture in the requested size, and writes it in its formats; skips a picture that is not
+    /// requested.
     ///
     /// # Errors
     /// When the picture cannot be drawn, or the system refuses to write.
@@ -244,8 +242,8 @@ impl Batch {
         self.replaceable = Some(name.to_owned());
     }
 
-    /// Copies files that cases read to the names that a study gives the copies. A user may also have put such
-    /// a file there.
+    /// Copies files that cases read to the names that a study gives the copies. A user may have put such a
+    /// file there already.
     pub fn copy_all(&mut self, copies: &[Copy]) -> Result<(), StudyError> {
         for Copy { name, original, .. } in copies {
             let to = self.files.folder.join(name);
@@ -259,8 +257,8 @@ impl Batch {
         Ok(())
     }
 
-    /// Refuses a link or a file in the place of a folder of the file: it may lead to a folder that is not of
-    /// these results.
+    /// Refuses a link or a file in place of a parent folder of the file: it may lead out of the results
+    /// folder.
     fn expect_folder(&self, name: &str) -> Result<(), StudyError> {
         let folder = &self.files.folder;
         let path = folder.join(name);
@@ -274,7 +272,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Gives the files their names that results are made from; they belong to all later batches.
+    /// Gives the input files of the results their names; they belong to all later batches.
     ///
     /// # Errors
     /// As for [`place`](Self::place).
@@ -286,7 +284,7 @@ impl Batch {
         })
     }
 
-    /// Gives the files of results that are not complete yet their names. The batch goes on.
+    /// Gives the files of incomplete results their names. The batch continues.
     ///
     /// # Errors
     /// As for [`place`](Self::place).
@@ -294,12 +292,12 @@ impl Batch {
         self.put(others, false)
     }
 
-    /// Gives all files their names, and lists them with their checksums: the results are complete. Files that
-    /// are there already with these contents are left as they are.
+    /// Gives all files their names, lists them with their checksums, and marks the results as complete.
+    /// Existing files with the same contents are left unchanged.
     ///
     /// # Errors
-    /// When a file in the place of one of these, or a file of an earlier batch, was edited or is of somebody
-    /// else, unless such files may be replaced; then nothing is changed. When the system refuses to write.
+    /// When an existing file with one of these names, or a file of an earlier batch, was edited or is
+    /// foreign, unless such files may be replaced; then nothing is changed. When the system refuses to write.
     pub fn place(mut self, others: Others) -> Result<(), StudyError> {
         self.put(others, true)
     }
@@ -325,7 +323,7 @@ impl Batch {
         }
         let mut gone = Vec::new();
         let is_listed = |name: &str| before.files.iter().any(|file| file.name == name);
-        // Files that a killed process had still to remove.
+        // Files that a killed process still had to remove.
         let left = before.replaced.iter().filter(|file| !is_listed(&file.name));
         for file in before.files.iter().chain(left) {
             let ManifestFile { name, .. } = file;
@@ -334,7 +332,7 @@ impl Batch {
             }
             let is_own = files.is_own(name, &before, None)?;
             if files.kept.contains(name) {
-                // What the user has changed there is the user's from now on.
+                // A file that the user has changed belongs to the user from now on.
                 listed.extend((is_own && is_listed(name)).then(|| file.clone()));
                 continue;
             }
@@ -357,7 +355,7 @@ impl Batch {
             .filter(|(_, file)| !files.is_there(file))
             .collect();
         let changes = !to_place.is_empty() || !gone.is_empty();
-        // Of files that a killed process had still to replace, too.
+        // Includes files that a killed process still had to replace.
         let mut replaced: Vec<ManifestFile> = Vec::new();
         for file in before.files.iter().chain(&before.replaced) {
             let stays = listed.iter().any(|new| new.name == file.name);
@@ -484,12 +482,12 @@ mod tests {
         for (name, text) in results {
             assert_eq!(read(path, name).unwrap(), text);
         }
-        // It belongs to no result any more, and is not removed.
+        // The file no longer belongs to the results, and is not removed.
         assert_eq!(read(path, "old.csv").unwrap(), "mine");
         place(&files, &results).unwrap();
     }
 
-    /// Whatever a kill has left, the next call knows which files are slipfront's.
+    /// At whatever point a process was killed, the next call knows which files are slipfront's.
     #[test]
     fn a_kill_between_list_and_files_is_made_good() {
         let before = [("a.csv", "1"), ("gone.csv", "1"), ("b.csv", "1")];
@@ -521,7 +519,7 @@ mod tests {
                 std::fs::remove_file(path.join("gone.csv")).unwrap();
             }
             files.expect_unedited().unwrap();
-            // However often the folder is opened before its results are written.
+            // The folder may be opened several times before its results are written.
             for _ in 0..2 {
                 batch_of(&files, &[("study.toml", "base")])
                     .place_given(Others::Stay)
@@ -539,7 +537,7 @@ mod tests {
         }
     }
 
-    /// A list that somebody else has made removes no file outside of its folder.
+    /// A list from elsewhere cannot remove files outside of its folder.
     #[test]
     fn a_list_leads_to_no_file_elsewhere() {
         let above = tempfile::tempdir().unwrap();
@@ -561,7 +559,7 @@ mod tests {
         }
     }
 
-    /// A file that a user has put among the copies, and a study reads there, is the user's.
+    /// A file that a user has put among the copies, and that a study reads there, belongs to the user.
     #[test]
     fn inputs_of_the_user_stay_in_the_folder() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Compares the folder of a project with the list of its files, then with the results that its recorded runs
-//! give.
+//! Compares the folder of a project with the list of its files, and then with the results of its recorded
+//! runs.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -46,24 +46,23 @@ pub enum VerifyStudyError {
 pub enum Extent {
     /// Files are compared with their checksums.
     Checksums,
-    /// Results of recorded runs are derived from these again, too.
+    /// Results are also derived again from the recorded runs.
     Derived,
 }
 
-/// Finds the results of a folder again in another one, with pictures of this look, until a stop, from a copy
-/// of its journal; returns the numbers of runs there before and after, since runs that the journal lacks are
-/// made.
+/// Derives the results of a folder again in another one, from a copy of its journal, with pictures in this
+/// look, until a stop. Missing runs are made; returns the numbers of runs before and after.
 pub type FindAgain =
     fn(folder: &Path, other: &Path, look: &PictureLook, stop: &AtomicBool) -> Result<[usize; 2], StudyError>;
 
-/// A kind of projects whose results follow from the runs in the journal.
+/// A kind of project with results that follow from the runs in the journal.
 #[derive(Debug)]
 pub struct Derivation {
     /// The kind.
     pub kind: &'static ProjectKind,
-    /// Names, without their ending, of images in the folder that are no pictures of results.
+    /// Names, without their ending, of images in the folder that are not pictures of results.
     pub no_pictures: &'static [&'static str],
-    /// The function that finds the results of such a folder again.
+    /// The function that derives the results of such a folder again.
     pub find_again: FindAgain,
 }
 
@@ -71,7 +70,7 @@ pub struct Derivation {
 /// `others`; the results are complete if the second value is true.
 ///
 /// # Errors
-/// When the system does not say what the folder holds.
+/// When the system cannot list the folder.
 pub fn verify_checksums(
     folder: &Path,
     others: &[&str],
@@ -144,7 +143,7 @@ pub(crate) fn verify_project(
     Ok(verdict)
 }
 
-/// Compares the folder of a project with the results that are found in another folder from the runs in its
+/// Compares the folder of a project with results that are derived in another folder from the runs in its
 /// journal.
 fn derive_from_runs(
     folder: &Path,
@@ -153,7 +152,7 @@ fn derive_from_runs(
     stop: &AtomicBool,
 ) -> Result<(), VerifyStudyError> {
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    // Opening a pipe would wait without end.
+    // Opening a pipe would wait forever.
     let file = folder.join(derivation.kind.file);
     open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
     let [kept, all] = (derivation.find_again)(folder, temporary.path(), &PictureLook::default(), stop)?;
