@@ -20,10 +20,10 @@ const STEPS_AT_ONCE: u64 = 1024;
 /// Memory for the records and numbers of the runs that are computed at once.
 const MEMORY: usize = 1 << 30;
 
-/// Bytes of a block on its way through a device.
+/// Bytes that a block takes while a device computes its run.
 const BYTES_PER_BLOCK: usize = 128;
 
-/// Reason for which a device does not compute a case; none if it does.
+/// Reason why a device does not compute a case; none if it does.
 pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     if case.file.output.events {
         return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
@@ -38,9 +38,9 @@ pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     plain.err().map(|reason| reason.to_string())
 }
 
-/// Runs cases up to the ends that their `time.stop` set, and returns the numbers of their `summary.json` in
-/// the order of the cases, with the bits of [`run_summary`](crate::run_summary::run_summary); none of a run
-/// that was given up because `ends` returned true.
+/// Runs every case to the end that its `time.stop` sets, and returns the numbers of `summary.json` in the
+/// order of the cases, bit for bit as [`run_summary`](crate::run_summary::run_summary) does. There is none
+/// for a run that was given up because `ends` returned true.
 ///
 /// # Errors
 /// When the device fails.
@@ -132,8 +132,8 @@ fn run_at_once(
     }
 }
 
-/// Steps whose energies a summary needs: those of its last step, which is not known before where a run stops
-/// at its onset.
+/// Steps at which energies are recorded for a summary. It needs those of the last step, which is not known in
+/// advance if a run stops at its onset.
 fn energies(case: &Case) -> EnergySteps {
     let plan = &case.time_plan;
     EnergySteps {
@@ -158,8 +158,8 @@ impl<'a> DeviceRun<'a> {
         match self.simulation.advance(stop, recorded as u64, &mut observers) {
             Ok(None) => Replayed::Going(self),
             Ok(Some(reason)) => Replayed::Ended(Box::new(Some(Ok(self.summary(reason))))),
-            // The sentence names the block that went farthest at the step at which the run diverged, which
-            // the device has left behind.
+            // The message names the block that has moved farthest at the step of divergence. The device has
+            // already passed this step, so the CPU repeats the run.
             Err(_) => Replayed::Ended(Box::new(run_summary_unless(self.case, ends))),
         }
     }
@@ -176,7 +176,7 @@ impl<'a> DeviceRun<'a> {
 }
 
 impl Replayed<'_> {
-    /// The lattice that the device takes on.
+    /// The lattice of a run that has not ended, for the device.
     fn lattice(&mut self) -> Option<&mut DeviceLattice> {
         match self {
             Self::Going(run) => run.simulation.device_lattice(),
