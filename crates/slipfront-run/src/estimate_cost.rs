@@ -120,9 +120,9 @@ impl StepTime {
 
 impl SlipTime {
     /// The time from a pilot run over the whole path of the drive, which is fast enough to keep the run
-    /// short; none if a faster drive would change the kind of the case. With Coulomb friction, slip takes a
-    /// smaller share of the steps under a slower drive. Where strength falls with slip, blocks creep, and
-    /// slip takes the same share.
+    /// short; none if a faster drive would change the kind of the case, or if the case has too many blocks.
+    /// With Coulomb friction, slip takes a smaller share of the steps under a slower drive. Where strength
+    /// falls with slip, blocks creep, and slip takes the same share.
     fn of_pilot(case: &Case, at_rest: f64, sliding: f64) -> Option<Self> {
         let drive = &case.model.drive;
         if drive.program.is_some() || drive.is_held() || case.model.n_blocks() > MOST_PILOT_BLOCKS {
