@@ -35,7 +35,7 @@ const MIN_BESIDE: f64 = 1650.0;
 const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
 /// Height of the other panel below a map.
 const HEIGHT_BELOW: f64 = 400.0;
-/// Height of the other panel in a picture of its own.
+/// Height of the other panel when it is drawn alone.
 const HEIGHT_ALONE: f64 = 900.0;
 /// Largest number of steps between contours.
 const CONTOUR_STEPS: usize = 8;

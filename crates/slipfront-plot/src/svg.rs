@@ -96,7 +96,7 @@ fn image_tag(image: &Image) -> Result<String, PictureError> {
     ))
 }
 
-/// An image as a PNG of its own.
+/// An image as a separate PNG.
 fn image_png(image: &Image) -> Result<Vec<u8>, PictureError> {
     let (columns, rows, levels) = image.repeated();
     png_file::encode(columns, rows, &levels, Some(palette().concat()))

@@ -8,7 +8,7 @@ use slipfront::Communicator;
 use slipfront::communicator::{lowest_rank, text_of};
 use thiserror::Error;
 
-/// Reason for which ranks gave up, equal on every rank.
+/// Reason why the ranks gave up; it is the same on every rank.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{sentence}")]
 pub struct RankFailure {

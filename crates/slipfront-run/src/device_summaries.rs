@@ -73,7 +73,7 @@ struct DeviceRun<'a> {
     instants: Option<Instants>,
 }
 
-/// A run that goes on, or one that has ended.
+/// A run that has not ended, or the result of one that has.
 enum Replayed<'a> {
     Going(Box<DeviceRun<'a>>),
     Ended(Box<Option<Result<Summary, RunError>>>),
@@ -204,7 +204,7 @@ mod tests {
         Arc::new(Case::parse(&text, "case", "", &[]).unwrap())
     }
 
-    /// Cases that end at different steps, more of them than are recorded at once, and one that diverges.
+    /// Cases that end at different steps, after more steps than are recorded at once, and one that diverges.
     #[test]
     fn the_summaries_are_those_of_the_cpu() {
         let cases: Vec<_> = [

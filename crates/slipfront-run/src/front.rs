@@ -200,8 +200,8 @@ mod tests {
     }
 
     /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads the slider.
-    /// The front of the event that crosses the slider runs at the order of the wave speeds, whatever the
-    /// speed of the drive is.
+    /// The front of the event that crosses the slider moves at about the speed of waves, whatever the speed
+    /// of the drive.
     #[test]
     fn of_a_slider_driven_at_an_edge_the_speed_is_that_of_the_event_that_crosses_it() {
         for v_star in [2.0, 1.0] {

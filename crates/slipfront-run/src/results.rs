@@ -353,7 +353,7 @@ mod tests {
         }
     }
 
-    /// Blocks outside an outline have no values, and are no texture.
+    /// Blocks outside an outline have no values, and do not count as texture.
     #[test]
     fn blocks_outside_an_outline_have_no_values() {
         let folder = tempfile::tempdir().unwrap();

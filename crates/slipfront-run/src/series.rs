@@ -61,10 +61,10 @@ pub struct SeriesRow {
     /// Energy lost to the dampers between blocks since the start, J, if there are any.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
-    /// Energy of the springs between the sheets of a bulk body, J; none of one sheet.
+    /// Energy of the springs between the sheets of a bulk body, J; none for a single sheet.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub sheet_coupling_energy_j: Option<f64>,
-    /// Energy of the springs in contact, J; none if contacts are no springs.
+    /// Energy of the springs in contact, J; none if contacts are not springs.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub contact_spring_energy_j: Option<f64>,
     /// Energy of the foundation under an upright sheet, J; none without a foundation.

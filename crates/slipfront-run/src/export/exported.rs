@@ -24,7 +24,7 @@ pub struct Exported {
     pub name: String,
     /// Kind of the results, such as `run` or `study`.
     pub kind: &'static str,
-    /// Content of the folder, in addition to its name, such as `study from 24 recorded runs`; none of a run.
+    /// Content of the folder, in addition to its name, such as `study from 24 recorded runs`; none for a run.
     pub what: Option<String>,
     /// The program that wrote the results.
     pub program: MadeBy,

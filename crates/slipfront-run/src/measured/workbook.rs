@@ -279,7 +279,8 @@ fn open_document(content: &str) -> Result<Vec<Sheet>, String> {
     Ok(sheets)
 }
 
-/// The rows of a table of an `.ods`, also those in groups and headings; a cell may have tables of its own.
+/// The rows of a table of an `.ods`, also those in groups and headings, but not those of tables within a
+/// cell.
 fn rows_of<'a, 'x>(table: Node<'a, 'x>) -> Vec<Node<'a, 'x>> {
     let (mut rows, mut rest) = (Vec::new(), vec![table]);
     while let Some(node) = rest.pop() {

@@ -151,7 +151,7 @@ fn make_folder(path: &Path, path_in_error: &Path) -> Result<(), FolderError> {
     }
 }
 
-/// Names of the entries of a folder but its subfolders; none behind a link.
+/// Names of the entries of a folder except its subfolders; none if the folder is a link.
 fn names_in(folder: &Path) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     if is_folder(folder)? {
