@@ -1,13 +1,13 @@
-//! Hashes the sources, for the identity of the build, hands on the platform, and asks for the git revision,
-//! where it is built in a checkout of its own.
+//! Sets the identity of the build from a hash of the sources, the platform, and, in a git checkout of the
+//! project, the revision.
 
 mod hash_sources;
 
 use std::path::Path;
 use std::process::Command;
 
-/// Files that decide the numbers of a run, relative to this crate; a change elsewhere in the checkout does
-/// not make it another program.
+/// Files that determine the numbers of a run, relative to this crate; changes elsewhere in the checkout do
+/// not mark the revision as changed.
 const SOURCES: [&str; 5] = [
     "../slipfront/src",
     "../slipfront-case/src",
@@ -22,7 +22,7 @@ fn main() -> std::io::Result<()> {
     let heads = ["HEAD", "logs/HEAD"].map(|name| git(&["rev-parse", "--git-path", name]));
     let heads = heads.iter().flatten().map(String::as_str);
     for path in SOURCES.into_iter().chain(["build.rs"]).chain(heads) {
-        // What is not there would count as changed in every build.
+        // A missing file would count as changed in every build.
         if Path::new(path).exists() {
             println!("cargo::rerun-if-changed={path}");
         }
@@ -35,9 +35,9 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-/// The commit, and whether the sources are those of the commit; none outside of git.
+/// The commit, marked `-dirty` if the sources differ from it; none outside of git.
 fn revision() -> Option<String> {
-    // Vendored in another repository, the revision would be that one's.
+    // In a vendored copy, this would be the revision of the other repository.
     git(&["rev-parse", "--show-prefix"]).filter(|prefix| prefix == "crates/slipfront-run/")?;
     let commit = git(&["rev-parse", "HEAD"])?;
     let changes = git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?;

@@ -1,8 +1,8 @@
-//! A linear or logarithmic axis: pixels of values, and the values that the axis can show.
+//! A linear or logarithmic axis: maps values to pixels and checks which values can be drawn.
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawnAxis {
-    /// Ends of the axis as it measures them: values, or their decimal logarithms.
+    /// Ends of the axis: values, or their decimal logarithms if the axis is logarithmic.
     pub(crate) lo: f64,
     pub(crate) hi: f64,
     /// Pixels of the ends.
@@ -12,9 +12,9 @@ pub(crate) struct DrawnAxis {
 }
 
 impl DrawnAxis {
-    /// An axis around `values` with a margin of `pad` times its length at both ends, yet to be placed.
+    /// An axis around `values` with a margin of `pad` times its length at both ends, not yet placed.
     ///
-    /// It is logarithmic if `log` says so and every value that can be drawn is positive.
+    /// It is logarithmic if `log` is true and every drawable value is positive.
     pub(crate) fn around(values: &[f64], log: bool, pad: f64) -> Self {
         let log = log && values.iter().filter(|v| drawable(**v)).all(|&value| value > 0.0);
         let (lo, hi) = range(values.iter().map(|&value| measured(value, log)));
@@ -22,7 +22,7 @@ impl DrawnAxis {
         Self::between(lo - pad, hi + pad, log)
     }
 
-    /// An axis from `lo` to `hi`, given as the axis measures them, yet to be placed.
+    /// An axis from `lo` to `hi`, not yet placed; both are decimal logarithms if `is_log`.
     pub(crate) fn between(lo: f64, hi: f64, is_log: bool) -> Self {
         Self {
             lo,
@@ -33,7 +33,7 @@ impl DrawnAxis {
         }
     }
 
-    /// A linear axis from `lo` to `hi`, yet to be placed.
+    /// A linear axis from `lo` to `hi`, not yet placed.
     pub(crate) fn linear(lo: f64, hi: f64) -> Self {
         Self::between(lo, hi, false)
     }
@@ -43,7 +43,7 @@ impl DrawnAxis {
         Self { start, end, ..self }
     }
 
-    /// A value as the axis measures it: the value itself, or its logarithm.
+    /// Coordinate of a value along the axis: the value itself, or its decimal logarithm.
     pub(crate) fn measure(&self, value: f64) -> f64 {
         measured(value, self.is_log)
     }
@@ -53,12 +53,12 @@ impl DrawnAxis {
         self.at_measured(self.measure(value))
     }
 
-    /// The pixel of a value, or of the end that it lies beyond.
+    /// The pixel of a value, clamped to the ends of the axis.
     pub(crate) fn clamped(&self, value: f64) -> f64 {
         self.at_measured(self.measure(value).clamp(self.lo, self.hi))
     }
 
-    /// The pixel of a number as the axis measures it.
+    /// The pixel of a coordinate returned by [`measure`](Self::measure).
     pub(crate) fn at_measured(&self, measured: f64) -> f64 {
         self.start + (measured - self.lo) / (self.hi - self.lo) * (self.end - self.start)
     }
@@ -73,10 +73,10 @@ fn measured(value: f64, log: bool) -> f64 {
     if log { libm::log10(value) } else { value }
 }
 
-/// Limit above which values are taken as blank: their differences might not be finite.
+/// Magnitude from which values are treated as missing, because their differences could overflow.
 const MAX_VALUE: f64 = 1e100;
 
-/// Limit below which differences are taken as zero: their parts might be zero.
+/// Limit below which differences are treated as zero, because fractions of them could underflow.
 const MIN_DIFFERENCE: f64 = 1e-290;
 
 /// True when a value can be placed on an axis.
@@ -92,7 +92,7 @@ pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     widened(if lo <= hi { (lo, hi) } else { (0.0, 1.0) })
 }
 
-/// A range, or one around it when it is too narrow to be an axis.
+/// The range itself, or a wider one around it if it is too narrow for an axis.
 pub(crate) fn widened((lo, hi): (f64, f64)) -> (f64, f64) {
     let size = lo.abs().max(hi.abs());
     if hi - lo > 1e-9 * size && hi - lo > MIN_DIFFERENCE {

@@ -20,7 +20,7 @@ use crate::ticks::{Direction, MAX_STEPS};
 const HEIGHT: f64 = 560.0;
 /// Width of a bar below which the picture becomes wider.
 const MIN_BAR_WIDTH: f64 = 14.0;
-/// Share of its place that a bar on its own takes, and share that the bars of a group take together.
+/// Fraction of its slot that a single bar fills, and fraction that all bars of a group fill together.
 const SHARE_ALONE: f64 = 0.6;
 const SHARE_GROUP: f64 = 0.8;
 /// Largest width of a bar.
@@ -41,7 +41,7 @@ pub struct BarChart {
     pub groups: Vec<BarGroup>,
 }
 
-/// Bars beside each other.
+/// Bars next to each other.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BarGroup {
     /// The group's name; not shown if there is one group only.
@@ -53,9 +53,9 @@ pub struct BarGroup {
 /// One bar.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bar {
-    /// Name of the bar, different from the others' of its group; bars of one name have one colour.
+    /// Name of the bar, unique within its group; bars with the same name have the same colour.
     pub label: String,
-    /// Height of the bar; NaN leaves its place free.
+    /// Height of the bar; NaN leaves its slot empty.
     pub mean: f64,
     /// The lower end of the confidence interval; NaN where there is none.
     pub low: f64,
@@ -84,7 +84,7 @@ pub fn bars(chart: &BarChart, size: PictureSize) -> Result<Picture, PictureError
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
     let narrowest = MIN_SLOT.max(MIN_BAR_WIDTH * places.legend.len() as f64 / SHARE_GROUP);
     let least = left + narrowest * places.names.len() as f64 + MARGIN;
-    // A width that is asked for is kept, or refused.
+    // A requested width is used unchanged, or refused.
     let whole = match size.width_mm {
         None => size.width(COLUMN_WIDTH).max(least),
         Some(_) => size.wide_enough(COLUMN_WIDTH, least)?,
@@ -156,7 +156,7 @@ fn value_axis(bars: &[PlacedBar]) -> DrawnAxis {
     };
     let values: Vec<f64> = bars.iter().flat_map(extent).collect();
     let whole = DrawnAxis::around(&values, false, 0.06);
-    // Beyond zero no margin, unless bars lie on that side.
+    // No margin beyond zero, unless bars extend to that side.
     let beyond = |side: f64| values.iter().any(|&value| drawable(value) && value * side > 0.0);
     match (beyond(-1.0), beyond(1.0)) {
         (false, true) => DrawnAxis::linear(0.0, whole.hi),
@@ -176,7 +176,7 @@ struct PlacedBar<'a> {
     bar: &'a Bar,
     /// Index of the name below the bar.
     name: usize,
-    /// Number of bars right of the middle of that name's place.
+    /// Offset to the right of the middle of that name's slot, in bar widths.
     step: f64,
     colour: Rgb,
 }

@@ -1,5 +1,4 @@
-//! The canvas of a picture: a list of lines, shapes, texts and images, in the order in which they cover each
-//! other.
+//! The canvas of a picture: a list of lines, shapes, texts and images, in drawing order.
 
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, CanvasPoint};
@@ -77,7 +76,7 @@ impl Canvas {
         }
     }
 
-    /// A canvas whose letters, lines and marks have a size that is asked for.
+    /// A canvas with letters, lines and marks of the requested size.
     pub(crate) fn sized(width: f64, height: f64, size: PictureSize) -> Self {
         Self {
             scale: size.scale(),
@@ -95,8 +94,8 @@ impl Canvas {
         [self.width, self.height].map(|side| (self.scale * side).round() as u32)
     }
 
-    /// Makes the canvas as wide as it is asked to be, with what is drawn in its middle; a narrower canvas
-    /// stays as wide as it is if no width is asked for.
+    /// Changes the width of the canvas to the requested one and centres its content. Without a requested
+    /// width, the canvas keeps its width.
     pub(crate) fn widened(mut self, size: PictureSize) -> Self {
         let width = match size.width_mm {
             None => self.width,
@@ -184,7 +183,7 @@ impl Canvas {
         self.add(Primitive::Disc { centre, radius }, colour, 1.0);
     }
 
-    /// Adds a disc with a thin white rim, which parts it from the curve below.
+    /// Adds a disc with a thin white rim, which separates it from the curve below.
     pub(crate) fn dot(&mut self, centre: CanvasPoint, radius: f64, colour: Rgb) {
         for (radius, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
             self.disc(centre, radius, colour);
@@ -196,7 +195,7 @@ impl Canvas {
         self.runs(text, at, align, colour, false);
     }
 
-    /// Adds a text that reads upwards, its baseline the vertical through `at`.
+    /// Adds a text that reads upwards, with its baseline on the vertical line through `at`.
     pub(crate) fn text_upwards(&mut self, text: &Text, at: CanvasPoint, align: Align, colour: Rgb) {
         self.runs(text, at, align, colour, true);
     }
@@ -204,7 +203,7 @@ impl Canvas {
     fn runs(&mut self, text: &Text, (x, y): CanvasPoint, align: Align, colour: Rgb, upwards: bool) {
         let mut along = -align.offset(text.width());
         for run in &text.runs {
-            // SVG drops the spaces that a text starts with, so they are stepped over.
+            // SVG drops leading spaces, so the text starts after them.
             let text = run.text.trim_start();
             let (spaces, _) = run.text.split_at(run.text.len() - text.len());
             let start = along + width(spaces, run.size);

@@ -5,16 +5,16 @@ use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_TEXT};
 use crate::text::{CAP_HEIGHT, Text};
 
-/// Largest number of lines of a name; a name that needs more stands upright.
+/// Largest number of lines of a name; a name that needs more is turned upright.
 const MAX_LINES: usize = 3;
 const LINE: f64 = 1.25 * SIZE_TEXT as f64;
-/// Lengths of upright names: they are broken at the first of these if they can, and cut at the last.
+/// Lengths of upright names: a name is wrapped at the first if it fits, else at the second, else cut there.
 const LENGTHS: [f64; 2] = [365.0, 550.0];
 /// Distance between the panel and the names.
 const GAP: f64 = 14.0;
 /// Distance between two names.
 const APART: f64 = 16.0;
-/// Least width of the place of an upright name.
+/// Least width of the slot of an upright name.
 pub(crate) const MIN_SLOT: f64 = 1.35 * SIZE_TEXT as f64;
 
 /// Names and the title below them.
@@ -28,7 +28,7 @@ pub(crate) struct CategoryAxis {
 }
 
 impl CategoryAxis {
-    /// Names in places of equal width below a panel of this width.
+    /// Names in slots of equal width below a panel of this width.
     pub(crate) fn of(names: &[&str], title: &str, width: f64) -> Self {
         let room = width / names.len().max(1) as f64 - APART;
         let across = |name: &&str| Text::wrapped(name, SIZE_TEXT, room, MAX_LINES);

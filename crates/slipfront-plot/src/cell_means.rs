@@ -1,11 +1,11 @@
-//! The means over groups of blocks, by which large lattices are drawn.
+//! Means over groups of blocks, used to draw large lattices.
 
 /// Largest number of cells along a side; more blocks are averaged in groups.
 const MAX_CELLS: usize = 256;
 
-/// The mean of every cell of a lattice over its blocks that are not NaN, taken while the values come in, so
-/// that the memory does not depend on the lattice. A cell is a block, or a group of blocks where a side has
-/// more than 256.
+/// The mean of every cell of a lattice over its blocks that are not NaN. Values are summed as they arrive, so
+/// the memory does not depend on the size of the lattice. A cell is a block, or a group of blocks along a
+/// side with more than 256.
 ///
 /// ```
 /// let mut means = slipfront_plot::CellMeans::new(512, 1);
@@ -27,14 +27,14 @@ impl CellMeans {
         let [columns, rows] = Self::cells(nx, ny);
         Self {
             blocks: [nx, ny],
-            // Rows without blocks are there from the beginning.
+            // Rows without blocks count as complete from the beginning.
             next: [0, if nx == 0 { ny } else { 0 }],
             sums: vec![0.0; columns * rows],
             counts: vec![0; columns * rows],
         }
     }
 
-    /// The means of a lattice whose values are all known.
+    /// The means of a lattice from all its values at once.
     pub(crate) fn of(nx: usize, ny: usize, values: impl Iterator<Item = f32>) -> Vec<f32> {
         let mut means = Self::new(nx, ny);
         means.add(values);
@@ -46,8 +46,7 @@ impl CellMeans {
         [nx, ny].map(|blocks| blocks.min(MAX_CELLS))
     }
 
-    /// Takes the values of the next blocks in, row by row from y = 0; more than there are blocks are left
-    /// out.
+    /// Adds the values of the next blocks, row by row from y = 0; values beyond the last block are ignored.
     pub fn add(&mut self, values: impl Iterator<Item = f32>) {
         let ([nx, ny], [columns, rows]) = (self.blocks, Self::cells(self.blocks[0], self.blocks[1]));
         // The cell c of a side has the blocks from c * blocks / cells up to (c + 1) * blocks / cells.
@@ -92,8 +91,7 @@ mod tests {
 
     #[test]
     fn groups_of_blocks_are_averaged_without_the_blank_ones() {
-        // Groups of two by two blocks; those of the first group are there but for one, those of the second
-        // are blank.
+        // Groups of two by two blocks: one block of the first group is blank, all blocks of the second are.
         let [nx, ny] = [512, 512];
         let value = |block: usize| match (block % nx, block / nx) {
             (0, 0) => f32::NAN,
@@ -109,7 +107,7 @@ mod tests {
         assert_eq!(means.len(), 256 * 256);
     }
 
-    /// Every block counts once, in the group in which it lies, along sides that 256 does not divide.
+    /// Every block counts once, in its own group, also along sides that are not a multiple of 256.
     #[test]
     fn groups_differ_by_a_block_at_most_and_miss_none() {
         for blocks in [1, 2, 255, 256, 257, 300, 511, 1000] {

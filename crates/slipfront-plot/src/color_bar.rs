@@ -8,11 +8,11 @@ use crate::text::Text;
 
 /// Distance between the numbers and the name.
 const GAP: f64 = 14.0;
-/// Distance of a name above the bar from the bar, or from the text over the map.
+/// Distance from a name above the bar to the bar, or to the text above the map.
 pub(crate) const ABOVE: f64 = 18.0;
 
-/// A colour bar, dark at its foot. The name reads upwards beside the bar, or stands above it where the bar is
-/// too short.
+/// A colour bar, dark at the bottom. The name reads upwards next to the bar, or is above it if the bar is too
+/// short.
 pub(crate) struct ColourBar {
     name: Text,
     /// Values at the ends of the bar.
@@ -25,7 +25,7 @@ impl ColourBar {
         Self { name, range, height }
     }
 
-    /// A bar whose name is as large as other labels, with subscripts after underscores.
+    /// A bar with a name of the same size as other labels; the character after an underscore is a subscript.
     pub(crate) fn labelled(name: &str, range: [f64; 2], height: f64) -> Self {
         Self::of(Text::math(name, SIZE_TEXT), range, height)
     }
@@ -43,7 +43,7 @@ impl ColourBar {
         }
     }
 
-    /// Width of the bar with its numbers and a name beside them.
+    /// Width of the bar with its numbers and a name next to them.
     pub(crate) fn room(&self) -> f64 {
         let numbered = bar_room(self.range, self.height);
         if self.is_named_above() || self.name.width() == 0.0 {
@@ -53,8 +53,8 @@ impl ColourBar {
         }
     }
 
-    /// Draws the bar with its upper left corner at `(x, top)`, and its name, if that is above it, on the line
-    /// `above`.
+    /// Draws the bar with its upper left corner at `(x, top)`, and its name, if it is above the bar, on the
+    /// line `above`.
     pub(crate) fn draw(&self, canvas: &mut Canvas, (x, top): CanvasPoint, above: f64) {
         let area = Area::new(x, top, BAR_WIDTH, self.height);
         colour_bar(canvas, area, self.range);

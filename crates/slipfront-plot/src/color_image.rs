@@ -1,9 +1,9 @@
-//! Images whose pixels are levels of the colour ramp: maps and colour bars.
+//! Images made of levels of the colour ramp: maps and colour bars.
 
 use crate::geometry::Area;
 use crate::style::{BLANK, Rgb, ramp};
 
-/// An image whose pixels are levels of the colour ramp.
+/// An image with a level of the colour ramp for every pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Image {
     pub(crate) area: Area,
@@ -17,8 +17,8 @@ impl Image {
         self.levels.len() / self.columns
     }
 
-    /// Columns, rows and levels of the image with every pixel repeated, so often that a viewer's smoothing
-    /// blurs its edge only.
+    /// Columns, rows and levels of the image with every pixel repeated, often enough that smoothing by a
+    /// viewer blurs only the edges of the original pixels.
     pub(crate) fn repeated(&self) -> (usize, usize, Vec<u8>) {
         let rows = self.rows();
         let repeat = (400 / self.columns.max(rows)).max(1);
@@ -37,7 +37,7 @@ impl Image {
 /// The level of a blank pixel.
 const LEVEL_BLANK: u8 = 255;
 
-/// The level of a value in this range, or of the end that it lies beyond; NaN is blank.
+/// The level of a value, clamped to this range; NaN is blank.
 pub(crate) fn level(value: f64, [lo, hi]: [f64; 2]) -> u8 {
     let share = ((value - lo) / (hi - lo)) as f32;
     if share.is_nan() {

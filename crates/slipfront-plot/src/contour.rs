@@ -1,11 +1,11 @@
-//! Lines of one value through a grid of values.
+//! Contour lines of a grid of values.
 
 use std::collections::BTreeMap;
 
 use crate::geometry::CanvasPoint;
 
-/// The means of the values around each over `2 reach + 1` columns and rows, without those that are NaN; NaN
-/// stays NaN. Row by row.
+/// Moving averages over `2 reach + 1` columns and rows around each value, row by row. NaN values are left out
+/// of the averages and stay NaN.
 pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32> {
     let rows = values.len() / columns;
     let mean = |(cell, value): (usize, &f32)| {
@@ -28,14 +28,14 @@ pub(crate) fn smoothed(values: &[f32], columns: usize, reach: usize) -> Vec<f32>
     values.iter().enumerate().map(mean).collect()
 }
 
-/// The lines on which values, interpolated linearly between the middles of cells, are `level`: each a chain
-/// of points in columns and rows from the middle of the first cell, closed if it ends where it starts. No
-/// line passes a cell without a value.
+/// Contour lines at `level` of values that are interpolated linearly between cell centres. Each line is a
+/// chain of points, in columns and rows from the centre of the first cell; it is closed if it ends where it
+/// starts. Lines do not pass through cells without a value.
 pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<CanvasPoint>> {
     let rows = values.len() / columns;
     let value = |column: usize, row: usize| f64::from(values[row * columns + column]);
-    // A line crosses the sides between cells: each is named by its first cell and by whether it leads
-    // upwards.
+    // A contour crosses links between neighbouring cell centres. A link is identified by its first cell and
+    // by whether it leads upwards.
     let mut links: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for row in 0..rows.saturating_sub(1) {
         for column in 0..columns - 1 {
@@ -54,7 +54,7 @@ pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<Ca
             let crossed: Vec<usize> = (0..4).filter(|&k| above[k] != above[(k + 1) % 4]).collect();
             let pairs = match crossed[..] {
                 [one, other] => vec![[one, other]],
-                // A saddle: the corners that are as its middle is lie together.
+                // A saddle: the corners on the same side of the level as its centre are connected.
                 [_, _, _, _] if (corners.iter().sum::<f64>() / 4.0 >= level) == above[0] => {
                     vec![[0, 1], [2, 3]]
                 }
@@ -145,7 +145,8 @@ mod tests {
         let saddle = [0.0, 1.0, 1.0, 0.0];
         let both = contours(&saddle, 2, 0.4);
         assert_eq!(both.len(), 2);
-        // Above the middle the high corners are apart, below it the low ones.
+        // At a level above the value of the centre, the high corners are separate; below it, the low ones
+        // are.
         assert_ne!(contours(&saddle, 2, 0.6)[0], both[0]);
         let mut plane = grid(9, 9, |x, _| x);
         plane[4 * 9 + 4] = f32::NAN;

@@ -1,4 +1,4 @@
-//! Distributions of several quantities: for each, the number of values that are as large or larger.
+//! Distributions of several quantities: for each, the number of values at or above x.
 
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
@@ -17,7 +17,7 @@ use crate::ticks::{Direction, MAX_STEPS};
 const HEIGHT: f64 = 400.0;
 /// Distance between the numbers of a panel and the panel below.
 const GAP: f64 = 18.0;
-/// Distance between the last number below a panel, half of which may stand beyond it, and the picture's edge.
+/// Room right of a panel for the last number below it, half of which may extend beyond the panel.
 const RIGHT: f64 = 34.0;
 
 /// Values of a quantity, and the words for them.
@@ -27,12 +27,13 @@ pub struct Distribution {
     pub x_title: String,
     /// Words for the number of values that are as large or larger.
     pub y_title: String,
-    /// The values, in any order; those that are not above zero have no place.
+    /// The values, in any order; values that are not positive are not drawn.
     pub values: Vec<f64>,
 }
 
-/// Draws, panel below panel, for each quantity the number of values that are as large or larger than x, both
-/// on logarithmic axes, usually as wide as a journal's column (85 mm). A power law is a straight line there.
+/// Draws a panel for each quantity, one below the other: the number of values at or above x against x, on
+/// logarithmic axes, on which a power law is a straight line. The picture is usually as wide as a journal's
+/// column (85 mm).
 ///
 /// # Errors
 ///
@@ -83,7 +84,7 @@ impl Steps {
         let values = distribution.values.iter().copied();
         let mut values: Vec<f64> = values.filter(|value| drawable(*value) && *value > 0.0).collect();
         values.sort_unstable_by(f64::total_cmp);
-        // At least a decade, so that its numbers are whole.
+        // At least one decade, so that the numbers of the axis are whole.
         let most = values.len().max(10) as f64;
         Self {
             x: DrawnAxis::around(&values, true, 0.04),
@@ -97,7 +98,7 @@ impl Steps {
         let n = self.values.len();
         let corner = |k: usize| {
             let (value, number) = (self.values[k], (n - k) as f64);
-            // From the value before at this number, then down.
+            // Horizontal from the previous value at this number, then down.
             let before = self.values[k.saturating_sub(1)];
             [(before, number), (value, number)]
         };

@@ -42,8 +42,8 @@ mod tests {
 
     #[test]
     fn an_image_has_no_seams() {
-        // 7 columns over 50 pixels, all alike but for the level: between them the white ground must not shine
-        // through.
+        // 7 columns over 50 pixels, which differ only in level: the white background must not show between
+        // them.
         let mut canvas = Canvas::new(60.0, 60.0);
         let levels = (0..49).map(|index| (index % 2) as u8).collect();
         canvas.images.push(Image {

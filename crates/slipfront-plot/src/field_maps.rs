@@ -1,4 +1,4 @@
-//! Maps of any field over the blocks, each of a lattice of its own, on one colour scale.
+//! Maps of any field over the blocks, each with its own lattice, all on one colour scale.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ const MAX_WIDTH: f64 = 520.0;
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMaps {
-    /// Quantity of the values, beside the colour bar or over it; the letter after an underscore is a
+    /// Quantity of the values, next to the colour bar or above it; the letter after an underscore is a
     /// subscript.
     pub value_title: String,
     /// Values at the ends of the colour bar; values beyond are drawn as the ends.
@@ -52,9 +52,9 @@ pub struct FieldMap {
     pub marks: Vec<[usize; 2]>,
 }
 
-/// Draws the maps in rows, as wide as a journal's text (175 mm) or less, or as wide as asked for with fewer
-/// in a row where they would be small, all on one colour scale, textured areas outlined and marked blocks
-/// circled. Every map is as wide as the others, whatever its number of blocks.
+/// Draws the maps in rows on one colour scale, with textured areas outlined and marked blocks circled. The
+/// picture is at most as wide as a journal's text (175 mm), or as wide as requested, with fewer maps in a row
+/// if they would be too small. All maps have the same width, whatever their number of blocks.
 ///
 /// # Errors
 ///
@@ -132,7 +132,7 @@ struct Titles {
 }
 
 impl Titles {
-    /// The lines over a map of this width: the label in two at most.
+    /// The lines over a map of this width; the label takes at most two.
     fn of(map: &FieldMap, width: f64) -> Self {
         let room = width + 0.6 * GAP;
         let shortened = |text: &str| Text::shortened(text, SIZE_TEXT, room);

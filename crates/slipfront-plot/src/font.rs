@@ -1,5 +1,5 @@
 //! The font of all pictures, a part of `DejaVu` Sans: widths and outlines of its letters. `font/README.md`
-//! tells how the files were made.
+//! describes how the files were made.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -8,7 +8,7 @@ use tiny_skia::PathBuilder;
 
 /// Font that an SVG embeds.
 pub(crate) const WOFF2: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
-/// Data by which text is measured and drawn: in each line a character's code, its width and its outline.
+/// Data used to measure and draw text: in each line a character's code, its width and its outline.
 const OUTLINES: &str = include_str!("font/outlines.txt");
 /// Units of length of the font in the font size.
 pub(crate) const UNITS_PER_EM: f32 = 2048.0;
@@ -33,9 +33,9 @@ fn glyph(character: char) -> Option<&'static Glyph> {
     GLYPHS.get(format!("{:x}", u32::from(character)).as_str())
 }
 
-/// Distance by which `character` moves the pen, over the font size. A character that the font lacks, which a
-/// viewer of the SVG takes from another font, gets an em: wide enough for nearly everything, so that nothing
-/// collides.
+/// Advance width of `character`, over the font size. A viewer of the SVG takes a character that the font
+/// lacks from another font. Such a character gets one em, which is wide enough for nearly all, so that texts
+/// do not overlap.
 pub(crate) fn advance(character: char) -> f64 {
     f64::from(glyph(character).map_or(1.0, |glyph| glyph.width / UNITS_PER_EM))
 }
@@ -71,8 +71,8 @@ pub(crate) fn outline(character: char) -> impl Iterator<Item = GlyphPart> {
         })
 }
 
-/// Adds the outline of `character` to a path; a box if the font lacks it. `place` takes a point of the
-/// outline, x from the pen and y above the baseline, over the font size, to its place in the picture.
+/// Adds the outline of `character` to a path; a box if the font lacks it. `place` maps a point of the outline
+/// (x from the pen and y above the baseline, over the font size) to the picture.
 pub(crate) fn draw(character: char, path: &mut PathBuilder, place: impl Fn(f32, f32) -> (f32, f32)) {
     let place = |[x, y]: [f32; 2]| place(x / UNITS_PER_EM, y / UNITS_PER_EM);
     for part in outline(character) {

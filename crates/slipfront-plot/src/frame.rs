@@ -24,8 +24,8 @@ pub(crate) fn left_room(ticks: &[Tick]) -> f64 {
     (MARGIN + f64::from(SIZE_TEXT) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
 }
 
-/// Right end of a panel from `left` to `right` in a picture of this width, such that no number below it is
-/// cut off.
+/// Right end of a panel from `left` to `right` in a picture of this width, moved left if needed so that no
+/// number below the panel is cut off.
 pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f64 {
     const EDGE: f64 = 4.0;
     let end = |(x, text): &Tick| {
@@ -37,8 +37,8 @@ pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f6
     ticks.iter().map(end).fold(right, f64::min).floor()
 }
 
-/// Length of a title along the left side of `area` that neither leaves a picture of this height nor its
-/// middle, which is that of the side.
+/// Largest length of a title that is centred on the left side of `area` and stays within a picture of this
+/// height.
 pub(crate) fn upright_room(area: Area, height: f64) -> f64 {
     let middle = area.centre().1;
     (2.0 * middle.min(height - middle) - MARGIN).max(area.height)
@@ -79,19 +79,19 @@ pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction,
     }
 }
 
-/// Round numbers beside a colour bar over this range.
+/// Ticks at round numbers next to a colour bar over this range.
 fn bar_ticks([lo, hi]: [f64; 2], bottom: f64, top: f64) -> Vec<Tick> {
     DrawnAxis::linear(lo, hi)
         .placed(bottom, top)
         .ticks(Direction::Y, BAR_STEPS)
 }
 
-/// Width of a colour bar of this height with the numbers beside it.
+/// Width of a colour bar of this height with the numbers next to it.
 pub(crate) fn bar_room(range: [f64; 2], height: f64) -> f64 {
     BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks(range, height, 0.0))
 }
 
-/// Draws a bar of all colours, dark at its foot.
+/// Draws a bar of all colours, dark at the bottom.
 pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, range: [f64; 2]) {
     let levels = (0..=254).rev().collect();
     canvas.images.push(Image {

@@ -30,10 +30,10 @@ const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 /// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
 /// One curve is drawn with all its marks: first slip, peak, kinetic window, lettered instants. The names of
-/// lines and windows stand above the panels, where no curve is. Several curves are drawn over each other with
-/// their peaks, the lettered instants if only one has any, and a legend above. Curves of more than 4000
-/// points are thinned to the first, last, lowest and highest point of every pixel column, which shows the
-/// same picture.
+/// lines and windows are above the panels, clear of the curve. Several curves are overlaid, with their peaks
+/// and a legend above; lettered instants are drawn if only one curve has any. Curves of more than 4000 points
+/// are thinned to the first, last, lowest and highest point of every pixel column, which shows the same
+/// picture.
 ///
 /// # Errors
 ///
@@ -123,7 +123,7 @@ impl FrictionDrawing<'_> {
         }
         self.draw_curve(curve, curve_style(0));
         if let Some(window) = &window {
-            // Over the curve, which would hide it.
+            // Drawn after the curve, which would otherwise hide it.
             let ends = [window.from, window.to].map(|t| (across.clamped(t), mu.clamped(window.mean)));
             self.canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
             self.placer.avoid(&ends);
@@ -136,7 +136,7 @@ impl FrictionDrawing<'_> {
     fn write_above(&mut self, first_slip: Option<f64>, window: Option<&KineticLine>) {
         let panel = self.panels.area(&self.panels.mu);
         let baseline = panel.y - 14.0;
-        // Centred on what it names, between two ends.
+        // Centred on the line or window that it names, within two ends.
         let placed = |middle: f64, text: &Text, [from, to]: [f64; 2]| {
             (middle - 0.5 * text.width()).min(to - text.width()).max(from)
         };
@@ -163,20 +163,20 @@ impl FrictionDrawing<'_> {
 
     /// Draws several curves, with their peaks.
     fn draw_many(&mut self, curves: &[FrictionCurve]) {
-        // Points of records first: they hide no curve.
+        // Points of records first, so that they hide no curve.
         for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| curve.is_record) {
             self.draw_points(curve, curve_style(index).colour);
         }
         for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.is_record) {
             self.draw_curve(curve, curve_style(index));
         }
-        // Peaks last: no curve may hide one.
+        // Peaks last, so that no curve hides one.
         for (index, curve) in curves.iter().enumerate() {
             if let Some(peak) = curve.peak.and_then(|peak| self.panels.point(peak)) {
                 self.canvas.dot(peak, DOT, curve_style(index).colour);
             }
         }
-        // Letters of two curves could not be told apart.
+        // Letters of two curves could not be distinguished.
         let mut lettered = curves.iter().filter(|curve| !curve.instants.is_empty());
         if let (Some(curve), None) = (lettered.next(), lettered.next()) {
             self.draw_marks(&marks(&self.panels, curve, None));
@@ -202,7 +202,7 @@ impl FrictionDrawing<'_> {
         }
     }
 
-    /// Draws friction and N*; labels keep off the curve of friction.
+    /// Draws friction and N*; labels avoid the friction curve.
     fn draw_curve(&mut self, curve: &FrictionCurve, style: CurveStyle) {
         let Panels {
             x: across,
@@ -275,8 +275,8 @@ impl Mark {
     }
 }
 
-/// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Instants whose
-/// dots would cover each other are one mark, because their letters could not be distinguished.
+/// The peak of a curve, if given, and its instants, if they lie in the panel. Instants with overlapping dots
+/// are merged into one mark, because their letters could not be distinguished.
 fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<CanvasPoint>) -> Vec<Mark> {
     let mark = |at, letters, peak| Mark { at, letters, peak };
     let peak = peak.and_then(|(x, value)| Some(mark(panels.point((x, value))?, Vec::new(), Some(value))));

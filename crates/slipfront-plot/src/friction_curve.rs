@@ -34,7 +34,7 @@ impl Default for FrictionAxes {
 /// One run's curve, in the units of the axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCurve {
-    /// Name of the curve in the legend; shown only beside other curves.
+    /// Name of the curve in the legend; shown only if there are other curves.
     pub label: String,
     /// Abscissae: time, or path of the drive.
     pub x: Vec<f64>,
@@ -50,7 +50,7 @@ pub struct FrictionCurve {
     pub kinetic: Option<KineticLine>,
     /// Instants with letters.
     pub instants: Vec<Instant>,
-    /// Whether the curve is a measured record, whose points are drawn below the curves.
+    /// Whether the curve is a measured record, which is drawn as points below the other curves.
     #[serde(default)]
     pub is_record: bool,
 }

@@ -21,8 +21,8 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Panels that hold all curves and their marks, at the top of a picture of this width; with the room
-    /// below them they are as high as the given height, or as usual.
+    /// Panels for all curves and their marks, at the top of a picture of this width. Their height, with the
+    /// room below them, is the given height or the usual one.
     pub(crate) fn of(curves: &[FrictionCurve], width: f64, height: Option<f64>) -> Self {
         // The panels share the height in the usual proportion.
         let usual = HEIGHT_FRICTION + HEIGHT_SLIDING;
@@ -36,7 +36,7 @@ impl Panels {
             curve.friction.iter().copied().chain(marks.into_iter().flatten())
         });
         let (mut lo, hi) = range(values);
-        // Friction is read against zero, unless that would flatten it.
+        // The axis starts at zero, unless that would flatten the curves.
         if lo > 0.0 && lo < 0.9 * hi {
             lo = 0.0;
         }
@@ -48,7 +48,7 @@ impl Panels {
         let sliding =
             DrawnAxis::linear(0.0, 100.0).placed(sliding_top + larger * HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
-        // The last number on the axis may stand half beyond its end.
+        // Half of the last number may extend beyond the end of the axis.
         let right = (width - 28.0).round();
         let x = DrawnAxis::linear(from, to).placed(left, right);
         let x = x.placed(left, right_end(&x_ticks(&x), left, right, width));
@@ -83,7 +83,7 @@ impl Panels {
 
     /// Draws ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas, axes: &FrictionAxes) {
-        // Between the panels there is room for the ends of both titles.
+        // The gap between the panels leaves room for the ends of both titles.
         let room = |axis: &DrawnAxis| self.area(axis).height + GAP;
         let words = axes.friction.split(" = ").next().unwrap_or_default();
         let title = fitted([&axes.friction, &axes.friction, words], room(&self.mu));
@@ -114,8 +114,8 @@ impl Panels {
     }
 }
 
-/// The first title that is no longer than `room`: the first in the size of all text, the second in that of
-/// titles without room, or else the third in that size.
+/// The first of these titles that is no longer than `room`: the first in the usual size, the second in the
+/// smaller one, or else the third in the smaller one.
 fn fitted(titles: [&str; 3], room: f64) -> Text {
     let [first, second, last] = titles;
     let sized = [(first, SIZE_TEXT), (second, SIZE_NARROW)];

@@ -23,30 +23,30 @@ use crate::ticks::{Direction, Tick, round_values};
 
 /// Distance between a panel and its colour bar.
 const GAP: f64 = 30.0;
-/// Largest width of a map beside the other panel, 44 mm, and largest height, unless the slider is long along
+/// Largest width of a map next to the other panel, 44 mm, and largest height, unless the slider is long along
 /// y.
 const MAX_SIDE: f64 = 520.0;
 const MAX_SIDE_LONG: f64 = 1000.0;
 /// Ratio of length to height above which a slider has its map above the other panel, as wide as the page.
 const MAX_RATIO: f64 = 3.0;
-/// Least width of a picture with both panels beside each other, 140 mm.
+/// Least width of a picture with both panels side by side, 140 mm.
 const MIN_BESIDE: f64 = 1650.0;
 /// Least height of a map above the other panel, over its length.
 const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
 /// Height of the other panel below a map.
 const HEIGHT_BELOW: f64 = 400.0;
-/// Height of the other panel in a picture of its own.
+/// Height of the other panel when it is drawn alone.
 const HEIGHT_ALONE: f64 = 900.0;
 /// Largest number of steps between contours.
 const CONTOUR_STEPS: usize = 8;
-/// Share of the map over whose cells means are taken around each cell for the contours.
+/// Ratio of the longer side of the map to the reach of the moving average that smooths it for the contours.
 const SMOOTHED_SHARE: usize = 64;
-/// Distance of contours over the scatter of cells around these means: nearer contours would show the scatter
-/// alone.
+/// Least distance between contour levels, over the scatter of cells around these averages: closer contours
+/// would show only scatter.
 const SCATTERS_APART: f64 = 3.0;
-/// Least number of cells along a side for contours, which would otherwise be mere ticks.
+/// Least number of cells along a side for contours: with fewer cells, they would be mere ticks.
 const MIN_CELLS_OF_CONTOURS: usize = 8;
-/// Room for the half of a number at a panel's upper end that stands beyond it.
+/// Room for the half of a number that extends beyond a panel's upper end.
 const TOP: f64 = MARGIN + 8.0;
 
 /// The times at which the blocks of a lattice have first slipped.
@@ -58,7 +58,7 @@ pub struct FrontMap {
     pub ny: usize,
     /// Edge of a block, in metres.
     pub block_size: f64,
-    /// True for every [cell](CellMeans) of which most is textured, row by row from y = 0.
+    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
     pub textured: Vec<bool>,
     /// Mean t* of the first slip of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub first_slips: Vec<f32>,
@@ -81,14 +81,14 @@ pub struct SpaceTime {
     pub shares: Vec<f32>,
 }
 
-/// Whether the map of a slider stands above the other panel, given its height over its length.
+/// Whether the map of a slider is above the other panel, given its height over its length.
 fn is_above(ratio: f64) -> bool {
     ratio * MAX_RATIO < 1.0
 }
 
-/// Draws the map and the space-time panel, as wide as a journal's text (175 mm) or less, or as wide as asked
-/// for: the map beside the other panel, or above it for a long slider and in a narrow picture. Nucleations
-/// are circled, the first filled; the texture is outlined.
+/// Draws the map next to the space-time panel, or above it for a long slider or in a narrow picture. The
+/// picture is at most as wide as a journal's text (175 mm), or as wide as requested. Nucleations are circled,
+/// the first one filled; the texture is outlined.
 ///
 /// # Errors
 ///
@@ -159,7 +159,7 @@ fn share_bar(space_time: &SpaceTime, height: f64) -> ColourBar {
     ColourBar::labelled(SLIDING_SHARE, [0.0, largest], height)
 }
 
-/// The marks of the map in words, those that it has.
+/// A text that explains those marks that the map has.
 fn meaning_of_marks(map: &FrontMap, lines: &[Vec<(f64, f64)>]) -> String {
     let marks = [
         (
@@ -317,7 +317,8 @@ impl FrontLayout {
     }
 }
 
-/// The range of most times: slips long after the front has passed would take all colours.
+/// The range of most times: a few slips long after the front has passed would otherwise take up most of the
+/// colour scale.
 fn quantiles(times: &[f32]) -> [f64; 2] {
     let mut sorted: Vec<f32> = times.iter().copied().filter(|time| !time.is_nan()).collect();
     sorted.sort_unstable_by(f32::total_cmp);
@@ -328,7 +329,7 @@ fn quantiles(times: &[f32]) -> [f64; 2] {
     [at(0.0), at(0.98)]
 }
 
-/// Lines of equal first slips in a map whose colours have this range, as shares of its sides.
+/// Contours of the time of first slip in a map with this range of colours, as fractions of its sides.
 fn contour_lines(map: &FrontMap, range: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
     let [columns, rows] = CellMeans::cells(map.nx, map.ny);
     let reach = 1 + columns.max(rows) / SMOOTHED_SHARE;
@@ -349,7 +350,7 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout, lines: Ve
         canvas.polyline(points.collect(), WIDTH_FRAME, WHITE);
     }
     let sides = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
-    // The first above all others.
+    // The first one is drawn last, on top of all others.
     for (index, [x, y]) in map.nucleations.iter().enumerate().rev() {
         let (x, y) = (x / sides[0], y / sides[1]);
         if !((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y)) {
@@ -377,7 +378,7 @@ fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -
         (sum + deviation * deviation, count + 1.0)
     });
     let scatter = f64::sqrt(sum / count);
-    // As many as there may be, where nothing scatters.
+    // Without scatter, the largest number of steps.
     let steps = ((hi - lo) / (SCATTERS_APART * scatter)).min(CONTOUR_STEPS as f64) as usize;
     if steps >= 2 && side >= MIN_CELLS_OF_CONTOURS {
         round_values(lo, hi, steps).1
@@ -520,7 +521,7 @@ mod tests {
         );
     }
 
-    /// Blocks that slip at random have no contours, nor have strips.
+    /// Blocks that slip at random have no contours, and neither have narrow strips.
     #[test]
     fn scatter_has_no_contours() {
         let mut random = map(40, 40);
@@ -551,7 +552,7 @@ mod tests {
         );
     }
 
-    /// One block that slips long after all others leaves the others their colours.
+    /// One block that slips long after all others does not compress the colours of the others.
     #[test]
     fn late_slips_take_no_colours() {
         let mut times = vec![1.0; 99];

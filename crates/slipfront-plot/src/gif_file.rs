@@ -7,13 +7,13 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use crate::movie::MovieSize;
 use crate::picture_error::PictureError;
 
-/// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture the
-/// file has the rectangle in which it differs from the picture before.
+/// An animated GIF file of pictures of a movie, which begins again when it has ended. For every picture, the
+/// file holds only the rectangle that differs from the previous picture.
 pub struct MovieGif {
     encoder: Encoder<Vec<u8>>,
     /// Width and height of the pictures in pixels.
     pixels: [usize; 2],
-    /// The pixels of the picture before.
+    /// The pixels of the previous picture.
     before: Vec<u8>,
     /// Index of a colour that no pixel has, for pixels that do not change.
     transparent: u8,
@@ -23,7 +23,7 @@ impl MovieGif {
     /// A file without pictures, which will be of this size and have these colours, at most 255.
     ///
     /// # Errors
-    /// When there are more colours.
+    /// When there are more than 255 colours.
     pub fn of(palette: &[[u8; 3]], size: MovieSize) -> Result<Self, PictureError> {
         let transparent = palette.len();
         let mut colours = palette.concat();
@@ -42,7 +42,7 @@ impl MovieGif {
     /// Adds a picture that is shown for `delay` hundredths of a second.
     ///
     /// # Errors
-    /// When the picture has another number of pixels.
+    /// When the picture has the wrong number of pixels.
     pub fn add(&mut self, pixels: Vec<u8>, delay: u16) -> Result<(), PictureError> {
         let [width, height] = self.pixels;
         let [left, top, right, bottom] = if self.before.len() == pixels.len() {

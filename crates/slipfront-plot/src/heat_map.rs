@@ -16,7 +16,7 @@ use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
 
 const HEIGHT: f64 = 560.0;
-/// Room for the half of a number at the bar's upper end that stands beyond it.
+/// Room for the half of a number that extends beyond the bar's upper end.
 const TOP: f64 = MARGIN + 8.0;
 /// Distance between the map and its colour bar.
 const GAP: f64 = 30.0;
@@ -24,7 +24,8 @@ const GAP: f64 = 30.0;
 const LINE: f64 = 36.0;
 /// Largest number of columns and rows of a map with numbers in its cells.
 const MAX_NUMBERED: usize = 8;
-/// Largest number of cells of an axis whose cells are numbered; longer axes are numbered at round values.
+/// Largest number of cells for which an axis has a number at every cell; longer axes have numbers at round
+/// values.
 const MAX_NAMED: usize = 12;
 
 /// A map of cells over two axes.
@@ -61,14 +62,14 @@ pub struct HeatAxis {
 /// Draws a map, usually as wide as a journal's column (85 mm).
 ///
 /// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values
-/// and half the median interval beyond them, so that values which differ by less look alike. A map of up to 8
-/// x 8 cells has its numbers in the cells, if they are wide enough. The half width of an interval stands
-/// below the number; where numbers have no room for that, a second map below shows the half widths.
+/// plus half the median interval at both ends, so that smaller differences look small. A map of up to 8 x 8
+/// cells has its numbers in the cells, if they are wide enough. The half width of an interval is below the
+/// number; if there is no room for it, a second map below shows the half widths.
 ///
 /// # Errors
 ///
-/// An axis without values, with a value that is not a number, or with a value twice; another number of values
-/// than cells; a size that leaves no room for the cells.
+/// An axis without values, with a value that is not a number, or with a value twice; a number of values other
+/// than the number of cells; a size that leaves no room for the cells.
 pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureError> {
     let (mut x, mut y) = (HeatCells::of(&map.x)?, HeatCells::of(&map.y)?);
     let values = in_order([&x, &y], &map.values)?;
@@ -112,7 +113,7 @@ pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureErro
         if panels == 2 {
             break (area, bars, cell_texts(&x, &y, &values, &none, ranges[0]));
         }
-        // Half widths without room in the cells have a panel of their own.
+        // Half widths that do not fit in the cells get their own panel.
         panels = 2;
     };
     let panel = area.bottom() + LOWER_ROOM;
@@ -160,7 +161,7 @@ fn in_order([x, y]: [&HeatCells; 2], values: &[f64]) -> Result<Vec<f64>, Picture
     Ok((0..values.len()).map(value).collect())
 }
 
-/// Draws a cross in the lower left corner of the cells that are not whole.
+/// Draws a cross in the lower left corner of the marked cells.
 fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], crossed: &[f64]) {
     /// Distance from the corner to the middle of the cross.
     const INSET: f64 = 14.0;
@@ -171,7 +172,7 @@ fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], crossed: &[f64]) {
     }
 }
 
-/// The median of the values that are no NaN; zero if there is none.
+/// The median of the values that are not NaN; zero if there is none.
 fn median(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -199,7 +200,7 @@ fn draw_panel(
     short_ticks(canvas, area, Direction::X, &short);
     lower_side(canvas, area, &ticks, &Text::fitted(x_title, area.width));
     let at = (area.right() + GAP, area.y);
-    // A name that is fitted to the bar stands beside it.
+    // A name that was cut to the height of the bar is next to it, never above.
     bar.draw(canvas, at, area.y);
     if values.iter().any(|value| value.is_nan()) {
         draw_blank(canvas, Area::new(at.0, area.y, BAR_WIDTH, area.height));
@@ -212,7 +213,7 @@ struct HeatCells {
     /// The index of every cell among the axis' values.
     order: Vec<usize>,
     values: Vec<f64>,
-    /// Boundaries of the cells, as the scale measures them: one more than there are cells.
+    /// Boundaries of the cells in coordinates of the axis, one more than there are cells.
     edges: Vec<f64>,
 }
 
@@ -239,7 +240,7 @@ impl HeatCells {
         let (first, last) = (measured[0], measured[measured.len() - 1]);
         let middles = measured.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let mut edges: Vec<f64> = middles.collect();
-        // The outermost cells reach as far out as in.
+        // The outermost cells are symmetric about their values.
         let (lo, hi) = match edges[..] {
             [] => widened((first, last)),
             [inner, ..] => (2.0 * first - inner, 2.0 * last - edges[edges.len() - 1]),
@@ -278,7 +279,8 @@ impl HeatCells {
     }
 }
 
-/// A value with `digits` significant digits and no needless zero, unless it is then more than 2 % off.
+/// A value with `digits` significant digits and without trailing zeros; none if that changes it by more than
+/// 2 %.
 fn short(value: f64, digits: usize) -> Option<String> {
     let rounded = format!("{value:.*e}", digits.saturating_sub(1));
     if (rounded.parse::<f64>().ok()? - value).abs() > 0.02 * value.abs() {
@@ -300,10 +302,10 @@ fn short(value: f64, digits: usize) -> Option<String> {
     Some(format!("{}e{power}", trimmed(mantissa)).replace('-', MINUS))
 }
 
-/// Writes below the colour bar the meaning of grey.
+/// Writes the meaning of grey below the colour bar.
 fn draw_blank(canvas: &mut Canvas, bar: Area) {
     let text = Text::plain("none", SIZE_TEXT);
-    // Beside the axis' title: a number may reach as far as the bar.
+    // At the height of the axis title, because a tick number may reach as far as the bar.
     let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
     let patch = Area {
         y: baseline - text.height() - 3.0,
@@ -315,7 +317,8 @@ fn draw_blank(canvas: &mut Canvas, bar: Area) {
     canvas.text(&text, (patch.right() + 10.0, baseline), Align::Start, BLACK);
 }
 
-/// The cells as an image with a pixel for every pixel of the picture: an image's own columns are all alike.
+/// The cells as an image with a pixel for every pixel of the picture, because all columns of an image have
+/// the same width.
 fn image(area: Area, x: &HeatCells, y: &HeatCells, values: &[f64], range: [f64; 2]) -> Image {
     let (columns, rows) = (area.width as usize, area.height as usize);
     let (edges_x, edges_y) = (x.edges(), y.edges());
@@ -357,7 +360,7 @@ fn cell_texts(
         sizes.fold(f64::INFINITY, f64::min)
     };
     let (room_x, room_y) = (smallest(x.edges()) - 12.0, smallest(y.edges()) - 12.0);
-    // Two digits or so of the range, or one less.
+    // About two significant digits of the range, or one fewer.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
     let lines = |(&value, &half): (&f64, &f64), decimals, size| {
         let mut lines = Vec::new();
@@ -383,7 +386,7 @@ fn cell_texts(
     })
 }
 
-/// A half width to the decimals of its value, or to its first digit where these would show none of it.
+/// A half width with as many decimals as its value, or with as many as its first digit needs.
 fn plus_minus(half: f64, decimals: usize) -> String {
     let first = -libm::log10(half).floor();
     let needed = if half > 0.0 {
@@ -487,8 +490,8 @@ mod tests {
         );
     }
 
-    /// Half widths stand below the numbers where there is room, else on a map of their own; nowhere if there
-    /// are none.
+    /// Half widths are below the numbers if there is room, else on their own map, and nowhere if there are
+    /// none.
     #[test]
     fn half_widths_are_shown_wherever_there_are_some() {
         let svg = |columns: usize, half: f64| {
@@ -502,7 +505,7 @@ mod tests {
             few.matches(">\u{b1}0.25</text>").count() == 9 && !few.contains(title),
             "{few}"
         );
-        // A half width that the decimals of the values would show as nothing has its first digit.
+        // A half width that the decimals of the values would round to zero shows its first digit.
         assert!(svg(3, 0.0004).contains(">\u{b1}0.0004</text>"));
         assert_eq!(svg(9, 0.25).matches(title).count(), 1);
         let none = svg(3, f64::NAN);
@@ -579,7 +582,7 @@ mod tests {
         assert_eq!(written(12345.0, 4), "12345");
         assert_eq!(written(-1.5e-9, 3), "\u{2212}1.5e\u{2212}9");
         assert_eq!(written(0.0, 2), "0");
-        // 12 would not be 12.5.
+        // 12 would be 4 % off.
         assert_eq!(short(12.5, 2), None);
     }
 

@@ -13,7 +13,7 @@ pub(crate) struct Placer {
     lines: Vec<[CanvasPoint; 2]>,
 }
 
-/// A possible place of a label, and its cost: pixels away from the best one.
+/// A possible place for a label, with its penalty as a distance in pixels from the best place.
 pub(crate) struct Candidate {
     pub(crate) area: Area,
     pub(crate) penalty: f64,
@@ -34,13 +34,13 @@ impl Placer {
         self.taken.push(area);
     }
 
-    /// Asks labels to keep off the line through these points.
+    /// Makes labels avoid the line through these points, if there is room.
     pub(crate) fn avoid(&mut self, points: &[CanvasPoint]) {
         let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
         self.lines.extend(segments);
     }
 
-    /// The best of the candidates, now taken; none if there is no candidate.
+    /// Takes the best candidate and returns it; none if there are no candidates.
     pub(crate) fn place(&mut self, candidates: Vec<Candidate>) -> Option<Candidate> {
         let mut best: Option<(f64, Candidate)> = None;
         for candidate in candidates {
@@ -88,7 +88,7 @@ impl Placer {
 }
 
 /// Places around `point` for a label of this size, near ones first. Far places get a leader, and so do places
-/// to which one of the other `dots` is as near, because the label would be taken for that dot's.
+/// that are as near to another of the `dots`, because the label would seem to belong to that dot.
 pub(crate) fn around(
     point: CanvasPoint,
     (width, height): (f64, f64),
@@ -116,7 +116,7 @@ pub(crate) fn around(
                 dot != point && libm::hypot(dx, dy) < 1.5 * distance
             };
             let strays = dots.iter().any(is_near);
-            // The leader starts off its dot, so that it never counts as crossing it.
+            // The leader starts outside its dot, so that it never counts as crossing the dot.
             let start = (point.0 + dx / distance * 12.0, point.1 + dy / distance * 12.0);
             let end = (point.0 + dx, point.1 + dy);
             let leader = (distance > if strays { 20.0 } else { 30.0 }).then_some([start, end]);
@@ -203,7 +203,7 @@ mod tests {
         assert!(!crosses([curve[0], curve[1]], &area) && !crosses([curve[1], curve[2]], &area));
     }
 
-    /// Each label of two dots side by side stands nearer to its own dot, or is joined to it.
+    /// The label of each of two dots side by side is nearer to its own dot, or joined to it by a leader.
     #[test]
     fn a_label_is_not_taken_for_that_of_another_dot() {
         let dots = [(400.0, 300.0), (425.0, 300.0)];

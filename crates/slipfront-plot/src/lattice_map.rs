@@ -1,4 +1,4 @@
-//! A map of values over the blocks of a lattice, as stress maps and field maps draw it.
+//! A map of values over the blocks of a lattice, for stress maps and field maps.
 
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
@@ -9,13 +9,13 @@ use crate::picture_error::PictureError;
 use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_TEXT, WHITE, WIDTH_MARK};
 use crate::text::Text;
 
-/// Least width of maps beside each other in a picture whose width is asked for, 21 mm.
+/// Least width of maps side by side in a picture of requested width, 21 mm.
 pub(crate) const MIN_MAP: f64 = 250.0;
 /// Least thickness of a strip over its length.
 pub(crate) const MIN_RATIO: f64 = 1.0 / 6.0;
-/// Width of a stripe over the width of the outline that parts it.
+/// Ratio of the width of a stripe of texture to the largest width of its outline.
 const STRIPE_WIDTHS: f64 = 12.0;
-/// Heights of the second and the first line over a map.
+/// Heights above a map of the second and the first line of text.
 const NOTE_ABOVE: f64 = 22.0;
 const LABEL_ABOVE: f64 = 62.0;
 /// Distance of a line of a label from the next one.
@@ -30,7 +30,7 @@ pub(crate) fn block_count(nx: usize, ny: usize) -> Result<usize, PictureError> {
     count.ok_or(PictureError::Lattice { nx, ny })
 }
 
-/// Refuses an array that has not one value for every block.
+/// Refuses an array that does not have one value for every block.
 pub(crate) fn check_length(what: &str, found: usize, expected: usize) -> Result<(), PictureError> {
     if found == expected {
         return Ok(());
@@ -42,7 +42,7 @@ pub(crate) fn check_length(what: &str, found: usize, expected: usize) -> Result<
     })
 }
 
-/// Refuses a number that is no edge of a block, in metres.
+/// Refuses a number that cannot be the edge of a block in metres.
 pub(crate) fn check_block_size(block_size: f64) -> Result<(), PictureError> {
     if block_size > 0.0 && block_size < 1e9 {
         return Ok(());
@@ -83,8 +83,7 @@ impl Cells {
         }
     }
 
-    /// Draws the means of all cells, the ends of the colours being those of `range`, and the outline of the
-    /// texture.
+    /// Draws the means of all cells, with the colour scale over `range`, and the outline of the texture.
     pub(crate) fn draw(&self, canvas: &mut Canvas, area: Area, means: &[f32], range: [f64; 2]) {
         // The image's first row is the uppermost.
         let cells = means.chunks_exact(self.columns).rev().flatten();
@@ -97,7 +96,8 @@ impl Cells {
         let corner = |&(x, y): &(usize, usize)| place(area, (x as f64 / columns, y as f64 / rows));
         let lines = self.outlines.iter();
         let lines: Vec<Vec<CanvasPoint>> = lines.map(|line| line.iter().map(corner).collect()).collect();
-        // As wide as a stripe of the same area and edge is, the texture or what lies between.
+        // Width of a stripe with the area and edge length of the texture, or of the untextured part if that
+        // is smaller.
         let edge: f64 = lines.iter().map(|line| length(line)).sum();
         let share = self.textured_share.min(1.0 - self.textured_share);
         let stripe = 2.0 * share * area.width * area.height / edge;
@@ -113,12 +113,12 @@ pub(crate) fn place(area: Area, (x, y): CanvasPoint) -> CanvasPoint {
     (area.x + x * area.width, area.bottom() - y * area.height)
 }
 
-/// The colour of marks, seen on every colour of the ramp.
+/// The colour of marks, visible on every colour of the ramp.
 pub(crate) const MARK: Rgb = [0xd5, 0x2b, 0x1e];
 /// Number of corners with which the edge of a mark is drawn.
 const MARK_CORNERS: usize = 24;
 
-/// A circle with a pale rim, seen on every colour of the ramp.
+/// A circle with a pale rim, visible on every colour of the ramp.
 pub(crate) fn circle(canvas: &mut Canvas, (x, y): CanvasPoint, colour: Rgb) {
     let corner = |k: usize| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / MARK_CORNERS as f64);
@@ -129,7 +129,7 @@ pub(crate) fn circle(canvas: &mut Canvas, (x, y): CanvasPoint, colour: Rgb) {
     rimmed_line(canvas, circle, WIDTH_MARK, colour);
 }
 
-/// A line with a pale rim, seen on every colour of the ramp.
+/// A line with a pale rim, visible on every colour of the ramp.
 fn rimmed_line(canvas: &mut Canvas, points: Vec<CanvasPoint>, width: f64, colour: Rgb) {
     canvas.polyline(points.clone(), 2.2 * width, WHITE);
     canvas.polyline(points, width, colour);

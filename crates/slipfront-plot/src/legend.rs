@@ -7,7 +7,7 @@ use crate::short_names::fitted_names;
 use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, SIZE_TEXT, bar_colour, curve_style};
 use crate::text::Text;
 
-/// The names of several curves or bars, and before them the quantity of which they are values.
+/// The names of several curves or bars, after the quantity that they are values of.
 #[derive(Default)]
 pub(crate) struct Legend {
     /// Height of the legend above the panels.

@@ -1,10 +1,10 @@
-//! Pictures for the eye and for print. Pictures of a run: friction against time, maps of contact stress, the
+//! Pictures for screen and print. Pictures of a run: friction against time, maps of contact stress, the
 //! spread of slip, and the sizes of its events. Pictures of a parametric study: response curves, heat maps,
 //! bars, all with their confidence intervals.
 //!
-//! Every picture is drawn once, on a canvas, and comes out as SVG, PNG and PDF of the same physical size:
-//! unless another is asked for, a journal's column for curves, heat maps and bars, its text width for maps of
-//! stress. Bytes depend on the arguments only: no date, no random identifier.
+//! Every picture is drawn once, on a canvas, and exported as SVG, PNG and PDF of the same physical size. By
+//! default, curves, heat maps and bars are as wide as a journal's column, and maps of stress as wide as its
+//! text. The bytes depend only on the arguments: there is no date and no random identifier.
 
 mod axis;
 mod bars;

@@ -1,4 +1,4 @@
-//! The look of pictures that a user asks for: their size, the formats of their files, and which of them are
+//! Settings of pictures that a user can choose: their size, the formats of their files, and which of them are
 //! drawn.
 
 use crate::size::PictureSize;

@@ -1,9 +1,9 @@
-//! A movie of a run: maps of a field one after the other, beside the friction curve with a mark at the
+//! A movie of a run: maps of a field one after the other, next to the friction curve with a mark at the
 //! instant that is shown.
 //!
-//! Pictures of a movie usually have 800 x 400 pixels of 256 colours at the most. They are drawn twice as
-//! large, and every pixel is the mean of four, so that letters are as large as in the other pictures beside
-//! their lines. A long slider has its map above the curve.
+//! Pictures of a movie usually have 800 x 400 pixels and at most 256 colours. They are drawn twice as large,
+//! and every pixel is the mean of four, so that letters and lines have the same proportions as in other
+//! pictures. A long slider has its map above the curve.
 
 use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
@@ -52,7 +52,7 @@ impl MovieSize {
 }
 
 const DRAWN_PIXELS: [usize; 2] = [1600, 800];
-/// The largest map, as drawn.
+/// Largest side of the map, in drawn pixels.
 const MAP_SIDE: f64 = 600.0;
 /// Left end of the map.
 const MAP_LEFT: f64 = 2.0 * MARGIN;
@@ -77,7 +77,7 @@ pub struct Movie {
     pub nx: usize,
     /// Blocks along y.
     pub ny: usize,
-    /// True for every [cell](CellMeans) of which most is textured, row by row from y = 0.
+    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
     pub textured: Vec<bool>,
     /// Quantity of the field, over the colour bar; the character after an underscore is a subscript.
     pub title: String,
@@ -117,10 +117,10 @@ pub struct MoviePictures<'a> {
     mu: DrawnAxis,
 }
 
-/// Places of the parts of a picture, as drawn.
+/// Positions of the parts of a picture, in drawn pixels.
 struct MovieLayout {
     map: Area,
-    /// Room of the map, over the middle of which its titles stand.
+    /// Area available to the map; its titles are centred above this area.
     room: Area,
     bar: Area,
     /// Left end of the curve's part.
@@ -289,7 +289,7 @@ impl<'a> MoviePictures<'a> {
             placer.avoid(&segment);
             canvas.polyline(segment, WIDTH_CURVE, CURVES[0]);
         }
-        // Letters of instants whose dots cover each other are joined.
+        // Letters of instants with overlapping dots are joined.
         let mut marks: Vec<(CanvasPoint, Vec<String>)> = Vec::new();
         for instant in &curve.instants {
             let dot = (self.x.at(instant.x), self.mu.clamped(instant.friction));
@@ -383,7 +383,7 @@ mod tests {
         area.sides().map(|side| side as usize / MovieSize::Usual.drawn())
     }
 
-    /// Every block of the map has its own colour in whole pixels, with no others between.
+    /// Every block of the map fills whole pixels with its own colour, without blending.
     #[test]
     fn blocks_have_whole_pixels_of_their_colour() {
         let mut movie = movie(100, 100);
@@ -407,15 +407,15 @@ mod tests {
                         .zip(found)
                         .map(|(one, other)| one.abs_diff(other))
                         .max();
-                    // Of 255 levels to 192 colours, steps of at most 3, looked up without three bits, up to
-                    // 7.
+                    // The ramp of 192 colours has steps of at most 3, and the lookup ignores three bits (up
+                    // to 7).
                     assert!(far <= Some(9), "({column}, {row}): {wanted:?} {found:?}");
                 }
             }
         }
     }
 
-    /// The mark moves along the curve, and nothing else of the curve's part changes.
+    /// The mark moves along the curve, and nothing else changes in the part of the curve.
     #[test]
     fn the_mark_stands_at_the_instant() {
         let movie = movie(20, 10);
@@ -474,7 +474,7 @@ mod tests {
         }
     }
 
-    /// Letters at one point stand there together.
+    /// Letters of instants at one point are joined.
     #[test]
     fn letters_at_one_point_are_joined() {
         let mut movie = movie(20, 10);

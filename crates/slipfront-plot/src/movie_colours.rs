@@ -5,12 +5,12 @@ use crate::style::{BLACK, BLANK, CURVES, GREY, Rgb, WHITE, ramp};
 
 /// Number of colours of the ramp.
 const RAMP: usize = 192;
-/// Number of steps from a colour of lines and letters to white, by which their edges are smoothed.
+/// Number of steps from a colour of lines and letters to white, for smooth edges.
 const SHADES: usize = 14;
-/// Number of bits of a channel by which the nearest colour is looked up.
+/// Number of leading bits of each channel that the lookup of the nearest colour uses.
 const BITS: u32 = 5;
 
-/// A palette, and the nearest of its colours.
+/// A palette with a lookup table for its nearest colours.
 pub(crate) struct Colours {
     palette: Vec<Rgb>,
     /// Nearest colour for the leading bits of red, green and blue.
@@ -45,8 +45,8 @@ impl Colours {
     }
 }
 
-/// The colour in the middle of those with these leading bits; the outermost colours stand for themselves, so
-/// that white stays white.
+/// Representative of all colours with these leading bits. The ends of the range are exact, so that white
+/// stays white.
 fn unpacked(bits: u32) -> Rgb {
     let largest = (1 << BITS) - 1;
     let channel = |k: u32| ((bits >> (BITS * (2 - k)) & largest) * 255 / largest) as u8;
@@ -67,7 +67,7 @@ fn nearest_of(palette: &[Rgb], colour: Rgb) -> u8 {
     nearest.map_or(0, |(index, _)| index as u8)
 }
 
-/// A colour on the way to another one.
+/// Linear mix of two colours.
 fn mixed(from: Rgb, to: Rgb, share: f64) -> Rgb {
     [0, 1, 2].map(|channel| {
         let (from, to) = (f64::from(from[channel]), f64::from(to[channel]));
@@ -99,7 +99,7 @@ mod tests {
                 .zip(found)
                 .map(|(one, other)| one.abs_diff(other))
                 .max();
-            // Three bits, up to 7, are not looked at, and the ramp has 192 steps of at most 3.
+            // The lookup ignores three bits (up to 7), and the ramp has 192 steps of at most 3.
             assert!(far <= Some(9), "{colour:?} {found:?}");
         }
         assert_eq!(colours.palette()[usize::from(colours.nearest(WHITE))], WHITE);

@@ -1,5 +1,5 @@
 //! A canvas as a PDF of one page of its physical size: lines and areas as paths, text as text in the embedded
-//! font, maps as images. The page has no ground, which is the paper.
+//! font, maps as images. The page has no background, so that the paper shows.
 
 use std::io::Write as _;
 
@@ -90,7 +90,7 @@ fn rounded(pixels: f64) -> f32 {
 /// The contents of a stream, compressed.
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
-    // Memory takes whatever is written to it.
+    // Writing to memory cannot fail.
     let written = packer.write_all(bytes).and_then(|()| packer.finish());
     written.unwrap_or_default()
 }
@@ -179,7 +179,7 @@ fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
             upwards,
         } => {
             let (x, y) = (rounded(at.0), rounded(at.1));
-            // Directions of the line and of what stands on it, y downwards.
+            // Directions along the line of text and from it towards the tops of the letters, y downwards.
             let [along, above] = if *upwards {
                 [[0.0, -1.0], [-1.0, 0.0]]
             } else {
@@ -192,7 +192,7 @@ fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
     }
 }
 
-/// A path through points; those that are no numbers are left out.
+/// A path through points; points that are not finite are left out.
 fn path(content: &mut Content, points: &[CanvasPoint]) {
     let points = points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
     for (index, &(x, y)) in points.enumerate() {
@@ -275,7 +275,7 @@ mod tests {
         let file = pdf(&canvas(size));
         let text = String::from_utf8_lossy(&file);
         assert!(text.starts_with("%PDF-1.7") && text.ends_with("%%EOF"));
-        // 89 mm are 252.283 points; 300 pixels in which 33 are 8 pt, 72.727.
+        // 89 mm are 252.283 pt; 300 pixels are 72.727 pt, because 33 pixels are 8 pt.
         assert!(text.contains("/MediaBox [0 0 252.28346 72.72727]"), "{text}");
         let content = streams(&file).pop().unwrap();
         assert!(
@@ -297,7 +297,7 @@ mod tests {
         ] {
             assert!(content.contains(drawn), "{drawn} in {content}");
         }
-        // Characters are found again, also one that the font lacks.
+        // All characters can be searched, also one that the font lacks.
         let characters = streams
             .iter()
             .find(|stream| stream.contains("beginbfchar"))

@@ -1,5 +1,5 @@
-//! The font of a PDF: the letters that the picture has, as glyphs with their widths and the characters that
-//! they stand for, so that the text can be searched and copied.
+//! The font of a PDF: the letters of the picture as glyphs, with their widths and the characters that they
+//! represent, so that the text can be searched and copied.
 
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Filter, Finish as _, Name, Pdf, Rect, Ref, Str};
@@ -21,7 +21,7 @@ pub(crate) struct PdfFont {
 pub(crate) struct FontObjects {
     /// The font that pages name.
     pub(crate) font: Ref,
-    /// The parts of it.
+    /// Parts of the font.
     pub(crate) glyphs: Ref,
     pub(crate) descriptor: Ref,
     pub(crate) file: Ref,
@@ -52,8 +52,8 @@ impl PdfFont {
             .collect()
     }
 
-    /// Name of the font: a part of a font has six capital letters before its name, of which equal ones mean
-    /// equal parts.
+    /// Name of the font. A font subset has a prefix of six capital letters before its name, which is the same
+    /// for equal subsets.
     fn name(&self) -> String {
         let hash = |hash: u32, letter: &char| hash.wrapping_mul(31).wrapping_add(u32::from(*letter));
         let mut rest = self.letters.iter().fold(7, hash);
@@ -95,7 +95,7 @@ impl PdfFont {
         let [descent, ascent] = [DESCENT, ASCENT].map(|units| f32::from(units) * THOUSANDTHS);
         pdf.font_descriptor(at.descriptor)
             .name(name)
-            // Its letters have codes of their own.
+            // The font has its own character codes.
             .flags(FontFlags::SYMBOLIC)
             .bbox(Rect::new(-1000.0, descent, 2000.0, ascent))
             .italic_angle(0.0)

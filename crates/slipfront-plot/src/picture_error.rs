@@ -49,7 +49,8 @@ pub enum PictureError {
     Gif(String),
 }
 
-/// Refuses a curve with a column that has not one value for each of its points, which `counted` names.
+/// Refuses a curve with a column that does not have one value for each point; `counted` is the word for the
+/// points.
 pub(crate) fn check_columns(
     label: &str,
     (counted, count): (&'static str, usize),

@@ -3,8 +3,8 @@
 use crate::picture_error::PictureError;
 use crate::style::DPI;
 
-/// A PNG file of an image: its bytes are red, green and blue of every pixel, printed at [`DPI`], or an index
-/// into the palette for every pixel if there is one.
+/// A PNG file of an image. If there is a palette, `bytes` holds an index into it for every pixel; otherwise
+/// it holds red, green and blue of every pixel, to be printed at [`DPI`].
 pub(crate) fn encode(
     width: usize,
     height: usize,
@@ -14,7 +14,7 @@ pub(crate) fn encode(
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
     encoder.set_depth(png::BitDepth::Eight);
-    // Most of a picture is as it is a row above.
+    // Most pixels are equal to the pixel above.
     encoder.set_filter(png::Filter::Up);
     match palette {
         Some(palette) => {

@@ -20,21 +20,21 @@ use crate::style::{
 use crate::text::{Text, number};
 use crate::ticks::{Direction, MAX_STEPS, round_values};
 
-/// Room beside the largest circle, on either side.
+/// Room on either side of the largest circle.
 const BESIDE: f64 = 122.0;
 /// Distance between that circle and the numbers of the directions.
 const GAP: f64 = 12.0;
 /// Distance from the largest circle to the axis of the radius below it.
 const BELOW: f64 = 64.0;
-/// Angle between two lines of directions, degrees, and between two that are numbered.
+/// Angle in degrees between neighbouring lines of directions, and between numbered ones.
 const SPOKES: usize = 30;
 const NUMBERED: usize = 90;
-/// Share of the largest value below which all values are alike: from the centre, their differences could not
-/// be seen.
+/// Range of the values, over the largest value, up to which the centre is not zero: measured from zero, their
+/// differences could not be seen.
 const ALIKE: f64 = 0.4;
 /// Least range of values, over the largest of them, that fills half of the radius.
 const LEAST_RANGE: f64 = 0.1;
-/// Difference in degrees below which two directions are one.
+/// Difference in degrees below which two directions count as one.
 const SAME: f64 = 1e-9;
 
 /// Curves against a direction.
@@ -51,8 +51,8 @@ pub struct Polar {
 }
 
 /// Draws means around a centre with their confidence bands, usually as wide as a journal's column (85 mm).
-/// The centre is zero, unless all values are alike, and the note says what it is then. A curve whose
-/// directions go all the way round is closed, and has a gap where a value is missing or below zero.
+/// The centre is zero, unless all values are similar; then the note gives its value. A curve whose directions
+/// go all the way round is closed, and has a gap where a value is missing or below zero.
 ///
 /// # Errors
 ///
@@ -114,8 +114,8 @@ pub fn polar(polar: &Polar, size: PictureSize) -> Result<Picture, PictureError> 
     canvas.finish()
 }
 
-/// Value at the centre: 0, or a round value as far below the smallest as the largest is above it, where they
-/// are alike.
+/// Value at the centre: 0, or, if the values are similar, a round value about as far below the smallest as
+/// the largest is above the smallest.
 fn centre_value(smallest: f64, largest: f64) -> f64 {
     let range = (largest - smallest).max(LEAST_RANGE * largest);
     let start = smallest - range;
@@ -189,7 +189,7 @@ impl Round {
         };
         let is_round = all.len() > 2 && last <= widest + SAME;
         let missing = all.iter().position(|(_, there)| there.is_none());
-        // What goes all the way round begins behind a gap.
+        // A curve that goes all the way round is made to start after a gap.
         if let (true, Some(missing)) = (is_round, missing) {
             all.rotate_left(missing);
         }
@@ -255,7 +255,7 @@ impl Ring {
             let text = Text::plain(&format!("{axis}{degrees}\u{b0}"), SIZE_TEXT);
             let (x, y) = self.around(angle, self.reach + GAP);
             let (sine, cosine) = libm::sincos(angle.to_radians());
-            // The side of the text that is nearest to the circle lies there.
+            // The text is aligned by its side nearest to the circle.
             let align = match cosine {
                 c if c > 0.1 => Align::Start,
                 c if c < -0.1 => Align::End,
@@ -296,7 +296,7 @@ impl Ring {
 }
 
 impl Ring {
-    /// Draws the marks of points that are not whole, on the largest circle without a mean.
+    /// Draws the crosses of marked points; a point without a mean has its cross on the largest circle.
     fn draw_crosses(&self, canvas: &mut Canvas, curve: &Response) {
         for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point) && drawable(curve.x[point])) {
             let (degrees, mean) = (curve.x[point], curve.mean[point]);
@@ -412,7 +412,7 @@ mod tests {
         assert!(!svg(&[curve("static", &all, 0.8)]).contains(">static</text>"));
     }
 
-    /// Values that are alike are drawn from a round value below them, which the note tells; others from zero.
+    /// Similar values are drawn from a round value below them, which the note gives; others from zero.
     #[test]
     fn the_centre_is_zero_unless_that_hides_the_effect() {
         assert_eq!(centre_value(0.3, 0.9), 0.0);
@@ -420,7 +420,7 @@ mod tests {
         let start = centre_value(0.8, 0.9);
         // 0.8 - 0.1, in steps of 0.05, which are rounded.
         assert!((0.6..0.7 + 1e-9).contains(&start), "{start}");
-        // Equal values are not blown up to the last digit.
+        // Equal values are not magnified down to their last digit.
         let start = centre_value(0.9, 0.9);
         assert!((0.7..=0.81).contains(&start), "{start}");
         let all = [0.0, 90.0, 180.0, 270.0];

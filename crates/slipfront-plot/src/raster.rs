@@ -17,7 +17,7 @@ pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
     let [width, height] = canvas.pixels();
     let mut ground = Pixels::blank(width, height)?;
     ground.draw(canvas);
-    // In place, without opacity, which is full: the page is white below everything.
+    // Drops the opacity in place: every pixel is opaque, because the page is white.
     let mut bytes = ground.0.take();
     let pixels = bytes.len() / 4;
     for pixel in 0..pixels {
@@ -56,7 +56,7 @@ impl Pixels {
     }
 }
 
-/// Draws an element, larger by a factor; an element without extent leaves no trace.
+/// Draws an element, scaled by a factor; an element without extent draws nothing.
 fn draw(pixmap: &mut Pixmap, element: &Element, scale: f64) {
     let [red, green, blue] = element.colour;
     let mut paint = Paint::default();
@@ -94,7 +94,7 @@ fn draw(pixmap: &mut Pixmap, element: &Element, scale: f64) {
     }
 }
 
-/// A path through points; none through fewer than two, or where one is no number.
+/// A path through points; none for fewer than two points, or if a coordinate is not a number.
 fn path(points: &[CanvasPoint], closed: bool) -> Option<Path> {
     let mut path = PathBuilder::new();
     for &(x, y) in points {

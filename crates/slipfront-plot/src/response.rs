@@ -17,8 +17,7 @@ use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
-/// Distance between the last number below the panel, half of which may stand beyond it, and the picture's
-/// edge.
+/// Room right of the panel for the last number below it, half of which may extend beyond the panel.
 const RIGHT: f64 = 34.0;
 
 /// Response curves over one axis.
@@ -43,7 +42,7 @@ pub struct Responses {
 /// One response curve, a point for every value of an axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Response {
-    /// Name of the curve in the legend; shown only beside other curves.
+    /// Name of the curve in the legend; shown only if there are other curves.
     pub label: String,
     /// Abscissae of the points, in any order.
     pub x: Vec<f64>,
@@ -56,8 +55,8 @@ pub struct Response {
     /// Marks of points that get a cross, on their marker or, without a mean, on the lower side; may be empty.
     #[serde(default)]
     pub crossed: Vec<bool>,
-    /// Whether the curve is a formula or a level rather than measured: a line through its points, without
-    /// markers.
+    /// Whether the curve is a formula or a level rather than a result: it is drawn as a line through its
+    /// points, without markers.
     pub line: bool,
 }
 
@@ -124,7 +123,7 @@ pub fn response(responses: &Responses, size: PictureSize) -> Result<Picture, Pic
     canvas.finish()
 }
 
-/// A curve whose points run along x, with an interval that is whole or NaN.
+/// The curve with its points sorted by x, and with intervals that are complete or NaN.
 fn sorted(curve: &Response) -> Response {
     let mut order: Vec<usize> = (0..curve.x.len()).collect();
     order.retain(|&index| drawable(curve.x[index]));
@@ -193,7 +192,7 @@ fn draw_sides(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, res
     }
 }
 
-/// Draws all bands, then all curves, then all points: nothing hides a point.
+/// Draws all bands, then all curves, then all points, so that nothing hides a point.
 fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Response]) {
     let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
     let colour = |index: usize| curve_style(index).colour;
@@ -223,9 +222,9 @@ fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Resp
     }
 }
 
-/// Draws the marks of points that are not whole.
+/// Draws the crosses of marked points.
 fn draw_crosses(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, curves: &[Response]) {
-    /// Height above the lower side of a cross that stands for a point without a mean.
+    /// Height above the lower side of the cross of a point without a mean.
     const LIFT: f64 = 14.0;
     for curve in curves {
         for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point)) {
@@ -275,7 +274,7 @@ mod tests {
         svg
     }
 
-    /// Number of bands: only they are polygons with so opaque a fill.
+    /// Number of bands: no other polygons have this opacity.
     fn bands(svg: &str) -> usize {
         svg.matches("fill-opacity=\"0.2\"").count()
     }
@@ -355,7 +354,7 @@ mod tests {
         assert!(logarithmic.contains(">100</text>") && !logarithmic.contains("NaN"));
     }
 
-    /// A cross is two lines more, on the marker or on the lower side.
+    /// A cross adds two lines, on the marker or on the lower side.
     #[test]
     fn points_that_are_not_whole_are_crossed() {
         let mut plain = curve("", &[(1.0, 0.3), (2.0, 0.5), (3.0, 0.4)]);

@@ -48,7 +48,7 @@ const MARKERS: [&[CanvasPoint]; 4] = [
 ];
 
 /// Draws the marker of curve `index`, in a shape of its own because colours do not survive a copier, with a
-/// thin white rim that parts it from the curves below.
+/// thin white rim that separates it from the curves below.
 pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): CanvasPoint, radius: f64, colour: Rgb) {
     let Some(shape) = (index % (MARKERS.len() + 1)).checked_sub(1) else {
         return canvas.dot((x, y), radius, colour);
@@ -59,7 +59,7 @@ pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): CanvasPoint, rad
     }
 }
 
-/// Draws a cross, the mark of a point that is not whole.
+/// Draws the cross of a marked point.
 pub(crate) fn cross(canvas: &mut Canvas, (x, y): CanvasPoint) {
     /// Length of an arm of the cross.
     const ARM: f64 = 9.0;

@@ -1,4 +1,4 @@
-//! Names that are cut where they are alike, and kept where they differ.
+//! Shortening of names: common parts are cut, and differences are kept.
 
 use crate::text::Text;
 
@@ -19,11 +19,11 @@ fn text(letters: &[char]) -> String {
     letters.iter().collect()
 }
 
-/// Names no wider than `room`. Different names differ where they are cut; if that is impossible, they are
+/// Names cut to at most the width `room`. Different names remain different; if that is impossible, they are
 /// numbered.
 pub(crate) fn fitted_names(names: &[&str], size: u32, room: f64) -> Vec<Text> {
     let whole: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
-    // The same without what all of them start with.
+    // The names without their common start.
     let start = common(&whole);
     let rest = whole.iter().map(|name| name[start.min(name.len())..].to_vec());
     let rest: Vec<Vec<char>> = rest.collect();
@@ -45,7 +45,7 @@ pub(crate) fn fitted_names(names: &[&str], size: u32, room: f64) -> Vec<Text> {
     names.iter().enumerate().map(numbered).collect()
 }
 
-/// A name as it is, if there is room for it, or as much of a part of it as there is room for.
+/// The name if it fits, or else `before` and as much of the part `from` of the name as fits.
 fn shortened(name: &[char], from: &[char], before: &str, cut: Cut, size: u32, room: f64) -> String {
     let fits = |name: &str| Text::plain(name, size).width() <= room;
     let name = text(name);
@@ -58,8 +58,8 @@ fn shortened(name: &[char], from: &[char], before: &str, cut: Cut, size: u32, ro
     cuts.find(|cut| fits(cut)).unwrap_or_default()
 }
 
-/// The folder that all names begin with, with its slash, and the names without it. A folder that is the whole
-/// of a name, and one of a single name, is no folder in common.
+/// The folder that all names begin with, with its slash, and the names without it. A folder that is a
+/// complete name does not count, and a single name has no common folder.
 pub(crate) fn without_common_folder<'n>(names: &[&'n str]) -> (&'n str, Vec<&'n str>) {
     let letters: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
     let Some(first) = names.first().filter(|_| names.len() > 1) else {
@@ -136,7 +136,7 @@ mod tests {
         ] {
             assert_eq!(without_common_folder(apart), ("", apart.to_vec()));
         }
-        // The same run twice has a name left.
+        // A run that is given twice keeps its name.
         assert_eq!(without_common_folder(&["r/a", "r/a"]).1, ["a", "a"]);
     }
 
@@ -146,7 +146,7 @@ mod tests {
         let c = format!("c{a}");
         let cut = fitted(&[&a, &b, &c], 200.0);
         assert!(cut[0].starts_with("1: ") && cut[2].starts_with("3: "), "{cut:?}");
-        // The same name twice cannot be told apart.
+        // Two equal names cannot be distinguished.
         assert_eq!(fitted(&[&a, &a], 200.0)[0], fitted(&[&a, &a], 200.0)[1]);
     }
 }

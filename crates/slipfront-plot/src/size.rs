@@ -1,26 +1,26 @@
-//! Size of a picture and of its letters, as a user asks for them.
+//! Size of a picture and of its letters, as requested by a user.
 
 use crate::picture_error::PictureError;
 use crate::style::{DPI, MM, SIZE_TEXT};
 
-/// Size of all text unless another is asked for, pt.
+/// Default size of all text, pt.
 const TEXT_PT: f64 = SIZE_TEXT as f64 / DPI * 72.0;
-/// Least width of a picture, and least heights of one panel and of two with all below them, in units of
-/// letters of the usual size: less leaves no room for a curve.
+/// Least width of a picture, and least heights of one panel and of two panels with everything below them, in
+/// pixels for letters of the usual size: smaller sizes leave no room for a curve.
 const MIN_WIDTH: f64 = 500.0;
 const MIN_PANEL: f64 = 160.0;
 const MIN_PANELS: f64 = 330.0;
 
-/// Size of a picture and of its letters; what is not given is as usual. Lines and marks grow and shrink with
-/// the letters.
+/// Size of a picture and of its letters; values that are not given have their defaults. Lines and marks grow
+/// and shrink with the letters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureSize {
     /// Width, mm.
     pub width_mm: Option<f64>,
     /// Height, mm.
     pub height_mm: Option<f64>,
-    /// Size of all text, pt; of titles and of numbers in cells that have no room in it, seven eighths of
-    /// that, and of subscripts 0.72 of it.
+    /// Size of all text, pt. Titles and numbers in cells that do not fit in this size have seven eighths of
+    /// it; subscripts have 0.72 of it.
     pub font_pt: Option<f64>,
 }
 
@@ -52,7 +52,8 @@ impl PictureSize {
         self.wide_enough(usual, MIN_WIDTH)
     }
 
-    /// Width of a picture that is usually this wide and is at least so wide, before it is scaled.
+    /// Width of a picture that is usually `usual` wide and must be at least `least` wide, before it is
+    /// scaled.
     ///
     /// # Errors
     /// [`PictureError::TooSmall`], with the least width for these letters.
@@ -62,7 +63,8 @@ impl PictureSize {
         Ok(width)
     }
 
-    /// Height of each of `panels` that usually are this high, beside what takes `others` of the height.
+    /// Height of each of `panels` panels that are usually this high; everything else takes `others` of the
+    /// height.
     ///
     /// # Errors
     /// [`PictureError::TooSmall`] for a height that leaves no room for curves, with the least height for
@@ -97,7 +99,7 @@ impl PictureSize {
     }
 
     fn expect(self, side: &'static str, found: f64, least: f64) -> Result<(), PictureError> {
-        // Rounding of a height that is as others leave it.
+        // Tolerance for the rounding of a height that is just enough.
         if found >= least - 1e-6 {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! A sketch: lines, areas and arrows with names beside them, all on one scale.
+//! A sketch: lines, areas and arrows with names, all on one scale.
 
 use serde::{Deserialize, Serialize};
 
@@ -64,7 +64,7 @@ pub fn sketch(sketch: &Sketch) -> Result<Picture, PictureError> {
     if !(right - left > 0.0 && top - bottom > 0.0) {
         return Err(PictureError::Nothing("line"));
     }
-    // Names stand on their points and may reach half of their width beyond the outermost line.
+    // Names are centred on their points and may extend half of their width beyond the outermost line.
     let edge = MARGIN + f64::from(SIZE_TEXT);
     let scale = (COLUMN_WIDTH - 2.0 * edge) / (right - left);
     let place = |&[x, y]: &[f64; 2]| (edge + scale * (x - left), edge + scale * (top - y));
@@ -96,7 +96,7 @@ fn draw(canvas: &mut Canvas, style: StrokeStyle, mut points: Vec<CanvasPoint>) {
                 let (x, y) = (HEAD * (to.0 - from.0) / length, HEAD * (to.1 - from.1) / length);
                 let side = |turn: f64| (to.0 - x + turn * y, to.1 - y - turn * x);
                 canvas.polygon(vec![to, side(0.35), side(-0.35)], BLACK, 1.0);
-                // The line ends within the head, whose tip stays sharp.
+                // The line ends within the head, so that the tip stays sharp.
                 points.pop();
                 points.push((to.0 - 0.5 * x, to.1 - 0.5 * y));
             }

@@ -18,11 +18,11 @@ use crate::text::{Text, number};
 use crate::ticks::{Direction, Tick};
 
 const GAP: f64 = 30.0;
-/// Largest width of maps beside each other, 44 mm, and largest height.
+/// Largest width of maps side by side, 44 mm, and largest height.
 const MAX_WIDTH: f64 = 520.0;
 const MAX_HEIGHT: f64 = 620.0;
-/// Ratio of length to width above which a slider is long. Along x two of its maps stand side by side, or one
-/// if it is longer yet; along y all stand in one row.
+/// Ratios of length to width above which a slider is long and very long. A slider that is long along x has
+/// two maps in a row, a very long one has one; a slider that is long along y has all maps in one row.
 const LONG: f64 = 3.0;
 const VERY_LONG: f64 = 10.0;
 /// Least thickness of the map of a slider that is long along x, over its length.
@@ -52,23 +52,25 @@ pub struct StressMaps {
     pub ny: usize,
     /// Edge of a block, in metres.
     pub block_size: f64,
-    /// True for every [cell](CellMeans) of which most is textured, row by row from y = 0.
+    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
     pub textured: Vec<bool>,
     /// The maps, in the order in which they are drawn.
     pub maps: Vec<StressMap>,
-    /// Quantity of the maps' values, beside the colour bar; the letter after an underscore is a subscript.
+    /// Quantity of the maps' values, next to the colour bar; the letter after an underscore is a subscript.
     pub value_title: String,
     /// Values at the ends of the colour bar; values beyond are drawn as the ends.
     pub range: [f64; 2],
-    /// Whether mu* is a torque, of a drive that rotates.
+    /// Whether mu* is the torque of a rotating drive.
     pub is_torque: bool,
 }
 
-/// Draws the maps, three in a row, at most as wide as a journal's text (175 mm) or as wide as asked for, with
-/// fewer in a row where they would be small, all on one colour scale, the textured area outlined. A slider
-/// that is long along x has two maps in a row, or one; a slider that is long along y has all in one row.
+/// Draws the maps on one colour scale, with the textured area outlined. The picture is at most as wide as a
+/// journal's text (175 mm), or as wide as requested. There are three maps in a row, or fewer if they would be
+/// too small. A slider that is long along x has two maps in a row, or one; a slider that is long along y has
+/// all in one row.
 ///
-/// A slider more than twelve times as long as wide, six times along y, is drawn as if it were that long.
+/// A slider more than twelve times as long as wide (six times if it is long along y) is drawn with that
+/// ratio.
 ///
 /// # Errors
 ///
@@ -148,7 +150,8 @@ impl Side {
 }
 
 impl StressLayout {
-    /// Maps in a picture of this width, or narrower ones if it is not asked for.
+    /// Layout of maps in a picture of this width; the maps are not wider than usual unless the width is
+    /// requested.
     fn of(maps: &StressMaps, width: f64, is_asked: bool) -> Self {
         let [length_x, length_y] = [maps.nx, maps.ny].map(|count| count as f64 * maps.block_size);
         let sides = [Side::of("x", length_x), Side::of("y", length_y)];
@@ -170,7 +173,7 @@ impl StressLayout {
         let bar_of = |height| ColourBar::labelled(&maps.value_title, maps.range, height);
         let left = left_room(&sides[1].ticks(MAX_HEIGHT, 0.0, Direction::Y));
         let right = bar_of(MAX_HEIGHT).room() + MARGIN;
-        // The last number below a map stands apart from the first one below the next.
+        // Keeps the last number below a map apart from the first number below the next map.
         let numbers = sides[0].ticks(0.0, MAX_WIDTH, Direction::X);
         let gap = numbers.iter().map(|(_, text)| text.width()).fold(GAP, f64::max) + GAP;
         let room_of = |columns: usize| (width - left - right - GAP + gap) / columns as f64;
@@ -185,7 +188,7 @@ impl StressLayout {
             is_asked && (width_of(*columns) < least || room_of(*columns) < title + GAP)
         };
         let most = (1..=most).rev().find(|columns| !is_small(columns)).unwrap_or(1);
-        // As many in one row as in the others.
+        // Spreads the maps evenly over the rows.
         let rows = maps.maps.len().div_ceil(most);
         let columns = maps.maps.len().div_ceil(rows);
         let room = room_of(columns);
@@ -242,7 +245,7 @@ impl StressLayout {
     }
 }
 
-/// The lines over a map, time and friction if that is known: two, or both in the second.
+/// The two lines over a map: time, and friction if it is known; with `in_one`, both are in the second line.
 fn titles(map: &StressMap, is_torque: bool, in_one: bool) -> [Text; 2] {
     let time = format!("t* = {}", number(map.time_star, 1));
     let time = match map.label.as_str() {

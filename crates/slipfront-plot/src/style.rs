@@ -11,7 +11,7 @@ pub(crate) const TEXT_WIDTH: f64 = 175.0 * MM;
 
 /// Size of all text: 8 pt.
 pub(crate) const SIZE_TEXT: u32 = 33;
-/// Size of titles, and of numbers in cells, that have no room in the usual one: 7 pt.
+/// Size of titles and of numbers in cells that do not fit in the usual size: 7 pt.
 pub(crate) const SIZE_NARROW: u32 = 29;
 
 /// Width of a curve: 0.9 pt.
@@ -56,7 +56,7 @@ pub(crate) const CURVES: [Rgb; 7] = [
 #[derive(Clone, Copy)]
 pub(crate) struct CurveStyle {
     pub(crate) colour: Rgb,
-    /// Lengths of the curve's dashes and of the gaps after them; empty for a whole line.
+    /// Lengths of the curve's dashes and of the gaps after them; empty for a solid line.
     pub(crate) dashes: &'static [f64],
 }
 

@@ -87,7 +87,7 @@ fn tag(element: &Element) -> String {
 /// An image scaled to its area. Cells are pixels, because neighbouring rectangles leave hairline seams
 /// between them in most viewers.
 fn image_tag(image: &Image) -> Result<String, PictureError> {
-    // Both properties: the second is what browsers know, the first what older viewers know.
+    // Sets both properties: browsers support the second one, older viewers the first one.
     Ok(format!(
         "<image {} preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" \
          style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
@@ -96,7 +96,7 @@ fn image_tag(image: &Image) -> Result<String, PictureError> {
     ))
 }
 
-/// An image as a PNG of its own.
+/// An image as a separate PNG.
 fn image_png(image: &Image) -> Result<Vec<u8>, PictureError> {
     let (columns, rows, levels) = image.repeated();
     png_file::encode(columns, rows, &levels, Some(palette().concat()))
@@ -121,12 +121,12 @@ fn hex([red, green, blue]: Rgb) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A text as XML holds it.
+/// A text, escaped for XML.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
-        // The two characters that XML does not allow and that are no control characters.
+        // The only two characters, apart from control characters, that XML does not allow.
         .replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }
 

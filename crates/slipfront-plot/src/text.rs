@@ -26,8 +26,8 @@ pub(crate) struct TextRun {
 }
 
 impl Text {
-    /// A text as it is, for the words of a user: control characters and doubled spaces, which SVG does not
-    /// keep, are dropped. Unicode's subscript letters, which the font lacks, become small letters.
+    /// A text of a user, without markup. Control characters and repeated spaces, which SVG does not keep, are
+    /// dropped. Unicode's subscript letters, which the font lacks, become lowered ordinary letters.
     pub(crate) fn plain(text: &str, size: u32) -> Self {
         let words = text.split(|c: char| c.is_whitespace() || c.is_control());
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
@@ -48,7 +48,7 @@ impl Text {
         Self::set(letters, size)
     }
 
-    /// A number as it is written in source, its power of ten set as one: `1.2e-9`.
+    /// A number in source notation, such as `1.2e-9`, with its power of ten as a superscript.
     pub(crate) fn number(written: &str, size: u32) -> Self {
         let Some((digits, power)) = written.split_once('e') else {
             return Self::plain(written, size);
@@ -81,8 +81,7 @@ impl Text {
         }
     }
 
-    /// A title no wider than `room`: in the size of all text, else in the size of titles without room, else
-    /// cut.
+    /// A title no wider than `room`: in the usual size, else in the smaller size, else cut.
     pub(crate) fn fitted(text: &str, room: f64) -> Self {
         let whole = Self::plain(text, SIZE_TEXT);
         if whole.width() <= room {
@@ -152,7 +151,7 @@ enum Height {
     Above,
 }
 
-/// Unicode's subscript letters, and the letters that they are.
+/// Unicode's subscript letters, and the corresponding ordinary letters.
 const SUBSCRIPTS: [&str; 2] = [
     "\u{2090}\u{2091}\u{2092}\u{2093}\u{2095}\u{2096}\u{2097}\u{2098}\u{2099}\u{209a}\u{209b}\u{209c}\
      \u{1d62}\u{1d63}\u{1d64}\u{1d65}",

@@ -1,4 +1,4 @@
-//! Round numbers along an axis, as many as keep apart.
+//! Round numbers along an axis, as many as fit.
 
 use crate::axis::DrawnAxis;
 use crate::style::SIZE_TEXT;
@@ -36,8 +36,8 @@ impl DrawnAxis {
         // A logarithmic axis of less than about half a decade is numbered like a linear one.
         if choices.first().is_none_or(|ticks| ticks.len() < 3) {
             choices = (2..=most).rev().map(|most| self.linear_ticks(most)).collect();
-            // An axis may lie between two numbers that are half of it apart; of those a third apart it has
-            // one.
+            // An axis can lie between two round numbers that are half its length apart, but it contains at
+            // least one of those that are a third apart.
             choices.retain(|ticks| !ticks.is_empty());
             if choices.is_empty() {
                 choices.push(self.linear_ticks(3));
@@ -46,7 +46,7 @@ impl DrawnAxis {
         if let Some(chosen) = choices.iter().find(|ticks| apart(ticks, direction)) {
             return chosen.clone();
         }
-        // The outermost two, or one, which touches no other.
+        // Keeps the two outermost numbers, or only one if they touch.
         let mut sparsest = choices.pop().unwrap_or_default();
         sparsest.drain(1.min(sparsest.len())..sparsest.len().saturating_sub(1));
         if !apart(&sparsest, direction) {
@@ -90,7 +90,8 @@ impl DrawnAxis {
         ticks.iter().map(tick).collect()
     }
 
-    /// Digits times powers of ten on the axis, only multiples of `every`, and their pixels.
+    /// Values on the axis that are a digit times a power of ten, with their pixels; exponents are multiples
+    /// of `every`.
     fn round_logarithms(&self, digits: &[f64], every: i32) -> Vec<(f64, i32, f64)> {
         let tolerance = 1e-9 * (self.hi - self.lo);
         let (from, to) = (self.lo - tolerance, self.hi + tolerance);
@@ -116,7 +117,7 @@ pub(crate) fn apart(ticks: &[Tick], direction: Direction) -> bool {
     })
 }
 
-/// The distance of round values from `lo` to `hi`, and the values; none if `lo` and `hi` lie between two of
+/// The step between round values from `lo` to `hi`, and the values; none if `lo` and `hi` lie between two of
 /// them.
 pub(crate) fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
     let step = round_step((hi - lo) / most.max(2) as f64);
@@ -238,8 +239,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Whatever its range and its length, an axis has numbers: on the axis, none touching the next, and
-        /// no two alike.
+        /// For any range and length, an axis has numbers that lie on it, do not touch and are all different.
         #[test]
         fn numbers_of_any_axis_differ_and_are_apart(
             middle in -1.0..1.0, power in -12..12, spread in -6.0..0.0, length in 1.0..3000.0, most in 2..=MAX_STEPS,
@@ -250,7 +250,7 @@ mod tests {
             let ticks = axis.ticks(Direction::X, most);
             prop_assert!((1..=most + 1).contains(&ticks.len()));
             prop_assert!(apart(&ticks, Direction::X));
-            // A billionth of the range is rounding, that of a middle a million times as large as the range.
+            // Tolerance for rounding: the middle can be a million times as large as the range.
             let is_on_axis = |(at, _): &Tick| (-1e-9 * length..=(1.0 + 1e-9) * length).contains(at);
             prop_assert!(ticks.iter().all(is_on_axis));
             let mut numbers = texts(ticks);

@@ -1,5 +1,5 @@
-//! A TrueType font of the few letters of one picture, as a PDF embeds it: the tables that a PDF asks for, and
-//! no more. The outlines are those of `font.rs`, rounded to whole units of the font.
+//! A TrueType font of the few letters of one picture, as a PDF embeds it, with only the tables that a PDF
+//! requires. The outlines are those of `font.rs`, rounded to whole units of the font.
 
 use crate::font::{GlyphPart, UNITS_PER_EM, advance, outline};
 
@@ -7,7 +7,7 @@ use crate::font::{GlyphPart, UNITS_PER_EM, advance, outline};
 pub(crate) const ASCENT: i16 = 1901;
 pub(crate) const DESCENT: i16 = -483;
 
-/// A glyph as the font holds it.
+/// A glyph as encoded in the font.
 struct EncodedGlyph {
     data: Vec<u8>,
     width: u16,
@@ -17,10 +17,10 @@ struct EncodedGlyph {
     contours: u16,
 }
 
-/// A point of a contour, and whether the contour runs through it.
+/// A point of a contour, and whether it is on the curve.
 type OutlinePoint = ([i16; 2], bool);
 
-/// A font whose glyph 0 stands for letters that it lacks, and whose others are those of `letters`.
+/// A font with the glyphs of `letters`; glyph 0 represents letters that the font lacks.
 pub(crate) fn font_of(letters: &[char]) -> Vec<u8> {
     let missing = std::iter::once('\u{0}');
     let glyphs: Vec<EncodedGlyph> = missing.chain(letters.iter().copied()).map(encoded).collect();
@@ -57,7 +57,7 @@ pub(crate) fn font_of(letters: &[char]) -> Vec<u8> {
         &mut maxp,
         &[count, most(|glyph| glyph.points), most(|glyph| glyph.contours)],
     );
-    // No composite glyphs, and one zone for instructions, of which there are none.
+    // No composite glyphs, no instructions, and one zone.
     put(&mut maxp, &[0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0]);
     file(&[
         (b"glyf", glyf),
@@ -93,7 +93,7 @@ fn contours(letter: char) -> Vec<Vec<OutlinePoint>> {
         match part {
             GlyphPart::Line(point) => contour.push((whole(point), true)),
             GlyphPart::Curve([control, end]) => contour.extend([(whole(control), false), (whole(end), true)]),
-            // A contour is closed by itself.
+            // TrueType closes contours implicitly.
             GlyphPart::Start(_) | GlyphPart::Close => {
                 if contour.len() > 1 && contour.first() == contour.last() {
                     contour.pop();
@@ -139,7 +139,7 @@ fn encoded(letter: char) -> EncodedGlyph {
     }
 }
 
-/// A font file of these tables, which are in the order of their names.
+/// A font file of these tables, which are sorted by name.
 fn file(tables: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     let count = tables.len() as u16;
     let power = count.ilog2();
@@ -177,7 +177,7 @@ fn checksum(table: &[u8]) -> u32 {
 mod tests {
     use super::*;
 
-    /// The table of this name, by the directory of the file.
+    /// The table of this name, found through the directory of the file.
     fn table<'f>(file: &'f [u8], name: &[u8; 4]) -> &'f [u8] {
         let entry = file[12..]
             .chunks(16)

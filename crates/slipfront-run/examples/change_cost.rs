@@ -1,11 +1,12 @@
-//! Time of a change on the way: the case with another texture, and the leg that goes on under it.
+//! Time of a change during a run: making the case with another texture, and starting the leg that continues
+//! under it.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-run --example change_cost -- 256 1
 //! ```
 //!
-//! 256 x 256 blocks on one thread, sliding, whose texture is an image that changes from leg to leg, as while
-//! a person paints it. Prints the median of each part in ms.
+//! The example above has 256 x 256 sliding blocks on one thread. Their texture is an image that changes from
+//! leg to leg, as if a person were painting it. Prints the median time of each part in ms.
 
 use std::error::Error;
 use std::fs;
@@ -17,7 +18,7 @@ use slipfront::Execution;
 use slipfront_case::case::Case;
 use slipfront_run::running::Running;
 
-/// Changes that are timed.
+/// Number of timed changes.
 const CHANGES: usize = 21;
 
 fn main() -> Result<(), Box<dyn Error>> {

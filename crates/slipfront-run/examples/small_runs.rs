@@ -1,12 +1,13 @@
-//! Time of a small run beside its steps: from a case in memory to its numbers in one call, without files.
+//! Time of a small run compared with that of its steps: from a case in memory to its numbers in one call,
+//! without files.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-run --example small_runs -- 50
 //! ```
 //!
 //! 50 x 50 blocks with a texture on one thread, to the end of the first peak and along a path. Prints the
-//! least time in ms of making the case, of its steps alone, of the run whose numbers alone are kept, and of
-//! the run that records all that its files need, each over that of the steps.
+//! least time in ms of making the case, of its steps alone, of a run that keeps only its numbers, and of a
+//! run that records everything for its files; the last two also over the time of the steps.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -18,7 +19,7 @@ use slipfront_case::case::Case;
 use slipfront_run::run_summary::run_summary;
 use slipfront_run::running;
 
-/// Times that each part is done, by turns.
+/// Number of repetitions of each part; the parts alternate.
 const ROUNDS: usize = 15;
 
 fn main() -> Result<(), Box<dyn Error>> {

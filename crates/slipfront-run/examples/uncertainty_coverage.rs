@@ -1,14 +1,14 @@
-//! Share of the 95 % intervals of mu_k* that hold the mean of an infinite run of the same surface.
+//! Share of the 95 % intervals of mu_k* that contain the mean of an infinite run of the same surface.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-run --example uncertainty_coverage -- 1001 1334
 //! ```
 //!
-//! 25 x 25 blocks in three regimes, a run for each seed: the speed of the paper's runs, ten times its
-//! damping, and a third of its speed. The mean of a run five times as long as its longest window, whose error
-//! is as much smaller, stands for that of an infinite one. Prints for windows of these lengths the number
-//! that give a standard error, the root mean square of z, which is the deviation over that error, and the
-//! number of intervals of +-1.96 errors that hold the mean.
+//! Runs 25 x 25 blocks, once for each seed, in three regimes: the speed and damping of the paper, ten times
+//! the damping, and a third of the speed. The mean over a window five times as long as the longest tested
+//! one, which has a smaller error, represents the mean of an infinite run. Prints, for each length of the
+//! windows, the number of windows that give a standard error, the root mean square of z (the deviation over
+//! the standard error), and the number of intervals of +-1.96 standard errors that contain the mean.
 
 use std::error::Error;
 

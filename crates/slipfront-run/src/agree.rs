@@ -1,4 +1,4 @@
-//! One outcome of all ranks: a failure on one of them is a failure on all.
+//! A common outcome of all ranks: a failure on one of them is a failure on all.
 //!
 //! A rank that gave up alone would leave the others waiting for it.
 
@@ -8,7 +8,7 @@ use slipfront::Communicator;
 use slipfront::communicator::{lowest_rank, text_of};
 use thiserror::Error;
 
-/// Reason for which ranks gave up, equal on every rank.
+/// Reason why the ranks gave up; it is the same on every rank.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{sentence}")]
 pub struct RankFailure {
@@ -19,7 +19,7 @@ pub struct RankFailure {
 }
 
 /// Returns the outcome of this rank if all have succeeded, else the failure of the lowest rank that failed.
-/// Every rank must ask.
+/// Every rank must call this function.
 ///
 /// ```
 /// use slipfront::communicator::Alone;
@@ -37,7 +37,7 @@ pub fn agree<T>(communicator: &dyn Communicator, outcome: Result<T, RankFailure>
         return outcome;
     };
     let own = outcome.err().filter(|_| communicator.rank() == lowest);
-    // The others have zero: the sum is that of the lowest.
+    // All other ranks contribute zero, so the sum is the status of the lowest rank.
     let mut status = [own.as_ref().map_or(0, |own| i64::from(own.status))];
     communicator.sum(&mut status);
     let sentence = own.map(|own| own.sentence).unwrap_or_default();

@@ -1,9 +1,9 @@
-//! Checksums (BLAKE3), by which changed and damaged files are noticed.
+//! Checksums (BLAKE3) that detect changed and damaged files.
 //!
 //! A checksummed file is its contents followed by a hash. The hash of a small file is taken over a context
 //! and the contents; the context names the conditions under which the contents are valid, such as a build of
 //! the program, and is not written. The hash of a large file is taken over the hashes of its pieces, which
-//! several ranks find together.
+//! several ranks compute together.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
@@ -15,11 +15,10 @@ use crate::agree::agree_on_io;
 /// Bytes of a piece; the last piece may be shorter.
 const PIECE: u64 = 4 << 20;
 
-/// Pieces whose hashes are in memory at once, in 2 MiB.
+/// Number of pieces with hashes in memory at the same time, which take 2 MiB.
 const PIECES_AT_ONCE: u64 = 1 << 16;
 
-/// The hash of the hashes of all pieces of the first `length` bytes of a file, of which every rank reads its
-/// share.
+/// The hash of the hashes of all pieces of the first `length` bytes of a file; every rank reads its share.
 ///
 /// # Errors
 /// When one of the ranks cannot read its share.
@@ -33,7 +32,7 @@ pub fn hash_of_pieces(
     let mut hasher = Hasher::new();
     for first in (0..n_pieces).step_by(PIECES_AT_ONCE as usize) {
         let n = PIECES_AT_ONCE.min(n_pieces - first);
-        // Those of other ranks are zero, so that the sum over the ranks has all of them.
+        // Hashes of other ranks are zero here, so that the sum over the ranks has all hashes.
         let mut words = vec![[0; OUT_LEN / size_of::<i64>()]; n as usize];
         let mut hash_own = || {
             for piece in n * rank / ranks..n * (rank + 1) / ranks {
@@ -71,7 +70,7 @@ pub fn with_checksum(context: &[u8], contents: &[u8]) -> Vec<u8> {
     [contents, hash(context, contents).as_bytes()].concat()
 }
 
-/// The contents of a checksummed file; none if the checksum does not fit.
+/// The contents of a checksummed file; none if the checksum is wrong.
 pub fn verified<'f>(context: &[u8], file: &'f [u8]) -> Option<&'f [u8]> {
     let (contents, checksum) = file.split_at_checked(file.len().checked_sub(OUT_LEN)?)?;
     (hash(context, contents).as_bytes() == checksum).then_some(contents)
@@ -105,8 +104,8 @@ mod tests {
         }
     }
 
-    /// Any number of ranks finds the hash of the hashes of the pieces, for files that end at, before and
-    /// behind the end of a piece.
+    /// Any number of ranks computes the hash of the hashes of the pieces, for files that end at, before and
+    /// after the end of a piece.
     #[test]
     fn any_number_of_ranks_finds_the_same_hash_of_pieces() {
         let piece = PIECE as usize;

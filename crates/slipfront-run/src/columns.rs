@@ -1,9 +1,9 @@
-//! Places of the numbers of blocks in a checkpoint.
+//! Positions of the numbers of blocks in a checkpoint.
 
 use serde::{Deserialize, Serialize};
 
-/// Arrays of one shape, one after the other, each with the numbers of all rows of the lattice. Processes that
-/// hold some rows find the places of their own numbers.
+/// Arrays of the same shape, one after the other, each with the numbers of all rows of the lattice. Processes
+/// that hold some rows can compute the positions of their own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Columns {
     /// Number of arrays.
@@ -23,8 +23,8 @@ impl Columns {
         numbers.checked_mul(self.number_bytes)
     }
 
-    /// Bytes before a number of the array `column`: the one of index `number` from the beginning of row `row`
-    /// on.
+    /// Byte offset of a number in the array `column`: the number with index `number` from the beginning of
+    /// row `row`.
     pub(crate) fn offset(&self, column: usize, row: usize, number: usize) -> u64 {
         let [column, row, number] = [column, row, number].map(|index| index as u64);
         ((column * self.rows + row) * self.row_length + number) * self.number_bytes

@@ -11,27 +11,27 @@ use slipfront_case::case::{Case, ExpectedSteps};
 
 use crate::running::Running;
 
-/// Measurements of each kind in an estimate.
+/// Number of measurements of each kind in an estimate.
 const MEASUREMENTS: usize = 5;
-/// Duration of a measurement, which has one step at least, in s.
+/// Duration of a measurement, which has at least one step, in s.
 const MEASUREMENT: f64 = 0.005;
-/// Duration of the measurements of a kind from which on no other begins.
+/// Total duration of the measurements of a kind after which no further one begins.
 const ENOUGH: Duration = Duration::from_millis(300);
-/// Duration of a pilot run whose blocks slide in every step, in s.
+/// Duration of a pilot run in which blocks slide in every step, in s.
 const PILOT: f64 = 0.5;
-/// Largest number of blocks of a pilot run, which takes a second model into memory.
+/// Largest number of blocks of a pilot run, which holds a second model in memory.
 const MOST_PILOT_BLOCKS: usize = 1_000_000;
-/// V* N above which blocks slide in every step: a faster pilot has as many of them.
+/// V* N above which blocks slide in every step: a faster pilot run has no larger share of such steps.
 const ALWAYS_SLIDING: f64 = 5.0;
 
-/// Bounds of the time that a computation takes on a machine without other work, in s, from a short run of it.
-/// In JSON it is `[least, most]`, where no upper bound is null.
+/// Bounds of the time of a computation on an otherwise idle machine, in s, estimated from a short run. In
+/// JSON it is `[least, most]`; a missing upper bound is null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(into = "[f64; 2]")]
 pub struct TimeRange {
     /// The lower bound.
     pub least: f64,
-    /// The upper bound; infinite if a held drive may stand for any number of steps.
+    /// The upper bound; infinite if a held drive may pause for any number of steps.
     pub most: f64,
 }
 
@@ -64,34 +64,34 @@ impl Mul<f64> for TimeRange {
 /// Time of a step of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTime {
-    /// While the slider rests, in s: most of its blocks are skipped.
+    /// Time while the slider rests, in s: most of its blocks are skipped.
     pub at_rest: f64,
-    /// While blocks slide, in s: every block is computed.
+    /// Time while blocks slide, in s: every block is computed.
     pub sliding: f64,
     slip: SlipTime,
 }
 
-/// Time by which slip lengthens the steps, in the mean of a run: slip takes a time of its own, however slow
-/// the loading is between. It follows V* N, the time in which a slip front crosses the slider over that of
-/// loading, as
+/// Mean time per step of a run by which slip lengthens the steps. Slip takes a certain time, however slow the
+/// loading between slips is. The time depends on V* N, the ratio of the time in which a slip front crosses
+/// the slider to the time of loading, as
 ///
 /// ```text
 /// t (V* N/x)^e
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SlipTime {
-    /// V* N at which the time was found.
+    /// x, the V* N at which the time t was found.
     front_ratio: f64,
-    /// Bounds of the time of a step, in s.
+    /// Bounds of the time t, in s.
     seconds: TimeRange,
-    /// Longest time of a step, in s: that of a step in which blocks slide.
+    /// Upper limit of the time, in s, which it has if blocks slide in every step.
     longest: f64,
     /// Exponents of the lower and of the upper bound at a smaller V* N.
     exponents: [f64; 2],
 }
 
 impl StepTime {
-    /// Measures some steps of a case, and a run of it that a faster drive makes short.
+    /// Measures some steps of a case, and a run of the case that is shortened by a faster drive.
     pub fn of(case: &Case) -> Self {
         let at_rest = measured(case, None);
         let sliding = measured(case, Some(sliding(case)));
@@ -119,9 +119,10 @@ impl StepTime {
 }
 
 impl SlipTime {
-    /// The time from a run over the whole path of the drive, as fast as its time has to be short; none where
-    /// a faster drive is no other case of the same kind. In Coulomb friction slip takes a smaller share of
-    /// the steps at a slower drive; where strength falls with slip, blocks creep, and it takes as much.
+    /// The time from a pilot run over the whole path of the drive, which is fast enough to keep the run
+    /// short; none if a faster drive would change the kind of the case, or if the case has too many blocks.
+    /// With Coulomb friction, slip takes a smaller share of the steps under a slower drive. Where strength
+    /// falls with slip, blocks creep, and slip takes the same share.
     fn of_pilot(case: &Case, at_rest: f64, sliding: f64) -> Option<Self> {
         let drive = &case.model.drive;
         if drive.program.is_some() || drive.is_held() || case.model.n_blocks() > MOST_PILOT_BLOCKS {
@@ -145,8 +146,8 @@ impl SlipTime {
         })
     }
 
-    /// The time where none was measured: in runs with V* N from 0.002 to 5 blocks slid in half or twice (V*
-    /// N)^0.4/2 of the steps.
+    /// The time if none was measured: in runs with V* N from 0.002 to 5, the share of steps with sliding
+    /// blocks was within a factor of two of (V* N)^0.4/2.
     fn expected(at_rest: f64, sliding: f64) -> Self {
         let longer = (sliding - at_rest).max(0.0);
         Self {
@@ -173,7 +174,7 @@ impl SlipTime {
     }
 }
 
-/// A state in which all blocks slide, and go on for longer than a measurement takes.
+/// A state in which all blocks slide for longer than a measurement takes.
 fn sliding(case: &Case) -> State {
     const SPEED_STAR: f64 = 1e3;
     let mut state = State::at_rest(case.model.lattice.n_blocks());
@@ -181,8 +182,8 @@ fn sliding(case: &Case) -> State {
     state
 }
 
-/// Time of a step in s, the shortest of some measurements from a state on, from the start of the case if
-/// there is none: a slider that begins to move is not at rest at once.
+/// Time of a step in s: the shortest of some measurements that start from a state, or from the start of the
+/// case if there is none. The shortest is taken because a slider that begins to move is not at rest at once.
 fn measured(case: &Case, state: Option<State>) -> f64 {
     let mut steps = Steps::new(case.clone(), state);
     // The first step brings the lattice into the cache.
@@ -201,7 +202,7 @@ fn measured(case: &Case, state: Option<State>) -> f64 {
 struct Steps(Running);
 
 impl Steps {
-    /// A run of a case from a state on, in which blocks slide in every step, or from its start.
+    /// A run of a case from a state in which blocks slide in every step, or from its start.
     fn new(case: Case, state: Option<State>) -> Self {
         let execution = Execution {
             skips: state.is_none(),
@@ -210,17 +211,17 @@ impl Steps {
         Self(Running::start(&Arc::new(case), state, execution))
     }
 
-    /// Time of so many steps in s, or of fewer if the run ends, and their number.
+    /// Time of `steps` steps in s, or of fewer if the run ends, and their number.
     fn seconds(&mut self, steps: u64) -> (f64, u64) {
         let (began, first) = (thread_time(), self.0.snapshot().step);
-        // A run that diverges ends, too.
+        // A run that diverges has also ended.
         let _ = self.0.advance(steps);
         let made = self.0.snapshot().step - first;
         ((thread_time() - began).as_secs_f64(), made)
     }
 
-    /// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read seldom,
-    /// since that takes as long as a step of a few blocks.
+    /// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read rarely,
+    /// because reading it takes as long as a step of a few blocks.
     fn seconds_per_step(&mut self) -> f64 {
         let (mut passed, mut steps) = (0.0, 0);
         while passed < MEASUREMENT {
@@ -243,8 +244,8 @@ impl Steps {
 mod tests {
     use super::*;
 
-    /// Slip takes a smaller share of the steps at a slower drive, and no share is larger than that of a
-    /// drive under which blocks slide all the time; how long a held drive stands has no bound.
+    /// Slip takes a smaller share of the steps at a slower drive, and no share is larger than under a drive
+    /// with which blocks slide all the time. The pauses of a held drive have no upper bound.
     #[test]
     fn the_time_of_steps_follows_the_share_of_slip() {
         let time = StepTime {

@@ -1,4 +1,4 @@
-//! The file of the last state of a run, in which another case can begin.
+//! The file of the last state of a run, from which another case can start.
 
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
@@ -6,7 +6,7 @@ use slipfront::State;
 use slipfront_case::arrays::head_of_state;
 use slipfront_case::case::Case;
 
-/// Writes what stands before the numbers.
+/// Writes the header, which comes before the numbers.
 pub(crate) fn create(case: &Case, output: &mut impl Write) -> io::Result<()> {
     let lattice = &case.model.lattice;
     output.write_all(&head_of_state(lattice.nx, lattice.ny))

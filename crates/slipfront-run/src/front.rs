@@ -1,4 +1,4 @@
-//! The slip front of a run, whose first slips several ranks may hold.
+//! The slip front of a run, from first slips that may be distributed over several ranks.
 
 use std::ops::RangeInclusive;
 
@@ -8,8 +8,8 @@ use slipfront::observe::{Front, Quantiles};
 use slipfront::{Edges, Lattice};
 use slipfront_case::case::Case;
 
-/// Largest number of blocks from which the front is found: of a larger lattice every n-th of each axis is
-/// taken. The first rank holds the times of all of them.
+/// Largest number of blocks from which the front is found; of a larger lattice, every n-th block along each
+/// axis is used. The first rank holds the times of all these blocks.
 const MAX_BLOCKS: usize = 1 << 22;
 
 /// Number of values that ranks exchange at once.
@@ -36,10 +36,10 @@ pub(crate) struct Nucleation {
     pub(crate) time_star: f64,
 }
 
-/// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on
-/// the others, and none if nothing has slipped. The front passes `during` these t*: for a slider driven at an
-/// edge one event alone, since between two events slip spreads as fast as the drive loads it. All ranks must
-/// call this together.
+/// The front of a run, from the first slips of the blocks that this rank holds. Only the first rank returns
+/// it; none if nothing has slipped. The front passes in the range `during` of t*. For a slider driven at an
+/// edge, this is a single event, because between two events slip spreads as fast as the drive loads the
+/// slider. All ranks must call this together.
 pub(crate) fn of_ranks(
     case: &Case,
     first_slips: &[f64],
@@ -72,7 +72,7 @@ fn of_thinned(
             n_contact += 1;
         }
     }
-    // An axis of which too few blocks are left has no more than edges.
+    // An axis with too few remaining blocks cannot be periodic.
     let edges = |axis: usize| {
         if [nx, ny][axis] < Lattice::MIN_PERIODIC {
             Edges::Free
@@ -199,8 +199,9 @@ mod tests {
         assert_eq!(summaries[0].front_duration_s, alone.front_duration_s);
     }
 
-    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads it. The front
-    /// of the event that crosses it runs at a speed of waves, whatever drives it.
+    /// Between the events of a slider driven at an edge slip spreads as fast as the drive loads the slider.
+    /// The front of the event that crosses the slider moves at about the speed of waves, whatever the speed
+    /// of the drive.
     #[test]
     fn of_a_slider_driven_at_an_edge_the_speed_is_that_of_the_event_that_crosses_it() {
         for v_star in [2.0, 1.0] {
@@ -220,7 +221,7 @@ mod tests {
         }
     }
 
-    /// A straight front over more blocks than the front is found from.
+    /// A straight front over more blocks than are used to find a front.
     #[test]
     fn a_large_lattice_is_thinned() {
         let case = Case::parse("slider.blocks = [61, 40]", "case", "", &[]).unwrap();

@@ -1,4 +1,4 @@
-//! A run that goes on under another case: a new leg of the same slider.
+//! A run that continues under another case: a new leg of the same slider.
 
 use std::sync::Arc;
 
@@ -13,18 +13,18 @@ use crate::running::Running;
 pub struct Leg {
     /// The run under the new case, at t* = 0.
     pub running: Running,
-    /// Steps of the leg before, with the one that had begun.
+    /// Steps of the previous leg, including the one in progress.
     pub steps: u64,
     /// t* of the drive in these steps.
     pub drive_time_star: f64,
     /// Duration of these steps, s.
     pub time_s: f64,
     /// Displacement of the driven ends of the drive springs, block by block, m: the difference between
-    /// displacements of the leg before and of the new leg.
+    /// displacements of the previous leg and of the new leg.
     pub drive_m: VectorField,
 }
 
-/// Reason for which a change is refused.
+/// Reason why a change is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ChangeError {
@@ -58,11 +58,12 @@ fn blocks(([nx, ny], size): ([usize; 2], f64)) -> String {
 }
 
 impl Running {
-    /// Goes on under another case from here, on at most `threads` threads.
+    /// Continues under another case from the present state, on at most `threads` threads.
     ///
-    /// Displacements in m and velocities in m/s are kept. The step that has begun is taken to its end, as
-    /// velocities are known half a step after displacements, and the new leg begins when they meet. Its drive
-    /// begins where that of this leg stands, and its displacements count from there:
+    /// Displacements in m and velocities in m/s are kept. The step in progress is completed, because
+    /// velocities are known half a step after displacements; the new leg begins when both are known at the
+    /// same time. Its drive begins at the position of the drive of this leg, and its displacements count from
+    /// there:
     ///
     /// ```text
     /// u' = (u + dt v - X) U/U'    with U = P mu_s l^2/(E h)
@@ -70,11 +71,11 @@ impl Running {
     /// ```
     ///
     /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales,
-    /// load and the state of stuck blocks follow the new case. This run stays as it is.
+    /// load and the state of stuck blocks follow the new case. This run does not change.
     ///
     /// # Errors
-    /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state
-    /// holds, one of them is a stack of sheets, or the run diverges.
+    /// [`ChangeError`] when the cases have different blocks, contacts of one of them have more memory than a
+    /// state holds, one of them is a stack of sheets, or the run diverges.
     ///
     /// # Panics
     /// If several ranks share the lattice.
@@ -125,8 +126,8 @@ impl Running {
         })
     }
 
-    /// State of the blocks of these rows in which another run can go on, in metres and metres per second:
-    /// that at the end of the step that has begun, with displacements that count from the driven ends.
+    /// State of the blocks of these rows from which another run can start, in metres and metres per second:
+    /// the state at the end of the step in progress, with displacements relative to the driven ends.
     pub(crate) fn final_state(&self) -> State {
         let scales = &self.case().scales;
         let (mut state, _) = self.end_of_step([scales.displacement(), scales.speed()]);
@@ -137,7 +138,7 @@ impl Running {
         state
     }
 
-    /// State at the end of the step that has begun, with displacements that count from the driven ends, times
+    /// State at the end of the step in progress, with displacements relative to the driven ends, times
     /// factors for displacements and velocities; and the displacements of these ends in units of this run.
     fn end_of_step(&self, [per_displacement, per_speed]: [f64; 2]) -> (State, VectorField) {
         let (model, dt_star) = (&self.case().model, self.case().time_plan.dt_star);
@@ -169,9 +170,9 @@ impl Running {
         (state, drive)
     }
 
-    /// Takes the step that has begun to its end, where a leg after this one begins, also after the last step
-    /// of the case, and returns the row of the curve there without the energies that blocks and springs
-    /// store.
+    /// Completes the step in progress, at the end of which the next leg begins, also after the last step of
+    /// the case. Returns the row of the curve there without the energies that are stored in blocks and
+    /// springs.
     ///
     /// # Errors
     /// [`RunError`] when the run diverges in this step.
@@ -249,8 +250,8 @@ mod tests {
     fn under_the_same_case_the_trajectory_is_the_same() {
         let case = case_of(&[]);
         let [mu_star, displacement] = differences(&case, &case, 700);
-        // Roundings of displacements that count from the drive: some in mu*, one a step in displacements
-        // while springs pass them on.
+        // Rounding of displacements relative to the drive: some roundings in mu*, and in displacements one
+        // per step, which springs pass on.
         assert!(
             mu_star < 1e-14 && displacement < 1e-13,
             "{mu_star:e} {displacement:e}"
@@ -264,7 +265,7 @@ mod tests {
         let steps = (60.0 / case.time_plan.dt_star).round() as u64;
         assert_eq!(case.time_plan.dt_star, slow.time_plan.dt_star);
         let [mu_star, displacement] = differences(&case, &slow, steps);
-        // As under the same case.
+        // As accurate as under the same case.
         assert!(
             mu_star < 1e-14 && displacement < 1e-13,
             "{mu_star:e} {displacement:e}"
@@ -305,8 +306,8 @@ mod tests {
     fn a_rotation_goes_on_from_where_the_drive_stands() {
         let case = case_of(&["drive.motion = 'rotation'", "load.pressure = '100 Pa'"]);
         let [mu_star, displacement] = differences(&case, &case, 700);
-        // Counting from the drive turns springs back by eps X/r_max, and with them their forces, here by 1e-9
-        // times 2.1/14.
+        // Displacements relative to the drive turn springs back by eps X/r_max, and their forces with them,
+        // here by 1e-9 times 2.1/14.
         assert!(
             mu_star < 1e-14 && displacement < 2e-10,
             "{mu_star:e} {displacement:e}"
@@ -329,9 +330,8 @@ mod tests {
                 .map(|v| v * unit)
                 .collect::<Vec<_>>()
         };
-        // Velocities that the new leg begins with are changed by its first step, which is computed at once,
-        // of blocks that stay stuck or that friction stops: those of the others by less than an impulse of
-        // the threshold, twice the mean load.
+        // The first step of the new leg is computed at once. In it, friction changes velocities by at most an
+        // impulse of the threshold, twice the mean load.
         let (before, after) = (speeds(&running), speeds(&leg.running));
         let impulse = 4.0 * case.time_plan.dt_star * loaded.scales.speed();
         assert!(largest(&before) > 0.0);
@@ -345,13 +345,13 @@ mod tests {
         let moved: Vec<f64> = begun.iter().zip(&before).map(|(u, v)| u + dt * v).collect();
         let kept = displacement_m(&leg.running, &leg.drive_m);
         let apart: Vec<f64> = moved.iter().zip(&kept).map(|(one, other)| one - other).collect();
-        // Some roundings, of numbers as large as the path of the drive.
+        // Some roundings of numbers as large as the path of the drive.
         assert!(
             largest(&apart) < 1e-14 * largest(&leg.drive_m.x),
             "{:e}",
             largest(&apart)
         );
-        // Half of mu*, which is over the load, but for the move within the step.
+        // Half of mu*, which is relative to the load, except for the motion within the step.
         let mu_star = [&running, &leg.running].map(|running| running.snapshot().point.mu_star);
         assert!((mu_star[1] / mu_star[0] - 0.5).abs() < 0.01, "{mu_star:?}");
     }
@@ -380,7 +380,7 @@ mod tests {
         }
     }
 
-    /// A block is farther away than the numbers reach under a load of a thousandth.
+    /// A block has a displacement that overflows under a thousandth of the load.
     #[test]
     fn numbers_beyond_all_bounds_are_refused() {
         let (case, unloaded) = (case_of(&[]), case_of(&["load.pressure = '100 Pa'"]));

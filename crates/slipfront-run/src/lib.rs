@@ -1,4 +1,4 @@
-//! A case is run, and its results are written, read and verified.
+//! Runs a case, and writes, reads and verifies its results.
 //!
 //! ```text
 //! Case -> RunData -> files -> pictures

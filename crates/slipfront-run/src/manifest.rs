@@ -1,7 +1,7 @@
 //! The file `manifest.json`: the files of a run folder, and the program, time and machine that wrote them.
 //!
-//! The manifest is the only file of a run that another run of the same case does not repeat, and the last to
-//! be written.
+//! The manifest is the only file of a run that another run of the same case does not reproduce, and it is the
+//! last to be written.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -26,7 +26,7 @@ use slipfront_case::case::{Case, Input};
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
 const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 
-/// The files that were written, and their origin. Keys that its file lacks are empty.
+/// The files that were written, and their origin. Keys that are missing in the file are empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of slipfront.
@@ -63,12 +63,12 @@ pub struct Manifest {
     /// Origin of the run's random numbers.
     #[serde(default)]
     pub random: Random,
-    /// Why the run has no pictures, if whoever ran it cannot draw.
+    /// Reason why the run has no pictures, if the program that ran it cannot draw.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_pictures: Option<String>,
     /// Every other file of the run.
     pub files: Vec<ManifestFile>,
-    /// BLAKE3 hash of the manifest itself up to this key, whose name is `seal` in the file.
+    /// BLAKE3 hash of the manifest itself up to this key, which is named `seal` in the file.
     #[serde(default, rename = "seal")]
     pub checksum: String,
 }
@@ -95,7 +95,7 @@ pub struct ManifestFile {
     pub blake3: String,
 }
 
-/// The command that goes on with a run which did not end, where the folder holds the case of one.
+/// The command that resumes an unfinished run, if the folder holds its case.
 fn way_to_go_on(folder: &Path) -> String {
     if folder.join(CASE).exists() {
         let command = resume_command("slipfront", folder);
@@ -105,7 +105,7 @@ fn way_to_go_on(folder: &Path) -> String {
     }
 }
 
-/// Times of a run, as a manifest has them.
+/// Times of a run, as written in a manifest.
 #[derive(Clone, Debug)]
 pub struct RunTimes {
     /// Time at which the run began, UTC, as in RFC 3339.
@@ -116,7 +116,7 @@ pub struct RunTimes {
     pub wall_time_s: f64,
 }
 
-/// Reason for which a manifest cannot be used.
+/// Reason why a manifest cannot be used.
 #[derive(Clone, Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
@@ -149,8 +149,8 @@ impl Manifest {
         Self::at(files, case, times, threads)
     }
 
-    /// The bytes of the manifest of a run on one thread, whose files are in memory, and of the reason for
-    /// which it has no pictures, if it has none.
+    /// The bytes of the manifest of a run on one thread with its files in memory, including the reason why it
+    /// has no pictures, if it has none.
     pub fn of_run_in_memory(
         files: &[(String, Vec<u8>)],
         case: &Case,
@@ -223,7 +223,7 @@ impl Manifest {
         Self::of_bytes(&path, &bytes)
     }
 
-    /// Reads the manifest whose bytes these are, if it is unchanged; errors call it by the path.
+    /// Reads a manifest from its bytes, if it is unchanged; errors name it by the path.
     pub fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, ManifestError> {
         let damaged = |why| ManifestError::Damaged {
             path: path.to_owned(),
@@ -256,7 +256,7 @@ pub fn seal(manifest: &[u8]) -> Option<String> {
     Some(blake3::hash(&manifest[..before]).to_hex().to_string())
 }
 
-/// A file whose reading ends with an error as soon as `stop` is set.
+/// A reader of a file that fails as soon as `stop` is set.
 pub(crate) struct Until<'s, R> {
     pub(crate) file: R,
     pub(crate) stop: &'s AtomicBool,
@@ -275,7 +275,7 @@ impl<R: Read> Read for Until<'_, R> {
 /// such entry. A file of another length is not read: it may be huge.
 ///
 /// # Errors
-/// When the system does not say what the entry is, or does not read it.
+/// When the system cannot inspect or read the entry.
 pub fn is_one_of<'a>(
     folder: &Path,
     name: &str,
@@ -307,7 +307,7 @@ impl ManifestFile {
         Ok(Self::hashed(name, &hasher))
     }
 
-    /// The entry under this name of a file that has another name still.
+    /// The entry with this name for a file that still has another name.
     pub fn of_copy(name: &str, copy: &Path) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(File::open(copy)?)?;
@@ -330,7 +330,7 @@ impl ManifestFile {
         }
     }
 
-    /// An entry for a file of this name whose bytes have been hashed.
+    /// An entry for a file of this name, from the hash of its bytes.
     pub(crate) fn hashed(name: &str, hasher: &blake3::Hasher) -> Self {
         Self {
             name: name.to_owned(),

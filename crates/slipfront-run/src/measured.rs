@@ -32,8 +32,9 @@ pub struct Column {
     pub unit: Option<String>,
 }
 
-/// Largest steps back of displacements, as shares of the whole path, that are taken for the noise of a
-/// sensor: wherever they are, and where every third of the record has some, unlike a drive that turns back.
+/// Largest distances by which displacements may go back and still count as sensor noise, as shares of the
+/// whole path: anywhere, and if every third of the record goes back somewhere, unlike for a drive that
+/// reverses.
 const MOST_NOISE: [f64; 2] = [0.01, 0.05];
 
 /// Length of a day, s.
@@ -42,7 +43,7 @@ const DAY: f64 = 86_400.0;
 /// Largest number of bytes of a line of a record.
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
-/// Two columns in SI units, of which the first never falls.
+/// Two columns in SI units; the first is non-decreasing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredRecord {
     /// Times or displacements.
@@ -53,18 +54,20 @@ pub struct MeasuredRecord {
     pub along: Measure,
     /// Whether the ordinates are forces or coefficients.
     pub of: Measure,
-    /// How the table was read, if it is not a plain one: a sentence without its stop.
+    /// How the table was read, if it is not a plain one: a sentence without its full stop.
     pub took: Option<String>,
-    /// Which lines at the end of the table have no numbers, if there are some: a sentence without its stop.
+    /// Which lines at the end of the table have no numbers, if there are some: a sentence without its full
+    /// stop.
     pub footer: Option<String>,
-    /// How displacements with the noise of a sensor were averaged, if they were: a sentence without its stop.
+    /// How displacements with the noise of a sensor were averaged, if they were: a sentence without its full
+    /// stop.
     pub averaged: Option<String>,
 }
 
-/// Where two columns stand, and what their numbers are multiplied by to be in SI units.
+/// Positions of two columns, and factors that convert their numbers to SI units.
 struct Found {
     places: [usize; 2],
-    /// Factor of abscissae; or why their unit is not known, which does not matter to times of the day.
+    /// Factor of abscissae, or the reason why their unit is unknown, which does not matter for times of day.
     x_factor: Result<f64, MeasuredError>,
     y_factor: f64,
 }
@@ -83,14 +86,14 @@ impl MeasuredRecord {
         }
     }
 
-    /// Reads two columns of a table of text; its layout is [found](TableLayout::find) where `options` do not
-    /// state it. Empty lines, and those that begin with `#`, count as none; lines without numbers at the end
-    /// are passed over, and named. The first column is along times or displacements; times of the day are
-    /// counted in seconds from the first. The second has forces, or coefficients if its unit is 1.
+    /// Reads two columns of a table of text; the parts of its layout that `options` do not state are
+    /// [found](TableLayout::find). Empty lines and lines that begin with `#` are ignored; lines without
+    /// numbers at the end are skipped and reported. The first column has times or displacements; times of day
+    /// are converted to seconds since the first one. The second has forces, or coefficients if its unit is 1.
     ///
     /// # Errors
-    /// When the table cannot be read, has not these columns, or lacks numbers in them before its end; when no
-    /// unit is known.
+    /// When the table cannot be read, does not have these columns, or lacks numbers in them before its end;
+    /// when a unit is unknown.
     pub fn read(
         path: &Path,
         columns: [&Column; 2],
@@ -101,8 +104,8 @@ impl MeasuredRecord {
         Self::read_from(&open, path, columns, along, options)
     }
 
-    /// Reads two columns of a table that is in memory, as [`read`](Self::read) does those of a file; messages
-    /// name its path.
+    /// Reads two columns of a table in memory, as [`read`](Self::read) does for a file; messages name its
+    /// path.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -163,7 +166,7 @@ impl MeasuredRecord {
         let (mut clocks, mut midnights) = (None, 0.0);
         let mut has_numbers = false;
         let mut first_fall = None;
-        // The first line without numbers behind the last one that has some, and how many there are.
+        // The first line without numbers after the last one with numbers, and the number of such lines.
         let mut footer: Option<(NoNumber, usize)> = None;
         while let Some((line, fields)) = rows.next_row().map_err(failed)? {
             if fields.iter().all(|field| field.is_empty()) {
@@ -188,7 +191,8 @@ impl MeasuredRecord {
             };
             let (Some(x), Some(y)) = (value(0), value(1)) else {
                 let without = usize::from(value(0).is_some());
-                // Such numbers often stand at the end alone, where they are not passed over.
+                // Numbers with thousands separators often occur only at the end, where they must not be
+                // skipped.
                 let wanted = places.iter().filter_map(|place| fields.get(*place));
                 if let Some(field) = { wanted }.find(|field| has_thousands(field, decimal)) {
                     let text = field.to_string();
@@ -241,9 +245,9 @@ impl MeasuredRecord {
         Ok(record)
     }
 
-    /// Replaces displacements that go back by the noise of their sensor, and the friction there, by their
-    /// means over bins as wide as the largest step back; none if these are no displacements, or go back by
-    /// more than a noise would.
+    /// Replaces displacements that go back because of sensor noise, and the friction there, by means over
+    /// bins. The bins are as wide as the largest distance by which displacements go back. None if the
+    /// abscissae are not displacements, or go back by more than noise would.
     fn average_over_noise(&mut self) -> Option<()> {
         let first = *self.x.first()?;
         let (mut largest, mut back) = (first, 0.0_f64);
@@ -258,7 +262,7 @@ impl MeasuredRecord {
             return None;
         }
         let least = self.x.iter().copied().fold(first, f64::min);
-        // Sums of displacements and friction, and the number of points, of every bin that has some.
+        // Sums of displacements and friction, and the number of points, of every bin that is not empty.
         let mut bins = std::collections::BTreeMap::<u64, [f64; 3]>::new();
         for (&x, &y) in self.x.iter().zip(&self.y) {
             let bin = bins.entry(((x - least) / back) as u64).or_default();
@@ -293,7 +297,7 @@ impl MeasuredRecord {
         (self.x, self.y) = counting.map(|(x, y)| (x, y_factor * y + y_offset)).unzip();
     }
 
-    /// Sentences for a reader of the record: how the table was read, and which lines were passed over.
+    /// Sentences for a reader of the record: how the table was read, and which lines were skipped.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let footer = self
             .footer
@@ -304,7 +308,7 @@ impl MeasuredRecord {
             .flatten()
     }
 
-    /// Finds two columns of a table, and what the second has.
+    /// Finds two columns of a table, and the quantity of the second one.
     fn columns(
         &mut self,
         layout: &TableLayout,
@@ -359,8 +363,8 @@ impl NoNumber {
     }
 }
 
-/// Position of a column among `n`: the one of exactly this name, else the one of this name without its unit
-/// or in other letters, else the one of this number.
+/// Position of a column among `n`: the one with exactly this name, else the one with this name apart from the
+/// unit, else apart from case, else the one with this number.
 fn place_of(
     path: &Path,
     column: &Column,
@@ -409,7 +413,7 @@ fn place_of(
     }
 }
 
-/// The size of the unit of a column in SI units: of the unit that was given, else of the one in the table.
+/// Factor of the unit of a column to SI units: of the given unit, else of the unit in the table.
 fn factor(
     path: &Path,
     column: &Column,
@@ -426,8 +430,8 @@ fn factor(
             why: measure.no_such_unit(unit),
         });
     }
-    // Units of names are written small: force_n, time_ms. Where case decides, as between mN and MN, the unit
-    // has to be given.
+    // Units in names are in lower case: force_n, time_ms. If case matters, as for mN and MN, the unit must be
+    // given.
     let of_name = |unit: &str| match (measure, unit) {
         (Measure::Force, "n") => Some(1.0),
         (Measure::Force, "kn") => Some(1e3),
@@ -442,7 +446,7 @@ fn factor(
             Measure::Time => "ms",
             Measure::Displacement => "um",
             Measure::Force if is_coefficient(&column.name) || is_coefficient(&shown()) => "1",
-            // Gram-force of instruments, and not a mass.
+            // Gram-force, as written by instruments, and not a mass.
             Measure::Force if in_table == Some("g") => "gf",
             Measure::Force if in_table == Some("kg") => "kgf",
             Measure::Force => "N",
@@ -501,8 +505,8 @@ mod tests {
         );
     }
 
-    /// Displacements go forwards and back by turns. Means over bins keep the friction, which is a function of
-    /// displacement. A drive that turns back at the end has no noise.
+    /// Displacements alternate forwards and back. Means over bins keep the friction, which is a function of
+    /// displacement. A drive that reverses at the end is not noise.
     #[test]
     fn displacements_with_noise_are_averaged_and_others_refused() {
         let of = |displacement: &dyn Fn(f64, bool) -> f64| {
@@ -529,7 +533,7 @@ mod tests {
         let record = with_noise(1.5).unwrap();
         assert!(record.x.is_sorted() && record.x.len() < 1000);
         for (x, y) in record.x.iter().zip(&record.y) {
-            // Friction is linear in displacement, and so are its means: to rounding.
+            // Friction is linear in displacement, and so are its means, apart from rounding.
             assert!((y - 0.5 - 1e3 * x).abs() < 1e-12, "{x} {y}");
         }
         let note = record.notes().last().unwrap();
@@ -557,14 +561,14 @@ mod tests {
             MeasuredRecord::parse(book, path, [&x, &y], Measure::Time, TableOptions::default()).unwrap();
         assert_eq!(record.y, [500.0, 750.5, 1001.0, 1251.5].map(|force| 1e-3 * force));
         for (k, x) in record.x.iter().enumerate() {
-            // Seconds from 1900 as a double have 5e-7 s.
+            // Seconds since 1900 have a resolution of 5e-7 s as a double.
             assert!((x - 0.25 * k as f64).abs() < 1e-6, "{x}");
         }
         let took = record.took.unwrap();
         assert!(took.ends_with("; sheet \"Daten\" of the workbook"), "{took}");
     }
 
-    /// A date tells the day, so that times that go back are out of order, and none of the next day.
+    /// Dates give the day, so times that go back are out of order, and do not belong to the next day.
     #[test]
     fn times_with_a_date_do_not_pass_midnight_backwards() {
         let text = "t,F (N)\n2024-01-03 10:00:00,1\n2024-01-01 10:00:00,2\n";
@@ -629,7 +633,7 @@ mod tests {
         assert!(error.contains(sentence), "{error}");
     }
 
-    /// The line is that of an editor, wherever it stands and however lines end.
+    /// The number of the line is that of an editor, for any position and any line ending.
     #[test_case("t_s,f_n\n0,1\n1,1\nEnd of test\n\n2024-01-01,\n", 4, 2; "two lines")]
     #[test_case("t_s,f_n\r\n\r\n0,1\r\n1,1\r\n\r\n1.5,", 6, 1; "a line that was cut")]
     fn lines_without_numbers_at_the_end_are_told(text: &str, from: u64, lines: usize) {

@@ -18,9 +18,9 @@ pub const STATE: &str = "state.npy";
 pub const MOVIE: &str = "movie.gif";
 /// The description of runs for data repositories, which `slipfront export` writes.
 pub const RO_CRATE: &str = "ro-crate-metadata.json";
-/// The hidden subfolder for everything that belongs to a run which is not complete.
+/// The hidden subfolder for everything that belongs to an incomplete run.
 pub const UNFINISHED: &str = ".slipfront";
-/// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is
+/// In the hidden subfolder: the list of files that the run has finished. It also marks the subfolder as
 /// slipfront's.
 pub const JOURNAL: &str = "journal.jsonl";
 /// In the hidden subfolder: a folder of the temporary files that are being written.

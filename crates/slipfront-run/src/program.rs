@@ -27,8 +27,8 @@ pub fn version_lines() -> &'static str {
     &LINES
 }
 
-/// The vector instructions of the kernels; those that every processor of this kind has with their name there,
-/// too.
+/// The vector instructions of the kernels; the baseline of a processor architecture also has the name of its
+/// instructions.
 fn vectors() -> String {
     let name = slipfront::simd_width();
     let here = if cfg!(target_arch = "aarch64") {
@@ -55,8 +55,8 @@ pub fn in_words(version: &str, revision: Option<&str>) -> String {
 }
 
 /// The identity of the build: version, and a hash of the sources of slipfront-base, slipfront, slipfront-case
-/// and slipfront-run and of the locked versions of the crates they use. Programs of one identity give the
-/// same bits, whichever program they are part of.
+/// and slipfront-run and of the locked versions of the crates they use. Builds with the same identity give
+/// the same bits, whatever program they are part of.
 pub fn this_build() -> &'static str {
     static BUILD: LazyLock<String> = LazyLock::new(|| {
         let hashes = [

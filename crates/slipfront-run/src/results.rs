@@ -22,8 +22,8 @@ use crate::running::RunData;
 use crate::series::{self, SeriesRow};
 use crate::shared_file::write_shared;
 
-/// Writes the results of a run on one rank to its folder, where the case stands already: the tables, then the
-/// numbers of blocks, which are moved out of the data. Pictures and the manifest follow.
+/// Writes the results of a run on one rank to its folder, which already contains the case: the tables, then
+/// the numbers of blocks, which are moved out of the data. Pictures and the manifest follow.
 pub fn write(case: &Case, data: &mut RunData, folder: &mut RunFolder) -> Result<(), ResultsError> {
     write_tables(case, data, folder)?;
     for (name, file) in write_blocks(case, data, folder.path(), &Alone)? {
@@ -32,9 +32,9 @@ pub fn write(case: &Case, data: &mut RunData, folder: &mut RunFolder) -> Result<
     Ok(())
 }
 
-/// Writes the files that have numbers of every block to temporary files of the run in folder `out`, each rank
-/// its own rows: the fields, and the last state if the case asks for it, which are moved out of the data. The
-/// first rank has the files, each with the name that it is to take.
+/// Writes the files with numbers of every block to temporary files of the run in folder `out`, with each rank
+/// writing its own rows: the fields, and the last state if the case requests it. Both are moved out of the
+/// data. Only the first rank returns the files, each with its final name.
 pub fn write_blocks(
     case: &Case,
     data: &mut RunData,
@@ -56,12 +56,12 @@ pub fn write_blocks(
     Ok(files)
 }
 
-/// Summary, series, kymograph and events, the first results of a run, by one of its ranks.
+/// Writes summary, series, kymograph and events, the first results of a run, on one of its ranks.
 pub fn write_tables(case: &Case, data: &RunData, folder: &mut RunFolder) -> Result<(), ResultsError> {
     each_table(case, data, |name, contents| Ok(folder.write(name, contents)?))
 }
 
-/// Hands over the first results of a run, each with its name.
+/// Passes the first results of a run to `take`, each with its name.
 fn each_table(
     case: &Case,
     data: &RunData,
@@ -84,7 +84,7 @@ fn each_table(
 /// case and the files that it reads, tables and fields, which are moved out of the data.
 ///
 /// # Errors
-/// When a file that the case reads is no longer what the case was made of.
+/// When a file that the case reads has changed since the case was made.
 pub fn in_memory(case: &Case, data: &mut RunData) -> Result<Vec<(String, Vec<u8>)>, ResultsError> {
     let mut files = vec![(CASE.to_owned(), case.file.to_toml()?.into_bytes())];
     for input in &case.inputs {
@@ -172,8 +172,8 @@ pub fn fields_of(case: &Case, data: &RunData) -> FieldsData {
     }
 }
 
-/// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one
-/// has the file. The fields are moved out of the data.
+/// Writes the fields to a temporary file of the run in folder `out`, with each rank writing its own rows.
+/// Only the first rank returns the file. The fields are moved out of the data.
 fn write_fields(
     case: &Case,
     data: &mut RunData,
@@ -190,7 +190,7 @@ fn write_fields(
     })
 }
 
-/// Hands over the fields of the rows that this rank holds, which are moved out of the data.
+/// Passes the fields of the rows that this rank holds to `write`; they are moved out of the data.
 fn with_fields<T>(
     case: &Case,
     data: &mut RunData,
@@ -267,7 +267,7 @@ mod tests {
         x.chain(y.into_iter().map(|y| y * unit)).collect()
     }
 
-    /// A case that begins in the last state of a run goes on as this would have.
+    /// A case that begins in the last state of a run continues as the run would have.
     #[test]
     fn a_case_goes_on_where_a_run_has_ended() {
         let case = Arc::new(Case::parse(ENDED, "case", "", &[]).unwrap());
@@ -279,7 +279,7 @@ mod tests {
         let begun = began_in(last_state(&case), &["time.duration_star = 200"]);
         let mut begun = Running::start(&begun, None, Execution::default());
         let mu_star = [&plain, &begun].map(|running| running.snapshot().point.mu_star);
-        // Roundings of displacements that count from the drive, and of units.
+        // Rounding of displacements relative to the drive, and of units.
         assert!((mu_star[1] / mu_star[0] - 1.0).abs() < 1e-13, "{mu_star:?}");
         let sliding = plain.snapshot().totals.n_slipping;
         assert!(
@@ -297,11 +297,12 @@ mod tests {
             .zip(&other)
             .map(|(one, other)| (one - other).abs())
             .fold(0.0, f64::max);
-        // One rounding a step, while springs pass them on.
+        // One rounding per step, which springs pass on.
         assert!(apart < 1e-12 * largest, "{apart:e} {largest:e}");
     }
 
-    /// Under twice the load the same metres and metres per second are half of the units; mu* is half, too.
+    /// Under twice the load, the same metres and metres per second are half as many units; mu* is also
+    /// halved.
     #[test]
     fn metres_are_kept_under_another_load() {
         let case = Arc::new(Case::parse(ENDED, "case", "", &[]).unwrap());
@@ -352,7 +353,7 @@ mod tests {
         }
     }
 
-    /// Blocks outside an outline have no values, and are no texture.
+    /// Blocks outside an outline have no values, and do not count as texture.
     #[test]
     fn blocks_outside_an_outline_have_no_values() {
         let folder = tempfile::tempdir().unwrap();
@@ -367,7 +368,7 @@ mod tests {
         write_case(&case, &mut folder).unwrap();
         write(&case, &mut data, &mut folder).unwrap();
         let fields = fields::read_fields(out.join(FIELDS)).unwrap();
-        // NaN are equal as they are printed.
+        // Compared as text, in which NaN equals NaN.
         assert_eq!(format!("{in_memory:?}"), format!("{fields:?}"));
         let slider = case.model.slider();
         let outside: Vec<usize> = (0..36).filter(|&b| !slider.exists(b)).collect();

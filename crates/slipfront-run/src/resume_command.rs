@@ -1,11 +1,11 @@
-//! The command that goes on with an interrupted run, for messages.
+//! The command that resumes an interrupted run, for messages.
 
 use std::path::Path;
 
 use slipfront_base::text::shell_path;
 
-/// The command of a program, `slipfront` or `slipfront-mpi`, that goes on with the run in a folder, as a
-/// shell reads it.
+/// The command of a program, `slipfront` or `slipfront-mpi`, that resumes the run in a folder, quoted for a
+/// shell.
 pub fn resume_command(program: &str, folder: &Path) -> String {
     format!("{program} run --resume {}", shell_path(folder))
 }

@@ -9,7 +9,7 @@ use crate::names::{CASE, MANIFEST, UNFINISHED};
 use crate::run_folder::RunFolder;
 
 /// Copies the files of a run folder. The case and the manifest come last: without them, the copy does not
-/// count as whole.
+/// count as complete.
 pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     let failed = |source| FolderError::Copy {
         from: from.to_owned(),
@@ -18,7 +18,7 @@ pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
     };
     let mut copy = RunFolder::prepare(to, true, &[])?;
     let mut names = file_names(from).map_err(failed)?;
-    // What is neither stands first; the rest of the order does not matter.
+    // All other files come first; their order does not matter.
     names.sort_by_key(|name| [CASE, MANIFEST].iter().position(|last| name == last));
     for name in &names {
         if name == CASE {
@@ -33,14 +33,14 @@ pub fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
             copy.place(name, file)?;
         }
     }
-    // Of a run that failed there is the case alone, and the copy stays the folder of an interrupted run.
+    // A run that failed has only its case, and its copy remains the folder of an interrupted run.
     if names.iter().any(|name| name == MANIFEST) {
         copy.close();
     }
     Ok(())
 }
 
-/// Every file below a folder, without those of unfinished work, by its path from there.
+/// Every file below a folder, without those of unfinished work, by its relative path.
 pub fn file_names(folder: &Path) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     collect_names(folder, "", &mut names)?;

@@ -1,4 +1,4 @@
-//! Runs a [`Case`] and keeps only the curve of friction against time and displacement, as a fit needs it from
+//! Runs a [`Case`] and keeps only the curve of friction against time and displacement, which a fit needs for
 //! many small cases.
 
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub struct RunCurve {
     pub displacement: Vec<f64>,
     /// Friction coefficient mu (Eq. 9).
     pub coefficient: Vec<f64>,
-    /// Friction of a slider with mu = 1, N; none for a drive that rotates, whose friction is a torque.
+    /// Friction of a slider with mu = 1, N; none for a drive that rotates, because its friction is a torque.
     pub unit_force: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ impl RunCurve {
     }
 }
 
-/// Notes friction, time and path of every step.
+/// Records friction, time and path of every step.
 pub(crate) struct Tracing {
     time_star: Vec<f64>,
     path: Vec<f64>,
@@ -62,9 +62,9 @@ impl Observer for Tracing {
     }
 }
 
-/// Runs a case on one thread up to a time or a displacement, whatever its `time` says, and keeps only the
-/// curve; none if `ends` gave it up. Where a program of speeds decides how far the drive comes, the case sets
-/// the end of the run.
+/// Runs a case on one thread up to a time or a displacement, whatever its `time` table says, and keeps only
+/// the curve; none if `ends` stopped it. If a program of speeds determines how far the drive moves, the case
+/// sets the end of the run.
 ///
 /// ```
 /// use slipfront_case::case::Case;
@@ -122,7 +122,7 @@ pub fn steps_to(case: &Case, along: Measure, end: f64) -> u64 {
     (end_star / case.time_plan.dt_star).ceil() as u64 + 1
 }
 
-/// Friction force at mu* = 1, N; none for a drive that rotates, whose friction is a torque.
+/// Friction force at mu* = 1, N; none for a drive that rotates, because its friction is a torque.
 pub fn unit_force_star(case: &Case) -> Option<f64> {
     FrictionUnit::of(&case.scales, &case.model).force(1.0)
 }

@@ -10,14 +10,14 @@ use crate::folder_error::FolderError;
 /// Files of a run: all of its folder, or some in memory.
 #[derive(Clone, Copy, Debug)]
 pub enum RunFiles<'a> {
-    /// A folder of the disk.
+    /// A folder on disk.
     Folder(&'a Path),
     /// Contents of files, by their names in the folder that the run would have.
     InMemory(&'a [(String, Vec<u8>)]),
 }
 
 impl<'a> RunFiles<'a> {
-    /// Path by which errors and legends call the run; empty in memory.
+    /// Path that names the run in errors and legends; empty in memory.
     pub fn path(self) -> &'a Path {
         match self {
             Self::Folder(path) => path,
@@ -25,7 +25,7 @@ impl<'a> RunFiles<'a> {
         }
     }
 
-    /// Gives a file that every run has written. In a folder it is looked for when it is read.
+    /// Returns a file that every run has written. In a folder, its existence is checked only when it is read.
     ///
     /// # Errors
     /// If the file is not among those in memory.
@@ -39,10 +39,10 @@ impl<'a> RunFiles<'a> {
         }
     }
 
-    /// Gives a file that a run may not have written; none if it is not there.
+    /// Returns a file that a run may not have written; none if it does not exist.
     ///
     /// # Errors
-    /// If the system does not say whether the file is there.
+    /// If the system cannot determine whether the file exists.
     pub fn found(self, name: &str) -> Result<Option<RunFile<'a>>, FolderError> {
         let path = self.path().join(name);
         match self {
@@ -59,7 +59,7 @@ impl<'a> RunFiles<'a> {
     }
 }
 
-/// Bytes that are read from any place.
+/// Bytes that can be read from any position.
 pub(crate) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
@@ -73,21 +73,21 @@ pub struct RunFile<'a> {
 }
 
 impl From<PathBuf> for RunFile<'_> {
-    /// The file of the disk at this path.
+    /// The file on disk at this path.
     fn from(path: PathBuf) -> Self {
         Self { path, contents: None }
     }
 }
 
 impl<P: AsRef<Path> + ?Sized> From<&P> for RunFile<'_> {
-    /// The file of the disk at this path.
+    /// The file on disk at this path.
     fn from(path: &P) -> Self {
         path.as_ref().to_owned().into()
     }
 }
 
 impl<'a> RunFile<'a> {
-    /// A file in memory, which errors call by this path.
+    /// A file in memory, which errors name by this path.
     pub fn of_bytes(path: impl Into<PathBuf>, contents: &'a [u8]) -> Self {
         Self {
             path: path.into(),
@@ -95,15 +95,15 @@ impl<'a> RunFile<'a> {
         }
     }
 
-    /// Path by which errors call the file.
+    /// Path that names the file in errors.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Opens the file. Gives its bytes, from the first on, and their number.
+    /// Opens the file. Returns its bytes, from the first one on, and their number.
     ///
     /// # Errors
-    /// If it is no regular file of the disk that can be opened.
+    /// If a file on disk is not a regular file, or cannot be opened.
     pub(crate) fn open(&self) -> std::io::Result<(Box<dyn Source + 'a>, u64)> {
         if let Some(contents) = self.contents {
             return Ok((Box::new(Cursor::new(contents)), contents.len() as u64));

@@ -1,4 +1,4 @@
-//! Runs a [`Case`] and keeps only its [`Summary`], as a search and a fit need it from many small cases.
+//! Runs a [`Case`] and keeps only its [`Summary`], which a search or a fit needs for many small cases.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
 
 /// Runs a case on one thread up to the end that its `time.stop` sets, and returns the numbers of
-/// `summary.json` with the bits of [`running::run`](crate::running::run). Neither curve, fields nor kymograph
+/// `summary.json`, bit for bit as [`running::run`](crate::running::run) does. No curve, fields or kymograph
 /// are recorded, and no file is written.
 ///
 /// ```
@@ -96,7 +96,7 @@ mod tests {
             let text = format!("slider.blocks = [20, 12]\n{text}");
             let case = Arc::new(Case::parse(&text, "case", "", &[]).unwrap());
             let whole = running::run(&case, 1).unwrap().summary;
-            // NaN is equal as it is printed.
+            // Compared as text, in which NaN equals NaN.
             assert_eq!(
                 format!("{:?}", run_summary(&case).unwrap()),
                 format!("{whole:?}"),

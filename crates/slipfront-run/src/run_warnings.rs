@@ -6,14 +6,14 @@ use slipfront::observe::{Energies, Kinetic, NoUncertainty, Peak};
 /// Share of unaccounted energy above which there is a warning; a step of 0.1 stays a factor of ten below.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
-/// Whether sliding goes on as high as a peak that a fall has ended: mu_s* is then one of many peaks of a
-/// slider that creeps.
+/// Whether mu* of sliding is as high as a peak that ended with a fall: mu_s* is then one of many peaks of a
+/// creeping slider.
 pub(crate) fn is_kept_up(peak: &Peak, kinetic: Option<Kinetic>) -> bool {
     peak.ended && kinetic.is_some_and(|kinetic| !peak.is_above(kinetic.mu_star))
 }
 
 /// Excess of a later mu* over the first peak, relative to that peak, above which there is a warning. Equal
-/// peaks of stick-slip differ by less, since steps do not meet their tops.
+/// peaks of stick-slip differ by less, because time steps do not hit their maxima.
 const HIGHER_LATER: f64 = 0.01;
 
 /// Warnings that follow from the run itself.

@@ -38,7 +38,7 @@ pub struct RunData {
     pub final_state: Option<State>,
 }
 
-/// Fewest blocks for which a thread is worth its share in keeping step with the others.
+/// Least number of blocks for which a thread is worth the cost of its synchronization.
 fn blocks_per_thread(kernel: Kernel) -> usize {
     match kernel {
         Kernel::Fused => 1 << 13,
@@ -81,7 +81,7 @@ struct Fields {
     frames: Option<Frames>,
 }
 
-/// State from which a run goes on later, beside the numbers of its blocks; written as [`Running::state`].
+/// State from which a run can be resumed, without the numbers of its blocks; written as [`Running::state`].
 #[derive(Debug, Serialize, Deserialize)]
 pub struct RunState<O = Observers> {
     simulation: Checkpoint,
@@ -89,7 +89,7 @@ pub struct RunState<O = Observers> {
 }
 
 impl RunState {
-    /// The numbers of blocks that belong to the state.
+    /// Columns of the numbers per block that belong to the state.
     pub fn columns(&self, case: &Case) -> [Columns; 2] {
         self.observers.columns(case)
     }
@@ -109,8 +109,8 @@ fn on_useful_threads(case: &Case, execution: Execution) -> Execution {
     }
 }
 
-/// The instants A-F of a run of this case, with these fields at each; none for a run that keeps snapshots at
-/// given times alone.
+/// The instants A-F of a run of this case, with these fields at each; none for a run that keeps snapshots
+/// only at given times.
 pub(crate) fn instants_of(case: &Case, fields: Vec<Field>) -> Option<Instants> {
     let (plan, stride) = (&case.time_plan, case.output.stride);
     let has_instants = !matches!(case.output.snapshots, Snapshots::At(_));
@@ -161,8 +161,8 @@ impl Observers {
                 .is_consistent_with(&new.summary, checkpoint, case.time_plan.dt_star)
     }
 
-    /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of
-    /// every frame.
+    /// Columns of the numbers per block that a checkpoint keeps: those of the simulation, and those of every
+    /// field of every frame.
     fn columns(&self, case: &Case) -> [Columns; 2] {
         let (lattice, stride) = (&case.model.lattice, case.output.stride);
         let columns = |count: usize, stride: usize, number_bytes: usize| Columns {
@@ -179,8 +179,8 @@ impl Observers {
         ]
     }
 
-    /// Displacements from which the slip of blocks counts in an event that goes on, if the run keeps a
-    /// catalogue of events and one goes on.
+    /// Displacements from which the slip of blocks is measured in the event in progress, if the run keeps a
+    /// catalogue of events and there is one in progress.
     fn paths_before(&self) -> Option<&[f64]> {
         self.summary.optional.events.as_ref()?.paths_before()
     }
@@ -236,9 +236,9 @@ fn own_rows_of_fields(case: &Case) -> Range<usize> {
 const PART: usize = 1 << 17;
 
 impl Running {
-    /// Begins a run in this state, in which blocks may be displaced and slide, or in that of the case. The
-    /// run is computed as `execution` says, on no more threads than have enough blocks; ranks that share the
-    /// lattice call this and then the same functions.
+    /// Starts a run from the given state, in which blocks may be displaced and slide, or from the state of
+    /// the case. The run is computed as `execution` says, on no more threads than have enough blocks; ranks
+    /// that share the lattice must all call this, and then the same functions.
     ///
     /// # Panics
     /// If a number of the state is not finite, or the state has another number of blocks.
@@ -255,8 +255,8 @@ impl Running {
         }
     }
 
-    /// Goes on with a run where its state was written down; none if the state is not one of this case. `read`
-    /// gets a place in the columns of the state and room for the bytes from there on.
+    /// Resumes a run from a saved state; none if the state does not belong to this case. `read` gets a byte
+    /// offset in the columns of the state and a buffer for the bytes from there on.
     ///
     /// # Errors
     /// Errors of `read`.
@@ -327,8 +327,8 @@ impl Running {
         }))
     }
 
-    /// Makes at most `steps` steps; returns the reason of the end, if the run ended. An error says that it
-    /// diverges. All ranks must call this together.
+    /// Makes at most `steps` steps; returns the reason for the end, if the run ended. An error means that the
+    /// run diverges. All ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation
@@ -360,7 +360,7 @@ impl Running {
     }
 
     /// The instants A-F that are known by now and t* of the drive at each, see [`Instants::by_now`]; none for
-    /// a run that keeps snapshots at given times alone.
+    /// a run that keeps snapshots only at given times.
     pub fn instants(&self) -> impl Iterator<Item = (char, f64)> {
         let instants = self.observers.fields.instants.iter();
         instants.flat_map(|instants| instants.by_now())
@@ -394,8 +394,8 @@ impl Running {
         &self.case
     }
 
-    /// State from which the run goes on later, beside its [columns](Self::write_columns), as it is written.
-    /// All ranks must call this together.
+    /// State from which the run can be resumed, together with its [columns](Self::write_columns), in the form
+    /// in which it is written. All ranks must call this together.
     pub fn state(&self) -> impl Serialize + '_ {
         RunState {
             simulation: self.simulation.checkpoint(),
@@ -403,13 +403,13 @@ impl Running {
         }
     }
 
-    /// The numbers of blocks that belong to the state.
+    /// Columns of the numbers per block that belong to the state.
     pub fn columns(&self) -> [Columns; 2] {
         self.observers.columns(&self.case)
     }
 
-    /// Passes the numbers of the rows that are held here to `write`, with a place in the columns and the
-    /// bytes from there on.
+    /// Passes the numbers of the rows that are held here to `write`, with a byte offset in the columns and
+    /// the bytes from there on.
     ///
     /// # Errors
     /// Errors of `write`.
@@ -528,8 +528,9 @@ pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Ru
     None
 }
 
-/// Frames without letters, and instants with theirs, in the order of time. Frames of one step, as instants on
-/// a uniform lattice may be, are one frame with all letters, because times of a file must rise.
+/// Frames without letters, and instants with theirs, in order of time. Frames of the same step, which
+/// instants on a uniform lattice may share, become one frame with all letters, because times in a file must
+/// increase.
 fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Frame)> {
     let frames = frames.into_iter().map(|frame| (String::new(), frame));
     let instants = instants
@@ -551,14 +552,14 @@ fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Fr
 mod tests {
     use super::*;
 
-    /// The values known on the way become the results of the run.
+    /// The values known during the run become its results.
     #[test]
     fn a_run_can_be_looked_at_on_its_way() {
         let text = "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
         let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
         let mut running = Running::start(&case, None, Execution::default());
         let letters = |running: &Running| running.instants().map(|(letter, _)| letter).collect::<String>();
-        // Of a texture, blocks in contact do not slip before t* = 30.
+        // With a texture, blocks in contact do not slip before t* = 30.
         running.advance((30.0 / case.time_plan.dt_star) as u64).unwrap();
         assert_eq!((letters(&running), running.kinetic()), ("A".to_owned(), None));
         assert!(!running.snapshot().peak.ended);
@@ -583,7 +584,7 @@ mod tests {
     }
 
     /// A sheet on a mount without texture moves as a whole: forces, paths and displacements in SI units are
-    /// equal on blocks of half the size, at steps that are equally long.
+    /// equal on blocks of half the size, with steps of the same duration.
     #[test]
     fn a_sheet_is_one_slider_on_any_blocks() {
         let run = |blocks: usize, size: f64, step: f64| {
@@ -611,7 +612,7 @@ mod tests {
         let (coarse, fine) = (run(6, 40.0, 0.1), run(12, 20.0, 0.2));
         assert_eq!(coarse.len(), fine.len());
         assert!(coarse.len() > 100);
-        // Sums and differences of numbers of order 1, some thousand steps long.
+        // Rounding of sums and differences of numbers of order 1 over some thousand steps.
         let is_near = |one: f64, other: f64| (one - other).abs() <= 1e-9 * one.abs().max(other.abs());
         for (one, other) in coarse.iter().zip(&fine) {
             assert!(

@@ -61,10 +61,10 @@ pub struct SeriesRow {
     /// Energy lost to the dampers between blocks since the start, J, if there are any.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
-    /// Energy of the springs between the sheets of a bulk body, J; none of one sheet.
+    /// Energy of the springs between the sheets of a bulk body, J; none for a single sheet.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub sheet_coupling_energy_j: Option<f64>,
-    /// Energy of the springs in contact, J; none if contacts are no springs.
+    /// Energy of the springs in contact, J; none if contacts are not springs.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub contact_spring_energy_j: Option<f64>,
     /// Energy of the foundation under an upright sheet, J; none without a foundation.
@@ -82,8 +82,8 @@ pub struct SeriesRow {
     pub mean_state_star: Option<f64>,
 }
 
-/// Reads a number of an optional column, which a series may lack because it belongs to an option or is
-/// younger than the file; a series that has the column has a number in every row.
+/// Reads a number of an optional column, which a series may lack because it belongs to an option or is newer
+/// than the file; a series that has the column has a number in every row.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     f64::deserialize(deserializer).map(Some)
 }
@@ -146,25 +146,24 @@ impl SeriesRow {
     }
 }
 
-/// A column of a series: its name, and its value in a row, which has none where the column belongs to another
-/// option.
+/// A column of a series: its name, and its value in a row; none if the column belongs to another option.
 type Column = (&'static str, fn(&SeriesRow) -> Option<f64>);
 
-/// Names the fields of a row, each with the function that gives its number in it, if it has one.
+/// Names the fields of a row, each with the function that returns its number in the row, if there is one.
 macro_rules! columns_of {
     ($($name:ident)*) => {
         &[$((stringify!($name), |row| row.$name.into())),*]
     };
 }
 
-/// Every column that a series may have, but the number of the step.
+/// Every column that a series may have, except the number of the step.
 const COLUMNS: &[Column] = columns_of! {
     time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
     torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
     viscous_loss_j sheet_coupling_energy_j contact_spring_energy_j foundation_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
 };
 
-/// Columns that count from the start of a run, on which a leg after it goes on.
+/// Columns that count from the start of a run; the next leg continues their count.
 const COUNTS: [&str; 10] = [
     "time_star",
     "time_s",
@@ -178,8 +177,8 @@ const COUNTS: [&str; 10] = [
     "weakening_loss_j",
 ];
 
-/// The numbers of a row that count from the start of a run of this model, by the names of their columns, but
-/// the number of the step; 0 for a column that the run lacks.
+/// The numbers of a row that count from the start of a run of this model, by the names of their columns,
+/// except the number of the step; 0 for a column that the run lacks.
 pub fn counts(row: &CurveRow, scales: &Scales, model: &Model) -> Vec<(&'static str, f64)> {
     let row = SeriesRow {
         drive_time_star: Some(row.drive_time_star),
@@ -202,7 +201,7 @@ pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
 /// Largest number of bytes of a column of a row as CSV: 24 characters, and the separator.
 const COLUMN_BYTES: usize = 25;
 
-/// The rows as CSV. Numbers are the shortest that read back as the same bits.
+/// The rows as CSV. Numbers have the fewest digits that read back as the same bits.
 pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Error> {
     let mut rows = rows;
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -210,7 +209,7 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
     let mut text = finish(writer)?;
     let header = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let columns = 1 + header.iter().filter(|&&byte| byte == b',').count();
-    // A text that grew by itself would take twice as much while it does.
+    // Reserved in advance: a growing text would temporarily take twice as much memory.
     text.reserve_exact(rows.size_hint().0 * columns * COLUMN_BYTES);
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(text);
     rows.try_for_each(|row| writer.serialize(row))?;
@@ -243,7 +242,8 @@ pub(crate) fn read_rows<T: DeserializeOwned, U>(
 
 fn rows_of<T: DeserializeOwned, U>(file: impl Read, part: impl Fn(T) -> U) -> Result<Vec<U>, csv::Error> {
     let mut reader = csv::Reader::from_reader(BoundedLines { file, line_bytes: 0 });
-    // The crate's own iterator takes names that cannot be read for none, and goes on with what follows them.
+    // The iterator of the csv crate would treat an unreadable header as missing, and continue with the rows
+    // after it.
     let names = reader.headers()?.clone();
     let rows = reader
         .records()
@@ -254,7 +254,7 @@ fn rows_of<T: DeserializeOwned, U>(file: impl Read, part: impl Fn(T) -> U) -> Re
 /// Largest length of a line of a series: more than its header and sixteen numbers take.
 const LINE_MAX_BYTES: usize = 4096;
 
-/// A file whose lines are not too long: the csv crate would keep one of any length in memory.
+/// A file reader that limits the length of lines: the csv crate would keep a line of any length in memory.
 struct BoundedLines<R> {
     file: R,
     /// Bytes since the last line break.
@@ -263,7 +263,7 @@ struct BoundedLines<R> {
 
 impl<R: Read> Read for BoundedLines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        // Of a larger buffer a line that is too long could hide in one piece.
+        // In a larger buffer, a line that is too long could go unnoticed within one piece.
         let most = buffer.len().min(LINE_MAX_BYTES);
         let bytes = self.file.read(&mut buffer[..most])?;
         self.line_bytes = match buffer[..bytes].iter().rposition(|&byte| byte == b'\n') {
@@ -282,7 +282,7 @@ impl<R: Read> Read for BoundedLines<R> {
 mod tests {
     use super::*;
 
-    /// A disk that fails to give the n-th piece, and gives all others.
+    /// A disk that fails to read the n-th piece, and reads all others.
     struct Failing<'a> {
         file: &'a [u8],
         reads: usize,

@@ -11,7 +11,8 @@ use tempfile::TempPath;
 use crate::agree::agree_on_io;
 
 /// Writes a temporary file to a folder that all ranks see. The first rank, which returns the file, creates it
-/// with all that does not belong to rows; then every rank writes its rows into it. All call this together.
+/// with everything that does not belong to rows; then every rank writes its rows into it. All ranks must call
+/// this together.
 ///
 /// # Errors
 /// Errors of any rank, on all of them.

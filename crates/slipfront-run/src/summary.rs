@@ -55,9 +55,10 @@ pub struct Summary {
     pub sliding_percent_max: f64,
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
-    /// Whether mu* fell at least half-way to the steady level L and by (S - L)/20 after its first peak, where
-    /// S is the share of the load on blocks in contact, within the time of a transition, mu_k* is as much
-    /// below the peak, and steady sliding takes less force than the blocks hold at rest.
+    /// Whether there is a transition, which has three conditions. After its first peak, and within the time
+    /// of a transition, mu* fell at least half-way to the steady level L and by (S - L)/20, where S is the
+    /// share of the load on blocks in contact; mu_k* is below the peak by as much; and steady sliding takes
+    /// less force than the blocks hold at rest.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
@@ -111,7 +112,7 @@ pub struct Summary {
     pub n_blocks: usize,
     /// Textured area A* as meshed, %.
     pub texture_percent: f64,
-    /// Textured area A* as asked for, %; none where a mask or polygon gives it block by block only.
+    /// Textured area A* as requested, %; none if a mask or polygon gives it only block by block.
     pub texture_percent_asked: Option<f64>,
     /// Height maps among the textures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -120,7 +121,7 @@ pub struct Summary {
     pub dt_star: f64,
     /// Number of steps done.
     pub steps: u64,
-    /// Number of steps in which a held drive moved; in the others it stood.
+    /// Number of steps in which a held drive moved; in the others, it was at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_steps: Option<u64>,
     /// Seed of the random coefficients.
@@ -142,8 +143,8 @@ pub struct Summary {
     pub friction_loss_j: f64,
     /// Energy lost to damping, J.
     pub damping_loss_j: f64,
-    /// Motion of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum
-    /// of all radii.
+    /// Motion of a drive that rotates: mu* and numbers derived from it are the torque over P mu_s l^2 times
+    /// the sum of all radii.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// Events of slip of a slider driven at an edge.
@@ -292,7 +293,7 @@ pub const OF_KINETIC_WINDOW: [&str; 5] = [
     "sliding_percent_kinetic",
 ];
 
-/// Titles of numbers in pictures: key, words, symbol. Other numbers are called by their keys.
+/// Titles of numbers in pictures: key, words, symbol. The titles of other numbers are their keys.
 pub const TITLES: [(&str, &str, &str); 2] = [
     ("static_friction_star", "static friction", "\u{3bc}\u{209b}*"),
     ("kinetic_friction_star", "kinetic friction", "\u{3bc}\u{2096}*"),
@@ -333,7 +334,7 @@ fn read_json<T: DeserializeOwned>(file: &RunFile<'_>) -> Result<T, ResultsError>
     })
 }
 
-/// The summary as it stands in `summary.json`.
+/// The summary as written in `summary.json`.
 pub fn summary_json(summary: &Summary) -> String {
     String::from_utf8_lossy(&json(summary)).into_owned()
 }

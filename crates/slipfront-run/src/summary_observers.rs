@@ -43,7 +43,7 @@ impl SummaryObservers {
         }
     }
 
-    /// Whether the observers can be those that began as `new`, at a checkpoint of steps of `dt_star`.
+    /// Whether the observers, at a checkpoint of a run with steps of `dt_star`, can have begun as `new`.
     pub(crate) fn is_consistent_with(&self, new: &Self, checkpoint: &Checkpoint, dt_star: f64) -> bool {
         let now = Times {
             time_star: checkpoint.step as f64 * dt_star,
@@ -65,8 +65,8 @@ impl SummaryObservers {
         scheduled
     }
 
-    /// The t* in which a front passes: all t* of a run with a transition, or the event that crosses a slider
-    /// driven at an edge; none if there is no front.
+    /// The range of t* in which a front passes: all t* of a run with a transition, or the event that crosses
+    /// a slider driven at an edge; none if there is no front.
     pub(crate) fn times_of_front(&self, transition: bool) -> Option<RangeInclusive<f64>> {
         let Some(precursors) = &self.optional.precursors else {
             return transition.then_some(0.0..=f64::INFINITY);
@@ -178,7 +178,7 @@ impl SummaryObservers {
             mean_state_star: last.filter(|_| law.has_state).map(|row| row.mean_state),
             warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),
-            // The front is found when the simulation has given its memory back.
+            // The front is found later, when the simulation has freed its memory.
             ..Summary::default()
         };
         self.optional.tell(&mut summary);

@@ -17,7 +17,7 @@ use slipfront_base::number_format::count;
 use slipfront_base::text::{single_line, truncated};
 use slipfront_base::unfinished::is_unfinished;
 
-/// Largest number of bytes of a description that is read: that of thousands of runs with their keys.
+/// Largest number of bytes of a description that is read, enough for thousands of runs with their keys.
 const DESCRIPTION_MAX_BYTES: u64 = 256 << 20;
 
 /// Result of verifying a folder.
@@ -29,8 +29,7 @@ pub struct Verdict {
     pub differences: Vec<String>,
     /// Differences that do no harm, a line each.
     pub notes: Vec<String>,
-    /// Reason for which the files, although as they were written, were not derived again from the recorded
-    /// runs.
+    /// Reason why the files, although unchanged, were not derived again from the recorded runs.
     pub not_derived: Option<String>,
 }
 
@@ -53,8 +52,8 @@ pub enum VerifyError {
     Temporary(std::io::Error),
 }
 
-/// Refuses those files, chosen by `which`, of a complete run that have changed since they were written;
-/// without a manifest nothing is known of them.
+/// Returns an error if a file of a complete run, out of those that `which` chooses, has changed since it was
+/// written. Without a manifest, no file can be checked.
 pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
@@ -78,14 +77,14 @@ pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Resu
 /// Compares the files of a complete run with its manifest.
 ///
 /// # Errors
-/// When the folder has no manifest, or the system does not say what it holds. After a stop the verdict is not
-/// complete.
+/// When the folder has no manifest, or the system cannot determine what it holds. After a stop, the verdict
+/// is not complete.
 pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, VerifyError> {
     let mut verdict = Verdict::default();
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
         Err(error @ ManifestError::Missing { .. }) => return Err(error.into()),
-        // It is a run folder, of which nothing else can be said.
+        // It is a run folder, but nothing else can be said about it.
         Err(error @ (ManifestError::Unreadable { .. } | ManifestError::Damaged { .. })) => {
             verdict.differences.push(error.to_string());
             return Ok(verdict);
@@ -101,7 +100,7 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
     verdict.differences.extend(unresolved(run));
     let listed = manifest.files.iter().map(|file| file.name.as_str());
     let has_unfinished = Unfinished::of(&run.path).is_managed()?;
-    // A picture that `slipfront plot` was writing has a hidden file beside it.
+    // An interrupted `slipfront plot` may have left a hidden file next to a picture.
     let is_left = |name: &str| match name {
         UNFINISHED => has_unfinished,
         name => is_unfinished(name),
@@ -113,8 +112,9 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
     Ok(verdict)
 }
 
-/// The name of the description of a folder for data repositories, if there is one that can be read, and a
-/// note if it is not of the results whose list of checksums has this seal: a description names the seal.
+/// The name of the description of a folder for data repositories, if there is one that can be read. Also a
+/// note if it describes other results than those with this seal of their list of checksums: a description
+/// contains the seal.
 pub fn description_in(folder: &Path, seal: &str) -> (Option<&'static str>, Option<String>) {
     let path = folder.join(RO_CRATE);
     let Ok(text) = read_limited(&path, DESCRIPTION_MAX_BYTES) else {
@@ -146,8 +146,8 @@ pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
     Ok(Inspection::of(folder)?)
 }
 
-/// Differences between the files of a folder and the listed ones, a sentence for each; the verb may be
-/// `were written`. After a stop some files are not looked at.
+/// Differences between the files of a folder and the listed ones, a sentence for each; `how` is the end of
+/// the sentence, such as `were written`. After a stop, some files are not checked.
 pub fn differences<'f>(
     files: impl IntoIterator<Item = &'f ManifestFile>,
     folder: &Path,
@@ -179,11 +179,11 @@ pub fn differences<'f>(
     files.into_iter().filter_map(difference).collect()
 }
 
-/// Reason for which the case of a run is not a resolved case for this version.
+/// Reason why the case of a run is not a resolved case for this version.
 fn unresolved(run: &Inspection) -> Option<String> {
     let path = run.path.join(CASE);
     match &run.case {
-        // One that cannot be read is among the differences already.
+        // A case that cannot be read is already among the differences.
         Ok(_) | Err(CaseDefect::Unreadable(_)) => None,
         Err(CaseDefect::NotResolved(_)) => {
             Some(format!("{} is not the original resolved case", path.display()))

@@ -1,9 +1,9 @@
-//! Pictures of every kind and of unusual shapes: no two texts overlap, none leaves the page, and of a single
-//! run no curve runs through one.
+//! Pictures of every kind and of unusual shapes: no two texts overlap, none leaves the page, and in a picture
+//! of a single run, no curve crosses a text.
 //!
 //! The pictures are written to the folder in `SLIPFRONT_GALLERY`, if it is set.
 
-// Helpers of tests are not tests by themselves to clippy.
+// Clippy does not treat helpers of tests as tests.
 #![allow(clippy::unwrap_used)]
 
 mod bytes;
@@ -80,7 +80,7 @@ fn a_run() {
         curve
     };
     let early = {
-        // Everything at once: the first instants on one another, the window from the start.
+        // Everything at once: the first instants coincide, and the window begins at the start.
         let mut curve = baseline();
         curve.first_slip = Some(0.5);
         for (instant, x) in curve.instants.iter_mut().zip([0.0, 0.5, 79.0, 79.2, 0.2, 130.0]) {
@@ -127,7 +127,7 @@ fn legend(page: &Page, count: usize) -> Vec<String> {
     let texts = page.texts.iter().map(|written| written.text.clone());
     let names: Vec<String> = texts
         .filter(|text| text.contains("run") || text.contains('\u{2026}'))
-        // The folder that all have in common stands above them.
+        // The common folder is above them.
         .filter(|text| !text.starts_with("results/a_rather"))
         .collect();
     assert_eq!(names.len(), count, "{names:?}");
@@ -158,7 +158,7 @@ fn overlays() {
     };
     check("overlay-measured", star(&[baseline(), measured]));
     let long = "results/a_rather_long_name_of_a_study_of_many_materials";
-    // The folder that all names begin with stands above them, once.
+    // The common folder of all names is above them, once.
     let speeds: Vec<FrictionCurve> = (1..=4)
         .map(|k| at_speed(&format!("{long}/speed_0.{k}"), 0.05 * f64::from(k)))
         .collect();
@@ -327,8 +327,8 @@ fn responses() {
     check("precursors", |size| drawn(precursors, &["events", "exact"], size));
 }
 
-/// Catalogues of events: of small ones that follow a power law, beside one that is far larger; a few; equal
-/// ones; and two.
+/// Catalogues of events: small ones that follow a power law plus one that is far larger; a few; equal ones;
+/// and two.
 #[test]
 fn catalogues() {
     let moments = |count: usize| {
@@ -365,8 +365,8 @@ fn catalogues() {
     check("events-two", |size| drawn(&[2e-7, 3e5], &[7.0], "", size));
 }
 
-/// Friction around the directions: equal in all, larger along one axis, with wide intervals, without a value
-/// in one.
+/// Friction against direction: equal in all directions, larger along one axis, with wide intervals, without a
+/// value in one.
 #[test]
 fn polars() {
     let around = |label: &str, mean: &dyn Fn(f64) -> f64, half: f64| {

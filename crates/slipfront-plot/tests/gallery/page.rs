@@ -8,7 +8,8 @@ const OUTLINES: &str = include_str!("../../src/font/outlines.txt");
 const ABOVE: f64 = 0.73;
 const BELOW: f64 = 0.24;
 const DESCENDING: [char; 9] = ['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ','];
-/// Coordinates of an SVG are rounded to hundredths of a pixel, and letters of one word touch.
+/// Tolerance in pixels: coordinates of an SVG are rounded to hundredths of a pixel, and letters of a word
+/// touch.
 const ROUNDING: f64 = 0.1;
 
 /// A rectangle: from x and y, to x and y.

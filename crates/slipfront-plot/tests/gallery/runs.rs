@@ -138,7 +138,7 @@ fn scatter(index: usize) -> f64 {
     (index * index * 7919 % 1009) as f64 / 1009.0
 }
 
-/// Function that tells whether a block of a lattice is textured.
+/// Function that returns whether a block of a lattice is textured.
 pub(crate) type Texture = fn(usize, usize) -> bool;
 
 /// A lattice without texture.

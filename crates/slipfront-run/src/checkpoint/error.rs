@@ -1,4 +1,4 @@
-//! Reasons for which a run cannot go on from a checkpoint.
+//! Reasons why a run cannot be resumed from a checkpoint.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Version of the file's layout. A program reads no other layout.
 pub(super) const LAYOUT: u32 = 5;
 
-/// Reason for which a run cannot go on from a checkpoint.
+/// Reason why a run cannot be resumed from a checkpoint.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CheckpointError {

@@ -1,9 +1,9 @@
 //! The file of a checkpoint.
 //!
-//! A line of JSON holds the identity of the run and the sizes of the columns that follow it: raw
-//! little-endian numbers in the order of the whole lattice, each at a place that follows from this line, so
-//! that every rank writes and reads the numbers of its own rows. Behind them stand the state in postcard's
-//! binary form, and the checksum of all that.
+//! The file begins with a line of JSON that holds the identity of the run and the sizes of the columns. The
+//! columns follow: raw little-endian numbers in the order of the whole lattice. The position of each number
+//! follows from the first line, so that every rank can write and read the numbers of its own rows. The state
+//! in postcard's binary format and the checksum of everything before it come last.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -44,7 +44,7 @@ struct FormatVersion {
     slipfront_checkpoint: u32,
 }
 
-/// A file whose checksum is right.
+/// A file with a correct checksum.
 #[derive(Debug)]
 pub(super) struct VerifiedFile {
     pub(super) header: Header,
@@ -55,7 +55,7 @@ pub(super) struct VerifiedFile {
 }
 
 impl Header {
-    /// The first line for a run whose case has this hash, and which began at `started`.
+    /// The first line for a run that began at `started`, of the case with this hash.
     pub(super) fn new(case_blake3: &str, started: Timestamp, running: &Running) -> Self {
         Self {
             slipfront_checkpoint: LAYOUT,
@@ -67,20 +67,19 @@ impl Header {
         }
     }
 
-    /// Bytes of a file up to the end of the columns, of which `begin` stand before them; none if there are
-    /// too many to count.
+    /// Number of bytes up to the end of the columns, which begin at byte `begin`; none on overflow.
     fn columns_end(&self, begin: u64) -> Option<u64> {
         let [blocks, fields] = self.columns.map(|columns| columns.bytes());
         begin.checked_add(blocks?)?.checked_add(fields?)
     }
 }
 
-/// Writes a checkpoint to a new file, each rank its own rows, and forces the file to the disk.
+/// Writes a checkpoint to a new file, with each rank writing its own rows, and syncs the file to disk.
 ///
-/// On a file system that several machines share, one of them is sure to see what another has written from
-/// when that has closed the file on: each rank writes all that it has and closes the file before any of them
-/// reads it. None reads while it writes, which would let it write whole pages of memory, with what it takes
-/// for the numbers of others.
+/// On a file system shared by several machines, a machine is sure to see the data of another one only after
+/// the other has closed the file. Therefore every rank writes all its data and closes the file before any
+/// rank reads it. No rank reads while it writes: it would then write back whole pages of memory, with
+/// outdated numbers of other ranks.
 pub(super) fn write(
     path: &Path,
     header: &Header,
@@ -90,10 +89,11 @@ pub(super) fn write(
     let is_first = communicator.rank() == 0;
     let mut line = serde_json::to_vec(header)?;
     line.push(b'\n');
-    // The first line is that of the first rank, whose clock may show a time of more digits.
+    // All ranks use the length of the first rank's line, in which the time may have more digits than on other
+    // ranks.
     let begin = of_first(communicator, line.len() as u64);
     let end = header.columns_end(begin).ok_or(ErrorKind::FileTooLarge)?;
-    // All ranks find the state together, and one writes it.
+    // All ranks compute the state together, and the first one writes it.
     let state = running.state();
     let begun = is_first.then(|| write_line_and_state(path, &line, end, &state));
     let begun = agree_on_io(communicator, begun.transpose())?;
@@ -126,21 +126,21 @@ fn of_first(communicator: &dyn Communicator, number: u64) -> u64 {
     of_first[0].cast_unsigned()
 }
 
-/// Makes the file with all but its columns and its checksum, the state from byte `end` on; returns it with
-/// its length.
+/// Creates the file with everything except the columns and the checksum; the state starts at byte `end`.
+/// Returns the file and its length.
 fn write_line_and_state(
     path: &Path,
     line: &[u8],
     end: u64,
     state: &impl Serialize,
 ) -> std::io::Result<(File, u64)> {
-    // One that a killed program has left, whatever it leads to.
+    // Removes a file that a killed program left, even if it is a link.
     remove_if_there(path)?;
     let file = File::options().write(true).create_new(true).open(path)?;
     let mut writer = BufWriter::with_capacity(1 << 20, file);
     writer.write_all(line)?;
     writer.seek(SeekFrom::Start(end))?;
-    // Postcard drops the system's error of a failed write; `flush` gives it again.
+    // Postcard discards the system error of a failed write; `flush` returns it again.
     let written = postcard::to_io(state, &mut writer).map(|_| ());
     writer.flush()?;
     written.map_err(Error::other)?;
@@ -148,7 +148,7 @@ fn write_line_and_state(
     Ok((writer.into_inner()?, length))
 }
 
-/// Writes the columns of the rows that this rank holds, forces them to the disk and closes the file.
+/// Writes the columns of the rows that this rank holds, syncs them to disk and closes the file.
 fn write_columns(mut file: File, begin: u64, running: &Running) -> std::io::Result<()> {
     running.write_columns(|offset, bytes| {
         file.seek(SeekFrom::Start(begin + offset))?;
@@ -157,8 +157,8 @@ fn write_columns(mut file: File, begin: u64, running: &Running) -> std::io::Resu
     file.sync_all()
 }
 
-/// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are compared with the
-/// checksum.
+/// Reads everything but the columns from a checkpoint of the case with this hash, and compares all bytes with
+/// the checksum.
 pub(super) fn read(
     path: &Path,
     case_blake3: &str,
@@ -177,7 +177,7 @@ pub(super) fn read(
         length,
         checksum,
     } = opened;
-    // Where machines share a disk, one of them may see for a while what others have replaced.
+    // On a shared file system, a machine may see a replaced file for a while.
     expect_same(communicator, || {
         let header = serde_json::from_str::<Header>(&line);
         let step = header.map_or("unknown".to_owned(), |header| header.step.to_string());
@@ -197,7 +197,7 @@ pub(super) fn read(
         return Err(CheckpointError::Layout { path, found });
     }
     let header: Header = serde_json::from_str(&line).map_err(|_| unknown())?;
-    // Nothing is made of bytes before they are known to be those that were written.
+    // No bytes are interpreted before the checksum confirms them.
     let contents = length.saturating_sub(OUT_LEN as u64);
     let hash = hash_of_pieces(&mut file, contents, communicator).map_err(unreadable)?;
     if checksum != hash.as_bytes() {
@@ -227,10 +227,10 @@ pub(super) fn read(
     })
 }
 
-/// A file that was opened to be read.
+/// A checkpoint file that is open for reading.
 struct OpenCheckpoint {
     file: File,
-    /// The first line; empty if it is no text.
+    /// The first line; empty if it is not text.
     line: String,
     length: u64,
     /// The last bytes.
@@ -253,13 +253,13 @@ fn open(path: &Path) -> std::io::Result<OpenCheckpoint> {
     })
 }
 
-/// Reads the state, which takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if
-/// there is none.
+/// Reads the state, which occupies all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if
+/// they are not a state.
 fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState> {
     file.seek(SeekFrom::Start(begin))?;
     let file = ErrorKeepingReader { file, error: None };
     let mut body = BufReader::with_capacity(1 << 16, file).take(end - begin);
-    // Room for one number at a time.
+    // Scratch space for one number.
     let mut number = [0; 16];
     let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
     let state = state.ok().filter(|_| body.limit() == 0);
@@ -267,7 +267,7 @@ fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState
     state.ok_or_else(|| error.unwrap_or_else(|| ErrorKind::InvalidData.into()))
 }
 
-/// A file that is read, and the error of the last read: postcard keeps none.
+/// A reader that keeps the error of the last read, because postcard discards it.
 struct ErrorKeepingReader<'a> {
     file: &'a File,
     error: Option<std::io::Error>,

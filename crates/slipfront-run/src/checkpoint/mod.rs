@@ -1,8 +1,9 @@
-//! Checkpoints of a run in its folder, from which it goes on after it was stopped, with the same bytes in
+//! Checkpoints of a run in its folder. A run that was stopped resumes from them and gives the same bytes in
 //! every file.
 //!
-//! A file takes its name when it is whole; the one before it is kept beside it. Any number of ranks writes
-//! the same bytes, each its own rows, and goes on from what any other number has written.
+//! A file gets its name when it is complete; the previous one is kept next to it. Each rank writes its own
+//! rows, and the bytes do not depend on the number of ranks, so a run can be resumed on another number of
+//! ranks.
 
 mod error;
 mod file;
@@ -24,24 +25,24 @@ use crate::names::{CHECKPOINT, PREVIOUS};
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::Running;
 
-/// A checkpoint as it was read.
+/// A checkpoint that was read from a file.
 #[derive(Debug)]
 pub struct LoadedCheckpoint {
     /// The run folder.
     folder: PathBuf,
     path: PathBuf,
     file: VerifiedFile,
-    /// Whether the checkpoint is the latest, and not the one before.
+    /// Whether the checkpoint is the latest one rather than the previous one.
     latest: bool,
 }
 
 impl LoadedCheckpoint {
-    /// The step after which it was saved.
+    /// The step after which the checkpoint was saved.
     pub fn step(&self) -> u64 {
         self.file.header.step
     }
 
-    /// The run that goes on from the checkpoint; none if this belongs to another case.
+    /// Resumes the run from the checkpoint; none if the checkpoint belongs to another case.
     ///
     /// # Errors
     /// [`CheckpointError::Unreadable`].
@@ -68,9 +69,9 @@ pub struct Checkpoints {
     unfinished: Unfinished,
     case_blake3: String,
     started: Timestamp,
-    /// Whether the latest checkpoint in the folder is known to be whole.
+    /// Whether the latest checkpoint in the folder is known to be complete.
     latest_is_whole: bool,
-    /// Step of the latest checkpoint that was saved, or from which the run goes on.
+    /// Step of the latest checkpoint that was saved, or from which the run was resumed.
     saved_step: Option<u64>,
 }
 
@@ -87,7 +88,7 @@ impl Checkpoints {
         }
     }
 
-    /// The checkpoints of a run that goes on from a loaded one, in the folder that holds it.
+    /// The checkpoints of a run that was resumed from a loaded one, in the same folder.
     pub fn after(case: &Case, loaded: &LoadedCheckpoint) -> Self {
         Self {
             latest_is_whole: loaded.latest,
@@ -111,13 +112,13 @@ impl Checkpoints {
         self.started
     }
 
-    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is
-    /// damaged; whatever happens, one of the two is whole.
+    /// Saves the state of the run. The latest checkpoint so far is kept as the previous one, unless it is
+    /// damaged; whatever happens, one of the two is complete.
     pub fn save(&mut self, running: &Running, communicator: &dyn Communicator) -> std::io::Result<()> {
         let header = Header::new(&self.case_blake3, self.started, running);
         let is_first = communicator.rank() == 0;
-        // Another name for every step: machines that share a disk may take a name for the file that had it
-        // before.
+        // The name is different for every step: on a shared file system, a machine may still take a name for
+        // an earlier file.
         let temporary = format!("{}-{CHECKPOINT}", header.step);
         let temporary = self.unfinished.temporary().join(temporary);
         let written = file::write(&temporary, &header, running, communicator);
@@ -129,7 +130,7 @@ impl Checkpoints {
             }
         });
         if placed.is_err() && is_first {
-            // The error that is told is the first one.
+            // The first error is the one that is reported.
             let _ = remove_if_there(&temporary);
         }
         agree_on_io(communicator, placed)?;
@@ -137,7 +138,7 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Makes a whole checkpoint the latest.
+    /// Makes a complete checkpoint the latest one.
     fn put_in_place(&mut self, whole: &Path) -> std::io::Result<()> {
         let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.unfinished.path().join(name));
         if std::mem::take(&mut self.latest_is_whole) {
@@ -151,8 +152,8 @@ impl Checkpoints {
         sync_folder(self.unfinished.path())
     }
 
-    /// Reads the latest checkpoint of a run folder, or the one before it; nothing if the folder has neither.
-    /// Where a kill has left only the one before, it counts as the latest.
+    /// Reads the latest checkpoint of a run folder, or the previous one; none if the folder has neither. If a
+    /// kill has left only the previous one, it counts as the latest.
     pub fn load(
         folder: &Path,
         case: &Case,
@@ -161,7 +162,7 @@ impl Checkpoints {
     ) -> Result<Option<LoadedCheckpoint>, CheckpointError> {
         for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
             let path = Unfinished::of(folder).path().join(name);
-            // A link with nothing at its end must be refused, and not taken for no checkpoint.
+            // A dangling link must be refused, and not treated as a missing checkpoint.
             let found = agree_on_io(communicator, found_at(&path));
             let is_there = match found {
                 Ok(found) => found.is_some(),
@@ -188,7 +189,7 @@ impl Checkpoints {
 /// Hash of a case and of the files that it reads; equal cases have equal hashes.
 pub fn hash_of(case: &Case) -> String {
     let mut hasher = blake3::Hasher::new();
-    // A case that was loaded can be written.
+    // A case that was loaded can always be written.
     hasher.update(case.file.to_toml().unwrap_or_default().as_bytes());
     for input in &case.inputs {
         hasher.update(input.hash.as_bytes());
@@ -254,8 +255,8 @@ mod tests {
         }
     }
 
-    /// Ranks that share a lattice save the bytes of one rank, at many instants of a run with all kinds of
-    /// frames, and within events of slip.
+    /// Ranks that share a lattice save the same bytes as a single rank, at many instants of a run with all
+    /// kinds of frames, and within events of slip.
     #[test]
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [
@@ -273,7 +274,7 @@ mod tests {
                     ..Execution::default()
                 };
                 let mut running = Running::start(case, None, execution);
-                // Clocks differ.
+                // The clocks of the ranks differ.
                 let started = Timestamp::from_nanosecond(communicator.rank() as i128).unwrap();
                 let mut checkpoints = Checkpoints::new(folder, case, started);
                 let mut files = Vec::new();
@@ -314,7 +315,7 @@ mod tests {
         let before = latest(folder.path());
         let begun = Running::start(&case, None, Execution::default());
         for failing in 0..3 {
-            // One of them has lost the disk.
+            // One rank has lost access to the disk.
             let seen = |rank: usize| {
                 if rank == failing {
                     gone.path()
@@ -327,7 +328,7 @@ mod tests {
                 let mut checkpoints = Checkpoints::new(seen, &case, Timestamp::UNIX_EPOCH);
                 checkpoints.save(&begun, communicator).unwrap_err().to_string()
             });
-            // The others tell whose it is, unless it is that of the first.
+            // The other ranks name the rank with the error, unless it is the first one.
             let own = &errors[failing];
             let of_others = match failing {
                 0 => own.clone(),
@@ -342,8 +343,8 @@ mod tests {
         }
     }
 
-    /// Where machines share a disk, one of them may see for a while what others have replaced: another file,
-    /// or one of another layout or length.
+    /// On a shared file system, a machine may see a replaced file for a while: another checkpoint, or one
+    /// with another layout or length.
     #[test]
     fn where_one_rank_sees_another_checkpoint_all_refuse_it() {
         let case = case();
@@ -369,7 +370,7 @@ mod tests {
                     let loaded = Checkpoints::load(folder, &case, false, communicator);
                     loaded.map(drop).unwrap_err().to_string()
                 });
-                // Where it is rank 0 that differs, rank 1 is the first that is not like it.
+                // If rank 0 differs, rank 1 is the first one that is not like it.
                 let named = format!("on rank {} and", differing.max(1));
                 assert!(refused[0].contains(&named), "{}", refused[0]);
                 assert!(refused.iter().all(|said| *said == refused[0]), "{refused:?}");
@@ -377,8 +378,7 @@ mod tests {
         }
     }
 
-    /// Columns stand where the first line places them, and are read back with the same bits: numbers may be
-    /// NaN.
+    /// Columns are where the first line places them, and are read back with the same bits, also for NaN.
     #[test]
     fn columns_stand_where_the_first_line_tells() {
         let case = case();
@@ -406,7 +406,7 @@ mod tests {
             }
         }
         let record = running.record(slipfront::StopReason::End);
-        // Instants A-F stand before the others, and the record has all in the order of time.
+        // Instants A-F come before the other frames, and the record has all frames in order of time.
         let held: Vec<&[u8]> = rest.chunks_exact(fields * 17 * 20 * 4).take(frames).collect();
         assert!(record.frames.len() > 3);
         for (_, frame) in &record.frames {

@@ -5,14 +5,14 @@ use std::str::FromStr;
 /// The author of results and the licence for their use, which only the user knows.
 #[derive(Clone, Debug, Default)]
 pub struct Attribution {
-    /// Who made the runs.
+    /// The author of the runs.
     pub author: Option<Author>,
     /// Terms under which others may use the results.
     pub licence: Option<Licence>,
 }
 
 impl Attribution {
-    /// Sentences about what a crate lacks, since the user did not tell it.
+    /// Sentences about information that a crate lacks because the user did not give it.
     pub fn notes(&self) -> Vec<&'static str> {
         let mut notes = Vec::new();
         if self.author.is_none() {

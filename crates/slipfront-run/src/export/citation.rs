@@ -1,5 +1,5 @@
-//! Citations of results, of slipfront and of the article whose model it implements, as BibTeX and as a
-//! citation file (CFF 1.2.0).
+//! Citations of results, of slipfront and of the article with the model that it implements, as BibTeX and as
+//! a citation file (CFF 1.2.0).
 
 use jiff::Timestamp;
 use serde_json::json;
@@ -23,7 +23,7 @@ const ARTICLE_JOURNAL: &str = "Tribology International";
 const ARTICLE_AUTHORS: [[&str; 2]; 2] = [["Jalali", "S. K."], ["Pugno", "N. M."]];
 const ARTICLE_VOLUME: u16 = 188;
 pub(super) const ARTICLE_YEAR: u16 = 2023;
-/// Remark on what the article has to do with the results.
+/// Relation of the article to the results.
 const ARTICLE_NOTE: &str = "The model";
 
 /// Entries of BibTeX: one for each folder of results, one for slipfront and one for the article. Without an
@@ -106,8 +106,8 @@ fn versions(folders: &[Exported]) -> String {
     versions.join(", ")
 }
 
-/// A text in which TeX reads every sign as it stands. BibTeX counts braces, also those behind a backslash, so
-/// that none stands alone.
+/// A text with characters escaped, so that TeX prints every one. BibTeX counts braces, even after a
+/// backslash, so commands replace single braces.
 fn tex(text: &str) -> String {
     let sign = |c: char| match c {
         '&' | '%' | '$' | '#' | '_' => format!("\\{c}"),
@@ -122,8 +122,8 @@ fn tex(text: &str) -> String {
     text.chars().map(sign).collect()
 }
 
-/// A string of YAML: a string of JSON, with numbers for the signs that some readers of YAML refuse or take
-/// for ends of lines.
+/// A string of YAML: a string of JSON, with numeric escapes for characters that some readers of YAML refuse
+/// or treat as line breaks.
 fn quoted(text: &str) -> String {
     let is_refused = |c: char| {
         c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}')
@@ -138,10 +138,10 @@ fn quoted(text: &str) -> String {
     json!(text).to_string().chars().map(sign).collect()
 }
 
-/// A citation file (CFF 1.2.0) of results, as `CITATION.cff` beside them.
+/// A citation file (CFF 1.2.0) of results, for a `CITATION.cff` next to them.
 ///
 /// # Errors
-/// [`ExportError::NeedsAuthor`]: the format demands one.
+/// [`ExportError::NeedsAuthor`]: the format requires an author.
 pub fn cff(folders: &[Exported], by: &Attribution) -> Result<String, ExportError> {
     let author = by.author.as_ref().ok_or(ExportError::NeedsAuthor)?;
     let titles: Vec<String> = folders.iter().map(Exported::title).collect();

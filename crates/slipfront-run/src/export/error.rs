@@ -1,4 +1,4 @@
-//! Reasons for which results are not exported.
+//! Reasons why results are not exported.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::verify::VerifyError;
 
-/// Reason for which results are not exported.
+/// Reason why results are not exported.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ExportError {

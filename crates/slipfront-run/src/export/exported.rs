@@ -15,7 +15,7 @@ use crate::names::{CASE, MANIFEST};
 use crate::program;
 use crate::verify::{VerifyError, differences, inspect, verify_run};
 
-/// A folder of results, every file of which is as it was written.
+/// A folder of results in which no file has changed since it was written.
 #[derive(Debug)]
 pub struct Exported {
     /// Path of the folder.
@@ -24,11 +24,11 @@ pub struct Exported {
     pub name: String,
     /// Kind of the results, such as `run` or `study`.
     pub kind: &'static str,
-    /// Content of the folder beside its name, such as `study from 24 recorded runs`; none of a run.
+    /// Content of the folder, in addition to its name, such as `study from 24 recorded runs`; none for a run.
     pub what: Option<String>,
     /// The program that wrote the results.
     pub program: MadeBy,
-    /// Name of the file from which the results can be made again.
+    /// Name of the file from which the results can be reproduced.
     pub file: &'static str,
     /// Name of the list of checksums, which is sealed.
     pub list: &'static str,
@@ -69,31 +69,31 @@ impl MadeBy {
     }
 }
 
-/// Something that was done, and can be done again: a run, or a study of many.
+/// An action that can be repeated: a run, or a study of many runs.
 #[derive(Debug)]
 pub struct Action {
-    /// Identifier that no other action of any results has.
+    /// Globally unique identifier of the action.
     pub id: String,
     /// Name of the action for people.
     pub name: String,
-    /// The command that repeats the action, and the files that follow it; none where there is no such
+    /// The command that repeats the action, and the files that are its arguments; none if there is no such
     /// command.
     pub command: Option<(String, Vec<String>)>,
     /// More about the action.
     pub description: String,
-    /// Reason for which the action failed; none if it succeeded.
+    /// Reason why the action failed; none if it succeeded.
     pub failure: Option<String>,
-    /// Seal of the list of the checksums of its results; none where it has no list of its own.
+    /// Seal of the list of checksums of the action's results; none if it does not have its own list.
     pub seal: Option<String>,
-    /// The program that did it.
+    /// The program that performed the action.
     pub program: MadeBy,
     /// Times of begin and end, UTC; empty where they are not recorded.
     pub times: [String; 2],
-    /// Paths of the files that it was made from.
+    /// Paths of the input files of the action.
     pub objects: Vec<String>,
-    /// Keys that it was made with.
+    /// Keys and values that the action used.
     pub parameters: Vec<Parameter>,
-    /// Paths of the files that it gave.
+    /// Paths of the output files of the action.
     pub results: Vec<String>,
 }
 
@@ -135,7 +135,7 @@ impl Exported {
         })
     }
 
-    /// Adds the files and actions of other results, which stand in the subfolder `at`.
+    /// Adds the files and actions of other results, which are in the subfolder `at`.
     pub fn take(&mut self, at: &str, other: Self) {
         let below = |name: &mut String| name.insert_str(0, &format!("{at}/"));
         let first = self.files.len();
@@ -158,7 +158,7 @@ impl Exported {
         format!("blake3:{}", self.seal)
     }
 
-    /// The name of the results, and what they are.
+    /// The name of the results, and a description of them if there is one.
     pub(super) fn title(&self) -> String {
         match &self.what {
             Some(what) => format!("{} ({what})", self.name),
@@ -166,14 +166,14 @@ impl Exported {
         }
     }
 
-    /// Hash of the file from which the results can be made again.
+    /// Hash of the file from which the results can be reproduced.
     pub(super) fn hash(&self) -> &str {
         let mut files = self.files.iter();
         let found = files.find(|found| found.file.name == self.file);
         found.map_or("", |found| &found.file.blake3)
     }
 
-    /// Copies every file to a new folder, where it is compared with its checksum.
+    /// Copies every file to a new folder, and compares it with its checksum.
     pub(super) fn copy(&self, to: &Path, stop: &AtomicBool) -> Result<(), ExportError> {
         for ExportedFile { file, .. } in &self.files {
             let (original, path) = (self.folder.join(&file.name), to.join(&file.name));

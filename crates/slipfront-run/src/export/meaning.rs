@@ -20,7 +20,7 @@ const FORMATS: [(&str, &str); 13] = [
     ("txt", "text/plain"),
 ];
 
-/// Media type of a file; of one whose ending is not known that of any bytes.
+/// Media type of a file; if its ending is unknown, the type of arbitrary bytes.
 pub(super) fn format_of(name: &str) -> &'static str {
     let ending = name.rsplit('.').next().unwrap_or_default();
     let known = FORMATS.iter().find(|(known, _)| *known == ending);

@@ -1,9 +1,8 @@
 //! Complete results for other programs: as a Process Run Crate (RO-Crate) for data repositories, and as
 //! citations.
 //!
-//! A run is described here; a folder of many runs describes itself as [`Exported`]. Results do not know their
-//! author and licence. What the user does not give is reported as missing, and never
-//! made up.
+//! A run is described here; a folder of many runs describes itself as [`Exported`]. Results do not contain
+//! their author and licence. If the user does not give these, they are reported as missing and never made up.
 
 mod attribution;
 mod citation;
@@ -28,14 +27,14 @@ pub use self::parameters::Parameter;
 use crate::clock;
 use crate::names::RO_CRATE;
 
-/// Describes results as a Process Run Crate and returns the path of `ro-crate-metadata.json`: copies of their
-/// folders in the new folder `out`, or without `out` one folder where it is, in which `force` replaces an
-/// earlier description.
+/// Describes results as a Process Run Crate and returns the path of `ro-crate-metadata.json`. With `out`, the
+/// folders are copied to this new folder; without it, one folder is described in place, where `force`
+/// replaces an earlier description.
 ///
 /// # Errors
 /// [`ExportError::NeedsFolder`] for several folders without `out`; [`ExportError::Interrupted`] after a stop;
-/// when a file or folder stands where one is to be made, when two folders have one name, and when the system
-/// refuses to read or write.
+/// when a file or folder already exists where one must be created, when two folders have the same name, and
+/// when reading or writing fails.
 pub fn write_crate(
     folders: &[Exported],
     out: Option<&Path>,
@@ -54,7 +53,7 @@ pub fn write_crate(
 /// is not one of the results.
 fn describe_in_place(results: &Exported, by: &Attribution, force: bool) -> Result<PathBuf, ExportError> {
     let path = results.folder.join(RO_CRATE);
-    // A broken link is a file of the user as well.
+    // A broken link also counts as a file of the user.
     if path.symlink_metadata().is_ok() && !force {
         return Err(ExportError::Exists { path });
     }
@@ -64,8 +63,7 @@ fn describe_in_place(results: &Exported, by: &Attribution, force: bool) -> Resul
 }
 
 /// Copies folders of results to a new folder, each under its name, describes them there in
-/// `ro-crate-metadata.json`, and returns the path of this file. The folder has its name when all of it is
-/// there.
+/// `ro-crate-metadata.json`, and returns the path of this file. The folder gets its name when it is complete.
 fn crate_of_copies(
     folders: &[Exported],
     out: &Path,
@@ -86,7 +84,7 @@ fn crate_of_copies(
     if is_same(out, Path::new(".")) {
         return Err(ExportError::WorkedIn { path: out.to_owned() });
     }
-    // A link leads to the folder that is meant.
+    // If `out` is a link, the target is the folder that it leads to.
     let place = out.canonicalize().unwrap_or_else(|_| out.to_owned());
     if place.exists() && !is_empty(&place).map_err(failed)? {
         return Err(ExportError::NotEmpty { path: out.to_owned() });

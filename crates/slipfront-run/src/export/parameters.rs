@@ -18,7 +18,7 @@ const UNITS: [(&str, Option<&str>); 9] = [
     ("1/s", Some("C97")),
 ];
 
-/// Units of numbers, as the titles of their keys have them: none, degrees, percent.
+/// Units of numbers, as written in the titles of their keys: none, degrees, percent.
 const NUMBERS: [(&str, &str, &str); 3] = [("", "1", "C62"), ("\u{b0}", "\u{b0}", "DD"), ("%", "%", "P1")];
 
 /// A key of a case with its value.
@@ -26,7 +26,7 @@ const NUMBERS: [(&str, &str, &str); 3] = [("", "1", "C62"), ("\u{b0}", "\u{b0}",
 pub struct Parameter {
     /// Key with its table, such as `drive.v_star`.
     pub(super) key: String,
-    /// A number, in SI units where it has a unit, or the value as the case has it.
+    /// A number, in SI units where it has a unit, or the value as written in the case.
     pub(super) value: Value,
     /// Name and code of the unit.
     pub(super) unit: Option<(&'static str, Option<&'static str>)>,
@@ -57,7 +57,7 @@ impl Parameter {
     }
 }
 
-/// A quantity with its unit in SI; none of a text that is no quantity.
+/// A quantity with its unit in SI; none for a text that is not a quantity.
 fn in_si(text: &str) -> Option<(f64, (&'static str, Option<&'static str>))> {
     let written = WrittenQuantity::read(text)?;
     UNITS.iter().find_map(|unit| {

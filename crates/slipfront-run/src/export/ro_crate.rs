@@ -1,8 +1,8 @@
 //! The metadata of a Process Run Crate 0.5 (<https://w3id.org/ro/wfrun/process/0.5>), a profile of RO-Crate
 //! 1.1.
 //!
-//! Whatever was done is a `CreateAction`: slipfront is its instrument; the files and keys that it was made
-//! from are its objects, and the files that it gave are its results.
+//! Every action is a `CreateAction`: slipfront is its instrument, the input files and keys are its objects,
+//! and the output files are its results.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -103,7 +103,7 @@ fn link(id: &str) -> Value {
     json!({"@id": id})
 }
 
-/// Links as RO-Crate has them: one of them stands alone.
+/// Links in the form of RO-Crate: a single link is not in an array.
 fn one_or_all(mut links: Vec<Value>) -> Value {
     if links.len() == 1 {
         links.remove(0)
@@ -124,7 +124,7 @@ fn encoded(path: &str) -> String {
     path.bytes().map(byte).collect()
 }
 
-/// Links to the folder of results in the crate, or to its files where it has none of its own.
+/// Links to the folder of results in the crate, or to its files if they do not have their own folder.
 fn parts(results: &Exported, at: &str) -> Vec<Value> {
     if at.is_empty() {
         files(results, at)
@@ -208,7 +208,7 @@ fn add_action(graph: &mut Graph, action: &Action, at: &str, agent: Option<&str>)
     graph.add(&action_id(action), "CreateAction", properties);
 }
 
-/// The command that repeats an action, and what else is known of it.
+/// The command that repeats an action, and its description.
 fn description(action: &Action, at: &str) -> String {
     let Some((command, files)) = &action.command else {
         return action.description.clone();

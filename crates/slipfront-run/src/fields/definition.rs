@@ -12,8 +12,8 @@ const DIMENSIONS: [&str; 4] = [Y, X, TIME, LABEL_LENGTH];
 
 /// The definition of a fields file.
 ///
-/// Blanks are NaN, which every reader knows; there is no `_FillValue`. Nor have x and y an `axis`: ParaView
-/// would take them for longitude and latitude.
+/// Missing values are NaN, which every reader knows, so there is no `_FillValue`. The coordinates x and y
+/// have no `axis` attribute, because ParaView would take them for longitude and latitude.
 pub(super) fn define(file: &FieldsFile) -> Definition {
     let mut variables = statics();
     // A record dimension without records makes ParaView crash.

@@ -87,14 +87,14 @@ impl FieldFrame {
     }
 }
 
-/// The content of `fields.nc`, or the part of it that a process holds which shares the lattice with others.
+/// The content of `fields.nc`, or the part that is held by a process that shares the lattice with others.
 #[derive(Debug, Clone)]
 pub struct FieldsFile<'a> {
     /// Number of blocks along x, before thinning.
     pub nx: usize,
     /// Number of blocks along y, before thinning.
     pub ny: usize,
-    /// The rows of blocks whose values are here, before thinning: `0..ny` unless the lattice is shared.
+    /// The rows of blocks with values in this part, before thinning: `0..ny` unless the lattice is shared.
     pub rows: Range<usize>,
     /// Every n-th block is kept, in both directions, from block 0 of the lattice on.
     pub stride: usize,
@@ -106,8 +106,8 @@ pub struct FieldsFile<'a> {
     pub names: &'a [Field],
     /// Arrays that never change, of these rows.
     pub statics: StaticFields<'a>,
-    /// The instants, in order of time, each with the values of these rows; NetCDF wants each time once. The
-    /// list may be empty.
+    /// The instants, in order of time, each with the values of these rows; NetCDF requires that no time
+    /// occurs twice. The list may be empty.
     pub frames: &'a [FieldFrame],
 }
 
@@ -122,12 +122,12 @@ impl FieldsFile<'_> {
         kept(0..self.ny, self.stride).len()
     }
 
-    /// The rows of the file that are here.
+    /// The rows of the file that are in this part.
     pub(super) fn kept_here(&self) -> Range<usize> {
         kept(self.rows.clone(), self.stride)
     }
 
-    /// The values of the given ones that the file keeps, for the blocks that are here.
+    /// Selects the values that the file keeps from values of the blocks of this part.
     pub(super) fn keep<T: Copy>(&self, values: &[T]) -> impl Iterator<Item = T> {
         let skipped = (self.kept_here().start * self.stride - self.rows.start) * self.nx;
         thin(values.get(skipped..).unwrap_or_default(), self.nx, self.stride)
@@ -141,7 +141,7 @@ impl FieldsFile<'_> {
 }
 
 /// The contents of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless
-/// it was reduced further or some rows alone were read.
+/// it was reduced further or only some rows were read.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.

@@ -68,7 +68,7 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
         ],
     };
     let mut bytes = definition.header().bytes;
-    // All variables have whole multiples of four bytes and stand in this order.
+    // The size of every variable is a multiple of four bytes, and they are written in this order.
     append(&mut bytes, data.time_star.iter().map(|time| time * scales.time()));
     append(&mut bytes, data.time_star.iter().copied());
     append(
@@ -79,7 +79,7 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
         &mut bytes,
         kymograph.in_contact().iter().map(|blocks| *blocks as f64),
     );
-    // One NaN only: its sign and payload depend on the machine.
+    // All NaN become the same one, because sign and payload depend on the machine.
     let one_nan = |share: f32| if share.is_nan() { f32::NAN } else { share };
     append(&mut bytes, data.sliding_share.into_iter().map(one_nan));
     bytes
@@ -96,7 +96,7 @@ pub struct KymographData {
     pub time_star: Vec<f64>,
     /// Places where the first bin begins and the last one ends, in m.
     pub places: [f64; 2],
-    /// The share of the blocks in contact of every bin that slide, row after row; NaN for a bin without
+    /// Share of the blocks in contact that slide, for every bin, row after row; NaN for a bin without
     /// contact.
     pub sliding_share: Vec<f32>,
 }

@@ -1,12 +1,12 @@
 //! The file `fields.nc`: fields of all blocks at a few instants of a run.
 //!
 //! The file is NetCDF-3 with 64-bit offsets (CDF-2), or where an array takes more than 2 GiB with 64-bit data
-//! (CDF-5), and has CF-1.8 attributes, so that xarray, ParaView, Octave and MATLAB open it as it is. Fields
-//! have the dimensions (time, y, x), what never changes has (y, x); row j = 0 is the smallest y. The file
-//! carries no date: equal input gives equal bytes. [`write_fields`] ends a run, [`FieldsWriter`] one that
-//! processes share, [`read_maps`] and [`read_first_slips`] serve the pictures, [`read_fields`] and
-//! [`read_rows`] read the whole content. `kymograph.nc` is a file of the same format ([`kymograph_bytes`],
-//! [`read_kymograph`]).
+//! (CDF-5), and has CF-1.8 attributes, so that xarray, ParaView, Octave and MATLAB can open it. Fields have
+//! the dimensions (time, y, x), and constant arrays have (y, x); row j = 0 is the smallest y. The file
+//! contains no date: equal input gives equal bytes. [`write_fields`] writes the file of a run on ranks,
+//! [`FieldsWriter`] writes that of any processes that share a lattice, [`read_maps`] and [`read_first_slips`]
+//! serve the pictures, [`read_fields`] and [`read_rows`] read the whole content. `kymograph.nc` is a file of
+//! the same format ([`kymograph_bytes`], [`read_kymograph`]).
 
 mod definition;
 mod frame;

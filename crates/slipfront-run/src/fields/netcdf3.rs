@@ -1,4 +1,4 @@
-//! Elements of the header of a NetCDF-3 file, in both forms that fields files have.
+//! Elements of the header of a NetCDF-3 file, in the two forms that fields files have.
 
 /// Form of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,12 +27,12 @@ impl CdfVersion {
     }
 }
 
-// What the lists of a header begin with.
+// Tags at the beginning of the lists of a header.
 pub(super) const DIMENSIONS: u32 = 0x0a;
 pub(super) const VARIABLES: u32 = 0x0b;
 pub(super) const ATTRIBUTES: u32 = 0x0c;
 
-/// Type by which a number is stored, big-endian, with the code that it has in a header.
+/// Type of a stored number (big-endian), with its code in a header.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ExternalType {
     Byte = 1,

@@ -1,9 +1,9 @@
-//! The header of a NetCDF-3 file, and the places of the values behind it.
+//! The header of a NetCDF-3 file, and the positions of the values after it.
 
 use super::netcdf3::{ATTRIBUTES, CdfVersion, DIMENSIONS, ExternalType, StoredNumber, VARIABLES};
 
-/// Most bytes of a variable, or of one record of it, in a file with 64-bit offsets. The format has room for
-/// twice as many, but not every reader: some keep the number with a sign.
+/// Largest size in bytes of a variable, or of one record of it, in a file with 64-bit offsets. The format
+/// allows twice as much, but some readers store the size as a signed number.
 const OFFSET64_MAX_BYTES: u64 = i32::MAX as u64 - 3;
 
 /// The definition of a file, without the values of its variables.
@@ -49,10 +49,10 @@ pub(super) struct Variable {
     pub(super) attributes: Vec<Attribute>,
 }
 
-/// The bytes of a header, and the places of the values that it defines.
+/// The bytes of a header, and the positions of the values that it defines.
 pub(super) struct HeaderBytes {
     pub(super) bytes: Vec<u8>,
-    /// Places in the order of the file: first the variables without records, then record after record.
+    /// Positions in the order of the file: first the variables without records, then record after record.
     pub(super) places: Vec<ValuePlace>,
 }
 
@@ -62,19 +62,19 @@ pub(super) struct ValuePlace {
     /// Number of the record; 0 for a variable without records.
     pub(super) record: usize,
     pub(super) offset: u64,
-    /// Bytes behind the values that fill up a multiple of four.
+    /// Padding bytes after the values, up to a multiple of four.
     pub(super) padding: usize,
 }
 
 impl Definition {
-    /// Lays the file out.
+    /// Computes the layout of the file.
     pub(super) fn header(&self) -> HeaderBytes {
         let sizes = self.variables.iter().map(|variable| self.bytes_at_once(variable));
         let form = match sizes.max() {
             Some(bytes) if bytes > OFFSET64_MAX_BYTES => CdfVersion::Data64,
             _ => CdfVersion::Offset64,
         };
-        // The offsets do not change how long the header is.
+        // The length of the header does not depend on the offsets.
         let length = self.encode(form, |_| 0).len() as u64;
         let mut offset = length;
         let mut places = Vec::new();
@@ -158,14 +158,14 @@ impl Encoder {
         self.bytes.extend(number.to_be_bytes());
     }
 
-    /// Appends a count. A count that has 32 bits in one form fits, because no larger variable is written in
-    /// it.
+    /// Appends a count. It fits in the 32 bits of the form with 64-bit offsets, because no larger variable is
+    /// written in that form.
     fn count(&mut self, count: usize) {
         let bytes = (count as u64).to_be_bytes();
         self.bytes.extend(&bytes[bytes.len() - self.form.count_bytes()..]);
     }
 
-    /// Appends zeros up to a multiple of four behind all bytes before.
+    /// Appends zeros until the number of bytes is a multiple of four.
     fn pad(&mut self) {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
     }

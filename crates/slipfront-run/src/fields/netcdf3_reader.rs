@@ -11,7 +11,7 @@ use crate::run_files::{RunFile, Source};
 /// Number of values that are read at once.
 const PIECE: usize = 1 << 14;
 
-/// Largest length of a header: those of fields files take a few kilobytes.
+/// Largest length of a header; headers of fields files take a few kilobytes.
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
 /// Error of a file.
@@ -31,7 +31,7 @@ pub(super) fn broken<T>(detail: impl Into<String>) -> Result<T, NetCdfError> {
 pub(super) struct NetCdf3Reader<'f> {
     file: Box<dyn Source + 'f>,
     file_bytes: u64,
-    /// Number of records, that is of instants.
+    /// Number of records, one for each instant.
     pub(super) records: usize,
     record_bytes: u64,
     dimensions: Vec<StoredDimension>,
@@ -87,8 +87,7 @@ impl<'f> NetCdf3Reader<'f> {
             total.checked_add(reader.bytes_at_once(variable)?.checked_next_multiple_of(4)?)
         });
         reader.record_bytes = record_bytes.ok_or_else(|| absurd("one record"))?;
-        // The number of records stands in the header alone: it counts only as far as the file holds their
-        // bytes.
+        // Only the header contains the number of records, so it must not exceed what the file has bytes for.
         let held = file_bytes.checked_div(reader.record_bytes).unwrap_or(0);
         if records as u64 > held {
             return broken(format!(
@@ -121,8 +120,8 @@ impl<'f> NetCdf3Reader<'f> {
         }
     }
 
-    /// The values of a variable over exactly these dimensions that lie in `part`, which counts those of the
-    /// whole variable, or of one record of it if the first dimension is the record dimension.
+    /// The values in the range `part` of a variable with exactly these dimensions. The range counts the
+    /// values of the whole variable, or of one record of it if the first dimension is the record dimension.
     pub(super) fn values(
         &mut self,
         name: &str,
@@ -135,7 +134,7 @@ impl<'f> NetCdf3Reader<'f> {
         Ok(values)
     }
 
-    /// Hands the values over piece by piece, so that they need not be in memory at once.
+    /// Passes the values on piece by piece, so that they need not all be in memory.
     pub(super) fn read(
         &mut self,
         name: &str,
@@ -199,7 +198,7 @@ impl<'f> NetCdf3Reader<'f> {
     }
 }
 
-/// Refuses names that stand twice, since they would be read twice, however long their arrays are.
+/// Refuses duplicate names, because their arrays would be read twice, however long they are.
 fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), NetCdfError> {
     let mut seen = HashSet::new();
     match names.find(|name| !seen.insert(*name)) {
@@ -258,7 +257,7 @@ impl<'a> HeaderReader<'a> {
     /// A length, a number of elements, an index.
     fn count(&mut self) -> Result<usize, NetCdfError> {
         let count = self.number(self.form.count_bytes())?;
-        // A machine of 32 bits could not hold what has more.
+        // A 32-bit machine could not hold a larger number of elements.
         usize::try_from(count).or_else(|_| broken(format!("its header counts {count} of something")))
     }
 
@@ -316,7 +315,7 @@ impl<'a> HeaderReader<'a> {
         }
         self.list(ATTRIBUTES, 12, HeaderReader::attribute)?;
         let kind = self.kind()?;
-        // The size stands here too; it follows from the dimensions.
+        // Skips the size, which follows from the dimensions.
         self.count()?;
         let offset = self.number(8)?;
         Ok(StoredVariable {

@@ -21,8 +21,8 @@ pub fn read_fields<'f>(file: impl Into<RunFile<'f>>) -> Result<FieldsData, Field
     read_rows(file, 0..usize::MAX)
 }
 
-/// Reads these rows of a fields file alone, as far as it has them, counted from y = 0, for a file that is
-/// larger than the memory.
+/// Reads only these rows of a fields file, as far as they exist, counted from y = 0. This is for a file that
+/// is larger than the memory.
 pub fn read_rows<'f>(file: impl Into<RunFile<'f>>, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
     let file = file.into();
     let read = || all_of(&mut NetCdf3Reader::open(&file)?, &rows);
@@ -52,7 +52,7 @@ pub trait Reduction {
     /// Begins the reduction of an array with rows of `columns` values, and with `rows` rows.
     fn of(columns: usize, rows: usize) -> Self;
 
-    /// Takes the next values in.
+    /// Adds the next values.
     fn add(&mut self, values: impl Iterator<Item = f32>);
 
     /// Result of the reduction.
@@ -74,10 +74,10 @@ impl Reduction for Vec<f32> {
     }
 }
 
-/// Reads the data of a picture of one field, however long the file is: this field alone, at the snapshots
-/// that `choose` numbers from the letters of each, and of the constant arrays the texture alone, all
-/// [reduced](Reduction) while they are read. A reduced value counts as texture if more than half of its
-/// blocks do.
+/// Reads the data of a picture of one field from a file of any length: only this field, at the snapshots with
+/// the numbers that `choose` returns for the letters of all snapshots, and only the texture of the constant
+/// arrays. All are [reduced](Reduction) while they are read. A reduced value counts as texture if more than
+/// half of its blocks do.
 pub fn read_maps<'f, R: Reduction>(
     file: impl Into<RunFile<'f>>,
     field: Field,
@@ -99,8 +99,8 @@ pub fn count_snapshots(path: &Path) -> Result<usize, FieldsError> {
     Ok(file.records)
 }
 
-/// The numbers of at most `most` snapshots with these letters: if there are more, those that have letters, or
-/// as many spread over the run.
+/// The numbers of at most `most` snapshots with these letters: all snapshots if there are no more; otherwise
+/// those that have letters, or, if these are none or too many, `most` snapshots spread over the run.
 pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
     let (count, shown) = (labels.len(), labels.len().min(most));
     let instants: Vec<usize> = (0..count).filter(|&k| !labels[k].is_empty()).collect();
@@ -111,7 +111,7 @@ pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
 }
 
 /// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the
-/// texture in the same way. The times are the one array of the one frame.
+/// texture in the same way. The times are the only array of the only frame.
 pub fn read_first_slips<R: Reduction>(from: &RunFile<'_>) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(from)?;
@@ -159,7 +159,7 @@ fn read_chosen<R: Reduction>(
             ));
         }
     }
-    // The instants are records: otherwise the whole of an array would be read for each of them.
+    // The instants must be records: otherwise the whole of an array would be read for each of them.
     if !records.is_empty() && file.dimension(TIME)? != 0 {
         return broken(format!("`{TIME}` has a fixed length"));
     }

@@ -11,7 +11,7 @@ use slipfront::communicator::Alone;
 use super::*;
 use slipfront_case::field_info::{field_info, field_named};
 
-/// Writes a file by way of a temporary one beside it.
+/// Writes a file through a temporary one next to it.
 fn write(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
     let written = write_fields(path.parent().unwrap(), path, file, &Alone)?.unwrap();
     written.persist(path).map_err(|error| FieldsError::Write {
@@ -418,8 +418,7 @@ fn the_file_is_as_readable_as_any_other_and_replaces_one_that_is_there() {
     assert!(read_fields(&path).is_ok());
 }
 
-/// Puts a new file in the place of an old one: some file systems wait for the disk when a file is emptied
-/// first.
+/// Replaces a file by removing it first: some file systems wait for the disk when a file is truncated.
 fn replace(path: &Path, bytes: &[u8]) {
     let _ = fs::remove_file(path);
     fs::write(path, bytes).unwrap();
@@ -457,8 +456,8 @@ fn files_of_another_kind_are_refused() {
     }
 }
 
-/// A record dimension of a fixed length has no records, and no variable of them needs a byte more for each:
-/// without a look at the file, the number in the header alone would say how many frames to make.
+/// If the record dimension has a fixed length, there are no records, and no variable needs bytes for them.
+/// Without a check against the file, only the number in the header would decide how many frames are created.
 #[test]
 fn instants_that_the_file_does_not_hold_are_refused() {
     let lattice = lattice();
@@ -480,7 +479,7 @@ fn instants_that_the_file_does_not_hold_are_refused() {
     }
 }
 
-/// Puts bytes behind the first `mark`, and one more into the count of 32 bits that follows it.
+/// Inserts `more` at the byte `behind`, and adds 1 to the count at the end of the first `tag`.
 fn with_one_more(bytes: &[u8], tag: &[u8; 8], more: &[u8], behind: usize) -> Vec<u8> {
     let at = bytes.windows(8).position(|bytes| bytes == tag).unwrap();
     let mut bytes = bytes.to_vec();
@@ -489,8 +488,8 @@ fn with_one_more(bytes: &[u8], tag: &[u8; 8], more: &[u8], behind: usize) -> Vec
     bytes
 }
 
-/// Where nothing is a record, the whole of each array would be read for every instant that the header
-/// promises: the square of the file's length in memory.
+/// Without records, the whole of each array would be read for every instant that the header promises, which
+/// takes memory in proportion to the square of the file's length.
 #[test]
 fn instants_that_are_no_records_are_refused() {
     let lattice = lattice();
@@ -563,7 +562,7 @@ fn damaged_files_are_refused_or_read() {
     }
 }
 
-/// Processes that hold some rows each write the same bytes as one that holds all, in whatever order they do.
+/// Processes that each hold some rows write the same bytes, in any order, as one that holds all rows.
 #[test]
 fn rows_that_are_written_apart_give_the_same_file() {
     let lattice = lattice();
@@ -596,7 +595,7 @@ fn rows_that_are_written_apart_give_the_same_file() {
                     ..file.clone()
                 };
                 let writer = FieldsWriter::new(&path, &part).unwrap();
-                // Any of them may create it, at any time.
+                // Any process may create the file, at any time.
                 if rows[1] == NY {
                     writer.create(&mut apart).unwrap();
                 }
@@ -608,7 +607,7 @@ fn rows_that_are_written_apart_give_the_same_file() {
 }
 
 /// The bytes of files of all kinds, the same in every version: with and without instants and fields, labels
-/// of other lengths, and an odd number of flags, which is filled up.
+/// of other lengths, and an odd number of flags, which is padded.
 #[test]
 fn the_bytes_of_a_file_are_pinned() {
     let lattice = lattice();
@@ -616,7 +615,7 @@ fn the_bytes_of_a_file_are_pinned() {
         let (_folder, path) = folder();
         write(&path, file).unwrap();
         let mut bytes = fs::read(&path).unwrap();
-        // The version of the package stands in the file.
+        // The file contains the version of the package.
         let version = concat!("slipfront ", env!("CARGO_PKG_VERSION")).as_bytes();
         let at = bytes.windows(version.len()).position(|found| found == version);
         bytes[at.unwrap()..][..version.len()].fill(b'.');

@@ -15,23 +15,21 @@ use super::netcdf3::StoredNumber;
 use super::netcdf3_header::{HeaderBytes, ValuePlace};
 use crate::shared_file::write_shared;
 
-/// Number of bytes that are collected before they are written.
+/// Number of bytes in the write buffer.
 const BUFFER: usize = 1 << 18;
 
-/// Padding of a variable of 16-bit numbers behind an odd number of them: the beginning of NetCDF's fill
-/// value.
+/// Padding of a variable of 16-bit numbers after an odd number of them: the beginning of NetCDF's fill value.
 const SHORT_PADDING: [u8; 2] = [0x80, 0x01];
 
-/// Writes the future `fields.nc` at `path` to a temporary file in a folder on the same file system, each rank
-/// the rows that it holds.
+/// Writes the `fields.nc` that will be at `path` to a temporary file in a folder on the same file system.
+/// Each rank writes the rows that it holds.
 ///
-/// The file is complete and on the disk, and takes its name when the first rank, which returns it, renames it
-/// (`persist`). Coordinates are the block centres in m and the time in s; fields are float32, constant arrays
-/// are float64.
+/// The file is complete and synced to disk. Only the first rank returns it, and renames it (`persist`).
+/// Coordinates are the block centres in m and the time in s; fields are float32, constant arrays are float64.
 ///
 /// # Errors
 ///
-/// [`FieldsError`] if an array does not have the length that the sizes ask for, or the file cannot be written
+/// [`FieldsError`] if an array does not have the length that the sizes require, or the file cannot be written
 /// in full, on any rank.
 pub fn write_fields(
     temporary: &Path,
@@ -53,19 +51,20 @@ pub fn write_fields(
     .map_err(failed)
 }
 
-/// A fields file whose layout is known, so that processes which hold some rows of the lattice each can write
-/// it together: one of them [creates](Self::create) it, and each [writes its rows](Self::write_rows) into it.
+/// A fields file with a known layout, so that processes that each hold some rows of the lattice can write it
+/// together: one of them [creates](Self::create) it, and each [writes its rows](Self::write_rows) into it.
 pub struct FieldsWriter<'a> {
     file: &'a FieldsFile<'a>,
     header: HeaderBytes,
 }
 
 impl<'a> FieldsWriter<'a> {
-    /// Lays the file out that will be at `path`, from its sizes alone: equally in every process.
+    /// Computes the layout of the file that will be at `path`. It depends only on the sizes, so it is the
+    /// same in every process.
     ///
     /// # Errors
     ///
-    /// [`FieldsError::Shape`] if an array does not have the length that the sizes ask for.
+    /// [`FieldsError::Shape`] if an array does not have the length that the sizes require.
     pub fn new(path: &Path, file: &'a FieldsFile<'a>) -> Result<Self, FieldsError> {
         check(path, file)?;
         Ok(Self {
@@ -74,13 +73,13 @@ impl<'a> FieldsWriter<'a> {
         })
     }
 
-    /// Writes all but the values of blocks, which may be there already.
+    /// Writes everything except the values of blocks, which may have been written before.
     pub fn create(&self, output: impl Write + Seek) -> io::Result<()> {
         let file = self.file;
         let mut output = BufWriter::with_capacity(BUFFER, output);
         output.write_all(&self.header.bytes)?;
         for place in &self.header.places {
-            // Only what never changes stands there if there are no frames.
+            // If there are no frames, the file has only constant arrays.
             let frame = file.frames.get(place.record);
             match (place.variable, frame) {
                 (Y, _) => write_at(&mut output, place, 0, centers(file.ny, file))?,
@@ -110,7 +109,7 @@ impl<'a> FieldsWriter<'a> {
     pub fn write_rows(&self, output: impl Write + Seek) -> io::Result<()> {
         let (file, statics) = (self.file, &self.file.statics);
         let mut output = BufWriter::with_capacity(BUFFER, output);
-        // Values before the first of these rows.
+        // Number of values before the first of these rows.
         let before = file.kept_here().start * file.kept_columns();
         for place in &self.header.places {
             match place.variable {
@@ -121,7 +120,7 @@ impl<'a> FieldsWriter<'a> {
                 MU_STATIC => write_at(&mut output, place, before, file.keep(statics.mu_static))?,
                 MU_KINETIC => write_at(&mut output, place, before, file.keep(statics.mu_kinetic))?,
                 FIRST_SLIP => {
-                    // One NaN only: its sign and payload depend on the machine.
+                    // All NaN become the same one, because sign and payload depend on the machine.
                     let one_nan = |time: f64| if time.is_nan() { f64::NAN } else { time };
                     let times = file.keep(statics.first_slip_time_star).map(one_nan);
                     write_at(&mut output, place, before, times)?;
@@ -130,7 +129,7 @@ impl<'a> FieldsWriter<'a> {
                     let is_named = |field: &Field| field_info(*field).name == name;
                     let field = file.names.iter().position(is_named);
                     let values = field.and_then(|field| file.frames.get(place.record)?.values.get(field));
-                    // Coordinates, and what a record says of its instant, are no values of blocks.
+                    // Coordinates, and the entries of a record about its instant, are not values of blocks.
                     let Some(values) = values else { continue };
                     let one_nan = |value: &f32| if value.is_nan() { f32::NAN } else { *value };
                     write_at(&mut output, place, before, values.iter().map(one_nan))?;
@@ -141,7 +140,7 @@ impl<'a> FieldsWriter<'a> {
     }
 }
 
-/// Writes values of a variable, from the one behind `before` others on.
+/// Writes values of a variable, after the first `before` values of it.
 fn write_at<T: StoredNumber>(
     output: &mut (impl Write + Seek),
     place: &ValuePlace,

@@ -3,7 +3,7 @@
 use super::filter::{FirstOrder, SecondOrder, average, passed};
 use crate::interpolation::interpolate;
 
-/// The measuring chain, in SI units. The signal passes the fields in their order.
+/// The measuring chain, in SI units. The signal passes through the elements in the order of the fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instrument {
     /// The load cell, a mass on its spring: its undamped frequency, Hz, and its damping ratio.
@@ -29,10 +29,10 @@ pub(super) enum Filter {
 }
 
 impl Instrument {
-    /// The values that the instrument writes at the times of a signal, which rise. Before the first of them
-    /// the signal has been constant.
+    /// The values that the instrument writes at the times of a signal, which increase. Before the first time,
+    /// the signal is constant.
     ///
-    /// Load cell and filters are exact for a signal that is straight between its values:
+    /// Load cell and filters are exact for a piecewise linear signal:
     ///
     /// ```text
     /// load cell     x''/omega^2 + 2 zeta x'/omega + x = y,   omega^2 = stiffness/mass
@@ -41,7 +41,7 @@ impl Instrument {
     /// moving mean   x(t) = integral of y from t - time to t, over time
     /// ```
     ///
-    /// Then `gain x + offset` is bounded by the range.
+    /// Then `gain x + offset` is clipped to the range.
     pub fn record(&self, time: &[f64], signal: &[f64]) -> Vec<f64> {
         let mut signal = signal.to_vec();
         if let Some([frequency, damping]) = self.cell {
@@ -68,13 +68,13 @@ impl Instrument {
         self.range
     }
 
-    /// Whether values depend on times before their own.
+    /// Whether a value depends on the signal at earlier times.
     pub fn has_memory(&self) -> bool {
         self.cell.is_some() || self.filter.is_some() || self.sampling.is_some()
     }
 
-    /// Frequency above which the instrument passes less than 1/sqrt(2) of an amplitude, or takes no values,
-    /// Hz; none without a load cell, filter and sampling.
+    /// Bandwidth, Hz: the smallest of the cutoff of the filter, the frequency of the load cell and half of
+    /// the sampling rate; none without any of them.
     pub fn bandwidth(&self) -> Option<f64> {
         // A mean over a width passes sin(pi f width)/(pi f width).
         let of_filter = self.filter.map(|filter| match filter {
@@ -91,8 +91,8 @@ impl Instrument {
     }
 }
 
-/// Frequency times width at which a moving mean leaves 1/sqrt(2) of an amplitude: the first root of
-/// sin(pi f)/(pi f) = 1/sqrt(2).
+/// Frequency times width at which a moving mean reduces an amplitude to 1/sqrt(2): the first root of sin(pi
+/// f)/(pi f) = 1/sqrt(2).
 pub(super) const MOVING_MEAN_CUTOFF: f64 = 0.442_946_470_689_452_34;
 
 /// Passes a signal through a Butterworth filter. Its poles lie on a circle: a pair of them is a section of
@@ -112,7 +112,7 @@ fn butterworth(order: u32, cutoff: f64, time: &[f64], signal: &mut [f64]) {
     }
 }
 
-/// Values that are taken at multiples of 1/rate and held until the next one.
+/// Values that are sampled at multiples of 1/rate and held until the next one.
 fn held(time: &[f64], signal: &[f64], rate: f64) -> Vec<f64> {
     // A time that rounding has put just below a multiple belongs to it.
     let tick = |time: f64| (time * rate + 1e-9).floor() / rate;

@@ -1,12 +1,12 @@
-//! Linear elements of a measuring chain, exact for signals that are straight between their values.
+//! Linear elements of a measuring chain, exact for piecewise linear signals.
 
 /// An element with memory that is advanced from value to value.
 pub(super) trait Element {
-    /// The state in which a constant signal leaves the element.
+    /// Sets the steady state of the element under a constant signal.
     fn settle(&mut self, signal: f64);
 
-    /// Advances over `span` s, over which the signal goes straight from one value to another, and returns the
-    /// output at the end.
+    /// Advances over `span` s, in which the signal changes linearly from one value to another, and returns
+    /// the output at the end.
     fn advance(&mut self, span: f64, from: f64, to: f64) -> f64;
 }
 
@@ -41,7 +41,8 @@ impl Element for FirstOrder {
         self.x = signal;
     }
 
-    /// The signal `y + r t` leaves `x = y + r (t - constant)` behind a decay of what differs from that.
+    /// For the signal `y + r t`, the particular solution is `x = y + r (t - constant)`; the deviation from it
+    /// decays exponentially.
     fn advance(&mut self, span: f64, from: f64, to: f64) -> f64 {
         let lag = self.constant * (to - from) / span;
         let decay = libm::exp(-span / self.constant);
@@ -56,7 +57,7 @@ pub(super) struct SecondOrder {
     damping: f64,
     x: f64,
     v: f64,
-    /// Decay and turn over the span for which they were computed.
+    /// A span, and the decay and rotation of the free oscillation over it.
     turn: (f64, [f64; 3]),
 }
 
@@ -72,7 +73,7 @@ impl SecondOrder {
         }
     }
 
-    /// Frequency of free swings, rad/s.
+    /// Frequency of the free, damped oscillation, rad/s.
     fn damped(&self) -> f64 {
         self.omega * ((1.0 - self.damping) * (1.0 + self.damping)).sqrt()
     }
@@ -83,12 +84,13 @@ impl Element for SecondOrder {
         (self.x, self.v) = (signal, 0.0);
     }
 
-    /// The signal `y + r t` leaves `x = y + r (t - 2 damping/omega)`; what differs from that swings freely.
+    /// For the signal `y + r t`, the particular solution is `x = y + r (t - 2 damping/omega)`; the deviation
+    /// from it is a free oscillation.
     fn advance(&mut self, span: f64, from: f64, to: f64) -> f64 {
         let rate = (to - from) / span;
         let lag = 2.0 * self.damping / self.omega * rate;
         let (fading, damped) = (self.damping * self.omega, self.damped());
-        // Steps of a run are equal, and exponentials are dear.
+        // Computed again only for another span: steps of a run are equal, and exponentials are expensive.
         if self.turn.0 != span {
             let angle = damped * span;
             self.turn = (
@@ -105,7 +107,7 @@ impl Element for SecondOrder {
     }
 }
 
-/// Means over the last `width` s of a signal that is straight between its values, and constant before them.
+/// Means over the last `width` s of a piecewise linear signal, which is constant before its first value.
 pub(super) fn average(time: &[f64], signal: &[f64], width: f64) -> Vec<f64> {
     let (Some(&start), Some(&first)) = (time.first(), signal.first()) else {
         return Vec::new();

@@ -18,7 +18,7 @@ const TABLE: &str = "instrument";
 /// Orders of a Butterworth filter.
 const ORDERS: [u32; 2] = [1, 10];
 
-/// Damping ratio of a load cell of which none is given: steel with what is screwed to it.
+/// Default damping ratio of a load cell: steel with parts screwed to it.
 const CELL_DAMPING: f64 = 0.02;
 
 key_rows! {
@@ -84,7 +84,7 @@ impl Amount {
     }
 }
 
-/// Reason for which there is no such instrument.
+/// Reason why an instrument is not valid.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum InstrumentError {
@@ -144,7 +144,7 @@ impl InstrumentKeys {
     /// The instrument, for records of this quantity of friction.
     ///
     /// # Errors
-    /// When a value is out of its bounds, or keys do not go together.
+    /// When a value is out of bounds, or keys cannot be combined.
     pub fn instrument(&self, friction: Measure) -> Result<Instrument, InstrumentError> {
         let sampling = self
             .sampling

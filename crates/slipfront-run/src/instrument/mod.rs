@@ -7,7 +7,7 @@ mod keys;
 pub use self::chain::Instrument;
 pub use self::keys::{InstrumentError, InstrumentKeys};
 
-/// Why an instrument with memory does not go with a held drive, and the remedy.
+/// Reason why an instrument with memory cannot be combined with a held drive, and the remedy.
 pub const HELD_DRIVE: &str = "a held drive has no time while blocks slide, but load cells, filters and sampling need a time: \
                               remove `drive.loading = \"held\"`, or give only gain, offset and range of the instrument";
 
@@ -28,7 +28,7 @@ mod tests {
             .unwrap()
     }
 
-    /// Amplitude of a swing of this frequency behind the instrument, from its last period of 40.
+    /// Amplitude of an oscillation of this frequency after the instrument, from the last of 40 periods.
     fn gain(keys: &str, frequency: f64) -> f64 {
         const PER_PERIOD: usize = 1000;
         let time: Vec<f64> = (0..40 * PER_PERIOD)
@@ -44,8 +44,8 @@ mod tests {
         part(f64::sin).hypot(part(f64::cos))
     }
 
-    /// The textbook's amplitude of each element. A signal that is straight between 1000 values of a period
-    /// has lost (pi/1000)^2/3 of the amplitude, and so it has between up to three sections.
+    /// The textbook's amplitude of each element. Linear interpolation between 1000 values per period loses
+    /// (pi/1000)^2/3 of the amplitude, for the signal and again between up to three sections.
     #[test_case("filter = 'first_order'\ncutoff = '20 Hz'", |f| 1.0 / (1.0 + (f / 20.0).powi(2)).sqrt(); "first order by frequency")]
     #[test_case("filter = 'first_order'\ntime = '10 ms'", |f| 1.0 / (1.0 + (TAU * f * 0.01).powi(2)).sqrt(); "first order by time")]
     #[test_case("filter = 'butterworth'\ncutoff = '20 Hz'", |f| 1.0 / (1.0 + (f / 20.0).powi(4)).sqrt(); "second order")]
@@ -65,7 +65,7 @@ mod tests {
         }
     }
 
-    /// A step has the exact answer of a filter of first order at any distance of the values.
+    /// A ramp has the exact response of a first-order filter, whatever the spacing of the values.
     #[test]
     fn a_straight_signal_is_filtered_exactly() {
         let time: Vec<f64> = (0..20).map(|k| 0.03 * f64::from(k)).collect();
@@ -77,13 +77,13 @@ mod tests {
         }
     }
 
-    /// A resonance above the rate of the values stays bounded, and follows a slow signal.
+    /// A load cell with a resonance above the sampling rate stays bounded, and follows a slow signal.
     #[test]
     fn a_stiff_load_cell_changes_nothing() {
         let time: Vec<f64> = (0..1000).map(|k| 1e-2 * f64::from(k)).collect();
         let signal: Vec<f64> = time.iter().map(|t| t.sin()).collect();
         let found = instrument("mass = '1 g'\nstiffness = '1 GN/m'").record(&time, &signal);
-        // The frequency is 10^6/s: a kink of the slope by 10^-2 swings by less than 10^-8.
+        // The frequency is 10^6/s: a change of slope by 10^-2 causes oscillations of less than 10^-8.
         assert!(
             found
                 .iter()
@@ -104,7 +104,7 @@ mod tests {
         );
     }
 
-    /// The cutoff of a moving mean is what its width leaves: both forms are one filter.
+    /// The cutoff of a moving mean follows from its width: both keys give the same filter.
     #[test]
     fn the_bandwidth_is_the_cutoff() {
         let cutoff = |keys: &str| instrument(keys).bandwidth().unwrap();

@@ -1,4 +1,4 @@
-//! Columns of a table, and those of them that make a record.
+//! Columns of a table, and the choice of those that form a record.
 
 use std::path::Path;
 
@@ -49,7 +49,7 @@ impl TableColumn {
 /// path.
 ///
 /// # Errors
-/// When it is no table.
+/// When the bytes are not a table.
 pub fn columns_of(bytes: &[u8], path: &Path) -> Result<Vec<TableColumn>, MeasuredError> {
     let head = &bytes[..bytes.len().min(HEAD_BYTES as usize)];
     if workbook::is_workbook(head) {
@@ -76,9 +76,9 @@ pub fn columns_of(bytes: &[u8], path: &Path) -> Result<Vec<TableColumn>, Measure
     Ok((0..layout.columns).map(column).collect())
 }
 
-/// The columns that make a record, as far as their units and names say: the first one of times, or else of
-/// displacements, or else of all; and of the others the one of a friction coefficient, or of the friction
-/// force, or else the first.
+/// The columns that form a record, judged by their units and names. The first one is the first column of
+/// times, or else of displacements, or else of all. The second one is, of the other columns, that of a
+/// friction coefficient, or of the friction force, or else the first.
 pub fn suggested(columns: &[TableColumn]) -> Option<[usize; 2]> {
     let first = |is: &dyn Fn(&TableColumn) -> bool| columns.iter().position(is);
     let x = first(&|column| column.has(Measure::Time))

@@ -1,4 +1,4 @@
-//! Why a table is no record.
+//! Reasons why a table is not a record.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use slipfront_base::text::display_path;
 use slipfront_case::table::TableError;
 use thiserror::Error;
 
-/// Reason for which a table is no record.
+/// Reason why a table is not a record.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum MeasuredError {

@@ -15,7 +15,7 @@ pub enum Measure {
     Coefficient,
 }
 
-/// Units in the words of instruments, and their sizes in SI units.
+/// Units as instruments write them in words, and their sizes in SI units.
 const UNIT_WORDS: [(Measure, &str, f64); 22] = [
     (Measure::Time, "sec", 1.0),
     (Measure::Time, "secs", 1.0),
@@ -56,7 +56,7 @@ impl Measure {
     /// The value of a quantity with its unit, such as `1.5 s`, in SI units.
     ///
     /// # Errors
-    /// A sentence on why the text is none.
+    /// A sentence on why the text is not such a value.
     pub fn parse(self, text: &str) -> Result<f64, String> {
         let text = text.trim();
         let is_of_number = |character: char| character.is_ascii_digit() || character == '.';
@@ -94,7 +94,7 @@ impl Measure {
         read.or_else(words)
     }
 
-    /// A sentence about a unit that is none of this quantity.
+    /// A sentence about a unit that does not belong to this quantity.
     pub(super) fn no_such_unit(self, unit: &str) -> String {
         let one = format!("1 {unit}");
         let why = match self {

@@ -1,4 +1,4 @@
-//! Names of columns, with the units that stand in them or below.
+//! Names of columns, with the units in them or in the line below.
 
 use slipfront_case::table::TableLayout;
 
@@ -25,7 +25,7 @@ impl<'t> ColumnName<'t> {
             let (bare, rest) = whole.split_once(open)?;
             Some((bare.trim(), rest.strip_suffix(close)?.trim()))
         });
-        // Elsewhere what stands behind is a unit only if it is known: `F_max` and `Fx/Fz` have none.
+        // Without brackets, the last part is a unit only if it is known: `F_max` and `Fx/Fz` have no unit.
         let behind = || {
             [" / ", "/", ", ", " in ", "_"].into_iter().find_map(|sign| {
                 let (bare, unit) = whole.rsplit_once(sign)?;
@@ -46,7 +46,7 @@ pub(super) fn units_of(layout: &TableLayout, names: &[ColumnName]) -> Vec<Option
     let below = |place: usize| {
         let unit = layout.units.as_ref()?.texts.get(place);
         let unit = unit.map_or("", |text| without_brackets(text));
-        // No unit in such a line is the unit 1, of a coefficient.
+        // In such a line, an empty unit of a coefficient means the unit 1.
         let is_bare = names.get(place).is_some_and(|name| is_coefficient(name.bare));
         (!unit.is_empty() || is_bare).then(|| unit.to_owned())
     };
@@ -61,7 +61,7 @@ fn without_brackets(text: &str) -> &str {
     text.trim_matches(['(', ')', '[', ']']).trim()
 }
 
-/// Whether a unit is one of a quantity that a column can have, or is written as these are in names: small.
+/// Whether a unit belongs to a quantity that a column can have, also in lower case as in names.
 fn is_known(unit: &str) -> bool {
     let measures = [
         Measure::Time,
@@ -74,7 +74,7 @@ fn is_known(unit: &str) -> bool {
             || ["n", "kn", "mn"].contains(&unit))
 }
 
-/// Whether a name is a usual one of a friction coefficient.
+/// Whether a name is usual for a friction coefficient.
 pub(super) fn is_coefficient(name: &str) -> bool {
     const NAMES: [&str; 7] = [
         "mu",

@@ -1,8 +1,8 @@
 //! Records in workbooks, `.xlsx` (ECMA-376) and `.ods` (OpenDocument): the one sheet with numbers, as a table
 //! of text.
 //!
-//! A workbook is a zip archive of XML. Crates that read workbooks choose another library for its compression,
-//! for the whole program, and the bytes of all compressed results with it.
+//! A workbook is a zip archive of XML. No crate for workbooks is used, because such crates switch the whole
+//! program to another compression library, which changes the bytes of all compressed results.
 
 use std::io::Read;
 
@@ -16,9 +16,9 @@ use slipfront_case::xml;
 pub(super) const MOST_BYTES: u64 = 1 << 28;
 /// Largest size of a sheet as text, bytes: some five million numbers.
 const SHEET_MAX_BYTES: u64 = 1 << 26;
-/// Most nodes of the XML of a sheet; a number takes three.
+/// Largest number of nodes of the XML of a sheet; a number takes three.
 const NODES_MAX: u32 = 1 << 23;
-/// Most rows and columns of a sheet, those of both formats; an empty one takes a byte.
+/// Largest numbers of rows and columns of a sheet in both formats; an empty one takes a byte.
 const PLACES_MAX: [usize; 2] = [1 << 20, 1 << 14];
 
 /// Whether a file that begins with `head` may be a workbook: a zip archive.
@@ -31,9 +31,9 @@ pub(super) fn is_workbook(head: &[u8]) -> bool {
 pub(super) struct Sheet {
     /// Name of the sheet.
     pub(super) name: String,
-    /// Rows of the sheet as lines, of which the first is row 1, with tabs between columns.
+    /// Rows of the sheet as lines, starting with row 1, with tabs between columns.
     pub(super) text: String,
-    /// Rows that are complete, and columns and numbers of the one that is not.
+    /// Number of complete rows, and numbers of columns and of numbers in the incomplete one.
     at: [usize; 2],
     n_numbers: usize,
     /// Number of rows with two numbers or more.
@@ -49,8 +49,8 @@ enum Cell {
 /// The sheet of a workbook that has numbers in two columns.
 ///
 /// # Errors
-/// A sentence that goes on after the name of the file, if it is no workbook, no sheet has such numbers, or
-/// several have.
+/// A sentence that continues after the name of the file, if it is not a workbook, no sheet has such numbers,
+/// or several have.
 pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
     let unreadable = |why: String| {
         format!("is a workbook that cannot be read: {why}; save its sheet as .csv, and give that file")
@@ -137,7 +137,7 @@ fn office_open(archive: &ZipSliceArchive<&[u8]>) -> Result<Vec<Sheet>, String> {
             Some(path) => path.to_owned(),
             None => format!("xl/{target}"),
         };
-        // Sheets of diagrams have no cells.
+        // Chart sheets have no cells.
         if !path.contains("worksheets/") {
             continue;
         }
@@ -147,7 +147,7 @@ fn office_open(archive: &ZipSliceArchive<&[u8]>) -> Result<Vec<Sheet>, String> {
             name: of_book.attribute("name").unwrap_or_default().to_owned(),
             ..Sheet::default()
         };
-        // Rows and cells need not say where they stand: they then follow the ones before.
+        // Rows and cells need not state their position: they then follow the previous ones.
         let mut row_at = 0;
         let data = elements(document.root_element(), "sheetData").next();
         for row in data.iter().flat_map(|data| children(*data, "row")) {
@@ -169,7 +169,7 @@ fn office_open(archive: &ZipSliceArchive<&[u8]>) -> Result<Vec<Sheet>, String> {
     Ok(sheets)
 }
 
-/// A cell of an `.xlsx`; `styles` tells which of them are times.
+/// A cell of an `.xlsx`; `styles` says which styles are times.
 fn office_cell(cell: Node<'_, '_>, strings: &[String], styles: &[bool]) -> Option<Cell> {
     let kind = cell.attribute("t").unwrap_or("n");
     if kind == "inlineStr" {
@@ -210,7 +210,7 @@ fn times(styles: &Document<'_>) -> Vec<bool> {
     of_cells.map_or(Vec::new(), |styles| elements(styles, "xf").map(is_time).collect())
 }
 
-/// Whether a format of numbers shows a time or date: whether a letter of one stands outside of its texts.
+/// Whether a number format shows a time or date: whether it has a letter of one outside of literal text.
 fn shows_time(format: &str) -> bool {
     let mut signs = format.chars();
     while let Some(sign) = signs.next() {
@@ -218,11 +218,11 @@ fn shows_time(format: &str) -> bool {
             '"' => {
                 signs.find(|sign| *sign == '"');
             }
-            // One sign of text follows, or its width.
+            // A literal character follows, or one that only sets a width.
             '\\' | '_' | '*' => {
                 signs.next();
             }
-            // Hours, minutes or seconds that count on, and not a colour, a currency or a condition.
+            // Elapsed hours, minutes or seconds, and not a colour, a currency or a condition.
             '[' => {
                 let inside: String = signs.by_ref().take_while(|sign| *sign != ']').collect();
                 if ["h", "hh", "m", "mm", "s", "ss"].contains(&inside.to_lowercase().as_str()) {
@@ -254,7 +254,7 @@ fn open_document(content: &str) -> Result<Vec<Sheet>, String> {
         for row in rows_of(table) {
             let is_empty = children(row, "table-cell").all(|cell| open_cell(cell).is_none());
             let rows = times_of(row, "number-rows-repeated");
-            // Empty rows and cells behind all others are repeated up to the end of the sheet.
+            // Empty rows and cells after all others are repeated up to the end of the sheet.
             for k in 0..if is_empty { 0 } else { rows } {
                 let mut column = 0;
                 for cell in row
@@ -279,7 +279,8 @@ fn open_document(content: &str) -> Result<Vec<Sheet>, String> {
     Ok(sheets)
 }
 
-/// The rows of a table of an `.ods`, also those in groups and headings; a cell may have tables of its own.
+/// The rows of a table of an `.ods`, also those in groups and headings, but not those of tables within a
+/// cell.
 fn rows_of<'a, 'x>(table: Node<'a, 'x>) -> Vec<Node<'a, 'x>> {
     let (mut rows, mut rest) = (Vec::new(), vec![table]);
     while let Some(node) = rest.pop() {
@@ -310,7 +311,7 @@ fn open_cell(cell: Node<'_, '_>) -> Option<Cell> {
 }
 
 impl Sheet {
-    /// Adds a cell behind all that were added, in a row and column from 0.
+    /// Adds a cell after all previous ones; its row and column count from 0.
     fn add(&mut self, [row, column]: [usize; 2], cell: Option<Cell>) -> Result<(), String> {
         if [row, column] < self.at || row >= PLACES_MAX[0] || column >= PLACES_MAX[1] {
             return Err(format!("sheet {:?} has its cells in disorder", self.name));
@@ -348,19 +349,20 @@ fn parse<'x>(name: &str, text: &'x str) -> Result<Document<'x>, String> {
     xml::parse(name, text, NODES_MAX)
 }
 
-/// Elements of this name within a node, in whatever namespace: those of both formats differ by their version.
+/// Elements of this name within a node, in any namespace: the namespaces of both formats depend on their
+/// version.
 fn elements<'a, 'x>(node: Node<'a, 'x>, name: &str) -> impl Iterator<Item = Node<'a, 'x>> {
     node.descendants()
         .filter(move |element| element.is_element() && element.tag_name().name() == name)
 }
 
-/// Elements of this name that are children of a node, in whatever namespace.
+/// Elements of this name that are children of a node, in any namespace.
 fn children<'a, 'x>(node: Node<'a, 'x>, name: &str) -> impl Iterator<Item = Node<'a, 'x>> {
     node.children()
         .filter(move |element| element.is_element() && element.tag_name().name() == name)
 }
 
-/// An attribute of this name, in whatever namespace.
+/// An attribute of this name, in any namespace.
 fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let attribute = node.attributes().find(|attribute| attribute.name() == name);
     attribute.map(|attribute| attribute.value())
@@ -374,7 +376,7 @@ fn text_of(node: Node<'_, '_>) -> String {
         .collect()
 }
 
-/// Row and column, from 0, of the cell called such as `B4`.
+/// Row and column, from 0, of a cell with a name such as `B4`.
 fn place(name: &str) -> Option<[usize; 2]> {
     let digits = name.find(|c: char| c.is_ascii_digit())?;
     let (letters, row) = name.split_at(digits);
@@ -388,7 +390,8 @@ fn place(name: &str) -> Option<[usize; 2]> {
     ])
 }
 
-/// A number of days as hours, minutes and seconds, to a microsecond: days as a double have no more.
+/// A number of days as hours, minutes and seconds, to a microsecond, which is the precision of days as a
+/// double.
 fn clock_text(days: f64) -> String {
     let microseconds = (days * 86_400e6).round().max(0.0) as u64;
     let (seconds, rest) = (microseconds / 1_000_000, microseconds % 1_000_000);

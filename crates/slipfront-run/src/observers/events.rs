@@ -19,8 +19,8 @@ pub(crate) const FILE: &str = "events.csv";
 pub struct EventSummary {
     /// Number of events; each is a row of `events.csv`.
     pub count: usize,
-    /// Number of events after the last row, since the catalogue is full there. The other numbers are those of
-    /// the rows.
+    /// Number of events after the last row, at which the catalogue is full. The other numbers refer to the
+    /// rows.
     pub not_listed: u64,
     /// Share of the events in which all blocks in contact slide.
     pub whole_share: Option<f64>,
@@ -30,15 +30,14 @@ pub struct EventSummary {
     pub moment_star_max: Option<f64>,
     /// Sum of the moments of all events.
     pub moment_star_sum: f64,
-    /// Mean time from the begin of an event to that of the next, t* of the drive.
+    /// Mean time from the beginning of an event to the beginning of the next, t* of the drive.
     pub waiting_time_star: Option<f64>,
-    /// Standard deviation of these times over their mean: 0 for events at equal distances, 1 for events at
-    /// random.
+    /// Standard deviation of these times over their mean: 0 for periodic events, 1 for random events.
     pub waiting_time_variation: Option<f64>,
 }
 
-/// One row of `events.csv`. Times and forces of the end are empty for an event that went on when the run
-/// ended.
+/// One row of `events.csv`. Times and forces of the end are empty for an event that was in progress when the
+/// run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventRow {
     /// t* at which the first block in contact slides.
@@ -183,8 +182,8 @@ impl Observed for Events {
     }
 }
 
-/// Mean and relative standard deviation of the times between these; none of fewer than two times, and no
-/// deviation of fewer than three.
+/// Mean and relative standard deviation of the times between these beginnings; none for fewer than two
+/// beginnings, and no deviation for fewer than three.
 fn waiting_times(begins: &[f64]) -> [Option<f64>; 2] {
     let (Some(first), Some(last)) = (begins.first(), begins.last()) else {
         return [None; 2];
@@ -199,7 +198,7 @@ fn waiting_times(begins: &[f64]) -> [Option<f64>; 2] {
     ]
 }
 
-/// Rows as CSV, with the header also where there is none.
+/// Rows as CSV, with the header even if there are no rows.
 ///
 /// # Errors
 /// When a row cannot be written.
@@ -210,7 +209,7 @@ pub fn to_csv(rows: impl IntoIterator<Item = EventRow>) -> Result<Vec<u8>, csv::
 /// Reads the events back.
 ///
 /// # Errors
-/// When the file cannot be read, or a row of it is not one of events.
+/// When the file cannot be read, or a row of it is not an event.
 pub fn read_csv<'f>(file: impl Into<RunFile<'f>>) -> Result<Vec<EventRow>, SeriesError> {
     read_rows(&file.into(), FILE, |row| row)
 }

@@ -1,4 +1,4 @@
-//! The observers that only some runs have: each is a file, and a row here.
+//! The observers that only some runs have: each has its own file, and a row here.
 
 pub mod cycles;
 pub mod events;
@@ -30,7 +30,7 @@ macro_rules! observers {
                 Self { $($name: Observed::of_run(case),)* }
             }
 
-            /// Whether the observers can be those that began as `new`, at a checkpoint.
+            /// Whether the observers, at a checkpoint, can have begun as `new`.
             pub(crate) fn fit(&self, new: &Self, now: Times) -> bool {
                 $(fits(&self.$name, &new.$name, now))&&*
             }

@@ -1,4 +1,4 @@
-//! Statements of an observer that only some runs have about itself.
+//! Properties of an observer that only some runs have.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -19,13 +19,13 @@ pub(crate) trait Observed: Observer + Sized {
     /// runs has them.
     const QUANTITIES: &'static [Quantity<Self::Numbers>] = &[];
 
-    /// The table of what the observer has recorded, if the run writes one.
+    /// The table of the observer's records, if the run writes one.
     const TABLE: Option<Table> = None;
 
     /// The observer of a run of this case, at its start; none for a run that does not have it.
     fn of_run(case: &Case) -> Option<Self>;
 
-    /// Whether the observer can be the one that began as `new`, at a checkpoint.
+    /// Whether the observer, at a checkpoint, can have begun as `new`.
     fn fits(&self, new: &Self, now: Times) -> bool;
 
     /// The numbers at the end of a run.
@@ -78,13 +78,13 @@ pub struct Table {
 }
 
 impl Table {
-    /// Name of the table: that of its file without the ending.
+    /// Name of the table: the name of its file without the ending.
     pub fn name(&self) -> &'static str {
         self.file.strip_suffix(".csv").unwrap_or(self.file)
     }
 }
 
-/// Rows as CSV, with the header also where there is none.
+/// Rows as CSV, with the header even if there are no rows.
 pub(super) fn csv_of<T: Serialize + DeserializeOwned>(
     rows: impl IntoIterator<Item = T>,
 ) -> Result<Vec<u8>, csv::Error> {
@@ -102,7 +102,7 @@ pub(super) fn columns<T: Serialize + DeserializeOwned>(
     name: &'static str,
 ) -> Result<TableColumns, SeriesError> {
     let names = names_of::<T>();
-    // Row by row, since the values of a long table take far more memory than its numbers.
+    // Row by row, because the JSON values of a long table take far more memory than its numbers.
     let numbers = |row: T| -> Vec<f64> {
         let row = serde_json::to_value(row).unwrap_or_default();
         let number = |name: &&str| row[*name].as_f64().unwrap_or(f64::NAN);

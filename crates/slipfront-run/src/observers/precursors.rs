@@ -20,21 +20,22 @@ pub(crate) const FILE: &str = "precursors.csv";
 pub struct PrecursorSummary {
     /// Number of events; each is a row of `precursors.csv`.
     pub events: usize,
-    /// t* at which the first one begins that crosses the whole slider.
+    /// t* at the beginning of the first event that crosses the whole slider.
     pub crossing_time_star: Option<f64>,
     /// mu* at the beginning of the first event that crosses the whole slider.
     pub crossing_mu_star: Option<f64>,
     /// Number of precursors: events before the one that crosses the whole slider, or all events if none
     /// crosses.
     pub precursor_count: usize,
-    /// Length of the longest precursor, over that of the slider.
+    /// Length of the longest precursor over the length of the slider.
     pub precursor_length_max: Option<f64>,
-    /// mu* when the first event begins over mu* when the first one begins that crosses the whole slider: the
-    /// load at nucleation over that at the transition.
+    /// mu* at the beginning of the first event over mu* at the beginning of the first event that crosses the
+    /// whole slider: the load at nucleation over the load at the transition.
     pub nucleation_load_ratio: Option<f64>,
 }
 
-/// One row of `precursors.csv`. The last columns are empty for an event that went on when the run ended.
+/// One row of `precursors.csv`. The last columns are empty for an event that was in progress when the run
+/// ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrecursorRow {
     /// t* at which the first block in contact slides.
@@ -145,7 +146,7 @@ pub fn to_csv(events: &[SlipEvent], scales: &Scales) -> Result<Vec<u8>, csv::Err
 /// Reads the events back.
 ///
 /// # Errors
-/// When the file cannot be read, or a row of it is not one of events.
+/// When the file cannot be read, or a row of it is not an event.
 pub fn read_csv<'f>(file: impl Into<RunFile<'f>>) -> Result<Vec<PrecursorRow>, SeriesError> {
     read_rows(&file.into(), FILE, |row| row)
 }

@@ -1,4 +1,4 @@
-//! The picture of a catalogue of events of slip: how large they are, and how long after another they come.
+//! The picture of a catalogue of events of slip: the sizes of the events, and the times between them.
 
 use slipfront_base::number_format::count;
 use slipfront_plot::{self as plot, Distribution, Picture, PictureSize};
@@ -7,8 +7,8 @@ use super::error::RunPictureError;
 use crate::observers::events::{EventRow, FILE, read_csv};
 use crate::run_files::RunFiles;
 
-/// Draws the distributions of the moments of all events and of the times from the begin of each to that of
-/// the next; none for a run without two events.
+/// Draws the distributions of the moments of all events and of the times from the beginning of each to the
+/// beginning of the next; none for a run with fewer than two events.
 pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>, RunPictureError> {
     let Some(file) = run.found(FILE)? else {
         return Ok(None);

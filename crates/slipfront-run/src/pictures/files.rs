@@ -12,7 +12,7 @@ use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, SUMMARY};
 use crate::observers::tables;
 use crate::run_files::RunFiles;
 
-/// Tells whether pictures are drawn from the file of this name.
+/// Whether pictures are drawn from the file of this name.
 pub fn is_drawn_from(name: &str) -> bool {
     [CASE, SUMMARY, SERIES, KYMOGRAPH, FIELDS].contains(&name) || tables().any(|table| table.file == name)
 }
@@ -22,7 +22,7 @@ pub(super) fn found(path: &Path) -> Result<Option<Metadata>, RunPictureError> {
     Ok(found_behind(path).map_err(FolderError::read(path))?)
 }
 
-/// The case of a run; none for files that have lost theirs, which can be drawn as well.
+/// The case of a run; none if it is missing, because pictures can also be drawn without it.
 pub(super) fn case_of(run: RunFiles) -> Result<Option<CaseFile>, RunPictureError> {
     let Some(file) = run.found(CASE)? else {
         return Ok(None);

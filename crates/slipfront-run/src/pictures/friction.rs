@@ -1,5 +1,5 @@
-//! The picture of friction curves, on the axes that a user asks for or on which runs of different materials
-//! can be compared.
+//! The picture of friction curves, on the axes that a user requests or on axes that allow comparing runs of
+//! different materials.
 
 use std::path::PathBuf;
 
@@ -47,7 +47,8 @@ pub struct OverlaidRecord {
     /// Shift of the record's times or displacements, in SI units; if none is given, the shift with which it
     /// fits the first run best.
     pub shift: Option<f64>,
-    /// The instrument that wrote the record, if the curves are to be drawn as it writes them.
+    /// The instrument that wrote the record, if the curves are to be drawn as this instrument would write
+    /// them.
     pub instrument: Option<Instrument>,
 }
 
@@ -60,16 +61,16 @@ pub struct Fit {
     pub shift: f64,
     /// Number of points of the record.
     pub points: usize,
-    /// Distance between the record and each run; none for a run that has less than a tenth of the shorter of
-    /// both in common with it.
+    /// Distance between the record and each run; none for a run that overlaps the record by less than a tenth
+    /// of the shorter of both.
     pub misfits: Vec<Option<Misfit>>,
 }
 
 /// Names and size of a picture of friction that differ from the usual ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionLook {
-    /// Names of the runs in the legend, in their order, and then of a record; the folders where there are
-    /// none.
+    /// Names of the runs in the legend, in their order, and then of a record; if there are none, the folders
+    /// are used.
     pub names: Vec<String>,
     /// Title of the horizontal axis.
     pub x_label: Option<String>,
@@ -112,7 +113,7 @@ struct DrawnRun {
     folder: PathBuf,
     summary: Summary,
     rows: Vec<[f64; 4]>,
-    /// Whether an instrument has written the friction of the rows.
+    /// Whether the friction of the rows is the output of an instrument.
     is_recorded: bool,
 }
 
@@ -137,9 +138,9 @@ impl Scale {
 
 /// Draws the friction curves of run folders over each other.
 ///
-/// Without units and abscissa of their own, runs of different materials are drawn where they can be compared:
-/// if their mean local coefficients differ, as mu; if their units of time differ, against the path of the
-/// drive.
+/// If units and abscissa are not given, runs of different materials are drawn so that they can be compared:
+/// as mu if their mean local coefficients differ, and against the path of the drive if their units of time
+/// differ.
 ///
 /// # Errors
 /// When a folder cannot be read, or its run lacks the requested data.
@@ -163,12 +164,12 @@ pub fn overlay(
 }
 
 /// Draws the friction curves of run folders and a measured record over each other, in SI units. Curves that
-/// an instrument has written have no marks, which are those of friction itself.
+/// are the output of an instrument have no marks, because marks refer to friction itself.
 ///
 /// # Errors
-/// As for [`overlay`]; when an instrument needs the time of a drive that is held; when the record has less
-/// than a tenth of the shorter of both in common with every curve, and when a shift that is not given could
-/// be one or another.
+/// As for [`overlay`]; when an instrument needs the time of a drive that is held; when the record overlaps
+/// every curve by less than a tenth of the shorter of both; and when no shift is given and the best one is
+/// ambiguous.
 pub fn overlay_measured(
     folders: &[PathBuf],
     against: Against,
@@ -254,7 +255,7 @@ pub fn overlay_measured(
     })
 }
 
-/// Another shift of a record that may be the right one as well as the best on the first run.
+/// Another shift of a record that may be right, as well as the best one on the first run.
 enum Rival {
     /// The shift that fits another run best.
     Other { run: usize, own: f64, of_run: f64 },
@@ -262,7 +263,7 @@ enum Rival {
     Same { own: f64, rival: f64 },
 }
 
-/// The shift with which a record fits the first curve best, if no other fits that curve, or another one,
+/// The shift with which a record fits the first curve best, if no other shift fits this or another curve
 /// about as well.
 fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
     let length = |xs: &[f64]| {
@@ -351,7 +352,7 @@ impl DrawnRun {
         })
     }
 
-    /// Replaces friction by what an instrument writes.
+    /// Replaces friction by the output of an instrument.
     fn pass(&mut self, instrument: &Instrument, of: Measure) -> Result<(), RunPictureError> {
         // The times of a held drive count only while it moves.
         if self.summary.drive_steps.is_some() && instrument.has_memory() {
@@ -368,7 +369,7 @@ impl DrawnRun {
         Ok(())
     }
 
-    /// Friction with mu* = 1: N, or N m for a rotation; 1 for a coefficient.
+    /// Friction at mu* = 1: N, or N m for a rotation; 1 for a coefficient.
     fn friction_unit(&self, of: Measure) -> Result<f64, RunPictureError> {
         let si = self.si()?;
         Ok(match si.static_torque_n_m {
@@ -388,7 +389,7 @@ impl DrawnRun {
         found.ok_or_else(|| RunPictureError::NoUnits(self.folder.clone()))
     }
 
-    /// Path of the drive at a time, between two rows of the series in proportion.
+    /// Path of the drive at a time, by linear interpolation between two rows of the series.
     fn path_at(&self, time_star: f64) -> f64 {
         let after = self.rows.partition_point(|row| row[0] < time_star);
         let after = after.min(self.rows.len().saturating_sub(1));
@@ -439,7 +440,7 @@ impl DrawnRun {
     }
 }
 
-/// Axes of mu* against t*, of a slider that is pulled or turned.
+/// Axes of mu* against t*, for a slider that is pulled or rotated.
 pub fn dimensionless_axes(is_rotation: bool) -> FrictionAxes {
     let mut axes = FrictionAxes::default();
     if is_rotation {

@@ -12,7 +12,7 @@ use crate::names::{FIELDS, KYMOGRAPH, SUMMARY};
 use crate::run_files::RunFiles;
 use crate::summary::{Summary, summary_of};
 
-/// Least number of rows of the kymograph that are shown, where the run has as many.
+/// Least number of rows of the kymograph that are shown, if the run has that many.
 const MIN_INSTANTS: usize = 32;
 
 /// Draws the spread of slip in a run with a transition.
@@ -49,7 +49,7 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
 /// Draws the kymograph of a run from its first instant to its last.
 ///
 /// # Errors
-/// When the files cannot be read, or none is a kymograph.
+/// When the files cannot be read, or there is no kymograph.
 pub fn draw_kymograph(run: RunFiles, size: PictureSize) -> Result<Picture, RunPictureError> {
     let summary = summary_of(&run.file(SUMMARY)?)?;
     let kymograph = fields::read_kymograph(run.file(KYMOGRAPH)?)?;
@@ -66,7 +66,7 @@ fn space_time(kymograph: &KymographData, rows: Range<usize>, summary: &Summary) 
     let columns = kymograph.columns();
     let times = &kymograph.time_star[rows.clone()];
     let [first, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
-    // A row stands for the time around it.
+    // A row represents the time interval around it.
     let half = 0.5 * (last - first) / (times.len() as f64 - 1.0).max(1.0);
     SpaceTime {
         place: title_of_place(summary.motion).to_owned(),
@@ -85,8 +85,8 @@ pub fn title_of_place(motion: Option<Motion>) -> &'static str {
     }
 }
 
-/// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after
-/// it.
+/// The rows of a kymograph while the front passes, with a quarter of that time before it and the same time
+/// again after it.
 fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
     let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
     let passes = summary.front_duration_star.unwrap_or_default();

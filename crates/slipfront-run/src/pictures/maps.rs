@@ -17,7 +17,7 @@ use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
 use crate::summary::{InstantSummary, Summary, summary_of};
 
-/// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.
+/// Maps are read as the means that are drawn, so that the memory does not grow with the lattice.
 impl Reduction for CellMeans {
     fn of(columns: usize, rows: usize) -> Self {
         Self::new(columns, rows)
@@ -32,8 +32,8 @@ impl Reduction for CellMeans {
     }
 }
 
-/// Values mu* of snapshots: of an instant from the summary, else from its row of the series, which a thinned
-/// series may lack.
+/// Values mu* of snapshots: from the summary for an instant A-F, else from a row of the series, which a
+/// thinned series may lack.
 pub(super) struct MuStar<'a> {
     instants: &'a [InstantSummary],
     /// Values mu* of the rows by steps.
@@ -76,7 +76,7 @@ pub fn draw_field(run: RunFiles, field: Field, size: PictureSize) -> Result<Pict
     })
 }
 
-/// The field whose maps are drawn of a run.
+/// The field that is drawn in the maps of a run.
 pub(super) fn field_of_maps(case: Option<&CaseFile>) -> Field {
     case.map_or(Field::ContactStress, mapped_field)
 }
@@ -216,7 +216,7 @@ fn draw_maps(
     })
 }
 
-/// The letters of the instants of a map, which are joined in its file.
+/// The letters of the instants of a map, separated by commas; the file has them joined.
 pub(super) fn separated(letters: &str) -> String {
     letters.chars().map(String::from).collect::<Vec<_>>().join(", ")
 }
@@ -230,13 +230,13 @@ mod tests {
         let values = [-2e-9_f32, f32::NAN, 5e-9];
         let scale = MapScale::of(Field::DisplacementX, None, values.into_iter());
         assert_eq!((scale.symbol.as_str(), scale.unit), ("u_x (nm)", 1e-9));
-        // Numbers of 32 bits.
+        // Rounding of 32-bit numbers.
         assert!((scale.range[0] + 2.0).abs() < 1e-6 && (scale.range[1] - 5.0).abs() < 1e-6);
         for field in [Field::VelocityY, Field::Sliding] {
             let scale = MapScale::of(field, None, [0.0; 3].into_iter());
             assert_eq!(scale.range, [0.0, 1.0]);
         }
-        // Of a case, in units of P mu_s.
+        // With a case, in units of P mu_s.
         let case = CaseFile::parse("load.pressure = '2 MPa'\nfriction.mu_static = 0.5", "case", &[]).unwrap();
         let scale = MapScale::of(Field::Traction, Some(&case), [5e5].into_iter());
         assert_eq!(

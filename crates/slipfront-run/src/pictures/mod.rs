@@ -1,5 +1,5 @@
-//! The pictures of a run, drawn from its files, so that those of a run, of `slipfront plot` and of a page
-//! without a disk are equal.
+//! The pictures of a run, drawn from its files, so that a run, `slipfront plot` and a page without a disk
+//! draw the same pictures.
 //!
 //! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or
 //! [`complete`] after the results of several ranks.
@@ -34,11 +34,11 @@ use crate::run_files::RunFiles;
 use crate::run_folder::RunFolder;
 use crate::running::RunData;
 
-/// Largest number of bytes of the pixels of a picture whose size a user chooses.
+/// Largest number of bytes of the pixels of a picture with a size chosen by the user.
 const PIXELS: f64 = 96.0 * 1024.0 * 1024.0;
 
-/// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in
-/// bytes. What is read of a series, a kymograph or a catalogue of events takes less than four times its file.
+/// Memory for drawing the friction curves of these run folders, or all pictures of a single one, in bytes.
+/// The data of a series, a kymograph or a catalogue of events take less than four times the size of the file.
 pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
     let mut read = 0;
     for folder in folders {
@@ -49,7 +49,7 @@ pub fn memory(folders: &[PathBuf]) -> Result<f64, RunPictureError> {
     Ok(PICTURES + PIXELS + 4.0 * read as f64)
 }
 
-/// Writes the results of a run on one rank to its folder, where the case stands already, then the pictures
+/// Writes the results of a run on one rank to its folder, which already contains the case, then the pictures
 /// and the manifest, which completes it. The fields are moved out of the data, which frees their memory
 /// before the pictures are drawn. After an error the folder is left without a manifest.
 pub fn write_run(
@@ -78,8 +78,8 @@ pub fn complete(
     Ok(folder.complete(case, started, threads)?)
 }
 
-/// Draws the pictures of a run whose files are in memory, with its movie if that is asked for. Gives the
-/// files of the pictures, with the bytes that they have in the folder of a run.
+/// Draws the pictures of a run with its files in memory, and the movie if requested. Returns the files of the
+/// pictures, with the same bytes as in the folder of a run.
 ///
 /// # Errors
 /// If a file of the run is missing or damaged, or cannot be drawn.
@@ -95,15 +95,15 @@ pub fn in_memory(
     Ok(drawn)
 }
 
-/// Draws the pictures of a run, with its movie if that is asked for, and hands over their files, each with
-/// its name.
+/// Draws the pictures of a run, and the movie if requested, and passes each file with its name to `take`.
 fn each_file(
     run: RunFiles,
     with_movie: bool,
     mut take: impl FnMut(&str, &[u8]) -> Result<(), RunPictureError>,
 ) -> Result<(), RunPictureError> {
     for (name, picture) in draw(run, &PictureLook::default())? {
-        // By their names, so that a module of a page does not hold the writer of PDF.
+        // The two formats are accessed directly, so that the module of a page does not contain the PDF
+        // writer.
         take(&format!("{name}.svg"), picture.svg.as_bytes())?;
         take(&format!("{name}.png"), &picture.png)?;
     }
@@ -114,7 +114,8 @@ fn each_file(
     Ok(())
 }
 
-/// Draws the pictures of a run from its files, which must be there and undamaged; each with its name.
+/// Draws the pictures of a run from its files, which must exist and be undamaged. Returns each picture with
+/// its name.
 ///
 /// # Errors
 /// When a file of the run cannot be read or drawn, and when the size leaves no room for a picture.
@@ -124,7 +125,7 @@ pub fn draw(run: RunFiles, look: &PictureLook) -> Result<Vec<(&'static str, Pict
         .into_iter()
         .filter(|picture| look.draws(picture.name()));
     let asked: Vec<RunPicture> = asked.collect();
-    // The budget of a run has room for two at once.
+    // The memory budget of a run allows two at a time.
     for two in asked.chunks(2) {
         let drawn: Vec<_> = two
             .par_iter()
@@ -161,12 +162,13 @@ mod tests {
     use crate::names::MANIFEST;
     use crate::running;
 
-    /// A run whose files stay in memory has the pictures of the same run in a folder, byte by byte.
+    /// A run with its files in memory has the same pictures as the run in a folder, byte for byte.
     #[test]
     fn pictures_of_files_in_memory_are_those_of_a_folder() {
         let out = tempfile::tempdir().unwrap();
         let out = out.path().join("out");
-        // Driven at an edge it has events of slip, and it slides as a whole: every picture is drawn.
+        // The slider is driven at an edge, so it has events of slip, and it slides as a whole: every picture
+        // is drawn.
         let text = "slider.blocks = [6, 4]\ndrive = { attach = 'left', v_star = 3, loading = 'held' }\ntime.duration_star = 60\noutput = { movie = true, events = true }\n";
         let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
         let run = || running::run(&case, 1).unwrap();
@@ -190,7 +192,7 @@ mod tests {
             n_pictures
         );
         assert!(BTreeMap::from_iter(files) == written);
-        // What a picture needs is asked for by its name.
+        // A missing file is reported by its name.
         let missing = in_memory(&[], false).unwrap_err().to_string();
         assert!(missing.contains("summary.json"), "{missing}");
     }

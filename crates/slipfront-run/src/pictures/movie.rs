@@ -1,4 +1,4 @@
-//! A movie of a run, from its files: the snapshots of a field beside the friction curve.
+//! A movie of a run, from its files: the snapshots of a field next to the friction curve.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ const INSTANT: usize = 5;
 
 /// Largest number of pictures that are drawn at once.
 const BATCH: usize = 8;
-/// Shortest time of a picture that programs show as it is, in hundredths of a second.
+/// Shortest duration of a picture that viewers respect, in hundredths of a second.
 const SHORTEST_SHOWN: f64 = 2.0;
 
 /// Pace of a movie.
@@ -44,15 +44,15 @@ pub enum MoviePace {
     PerSecond(f64),
 }
 
-/// Memory for making the movie of a run folder, in bytes. What is read of a series takes less than four times
-/// its file.
+/// Memory for making the movie of a run folder, in bytes. The data of a series take less than four times the
+/// size of the file.
 pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
     let snapshots = fields::count_snapshots(&folder.join(FIELDS))?.min(MAX_PICTURES);
     let series = found(&folder.join(SERIES))?.map_or(0, |file| file.len());
     Ok(memory_of_movie(snapshots as f64, f64::INFINITY) + 4.0 * series as f64)
 }
 
-/// The movie of a run, of the given field or of the field whose maps are drawn; none if the run has kept no
+/// The movie of a run, of the given field or of the field that its maps show; none if the run has kept no
 /// snapshot of it.
 ///
 /// # Errors
@@ -105,8 +105,8 @@ pub fn of_run(run: RunFiles, field: Option<Field>) -> Result<Option<Movie>, RunP
     }))
 }
 
-/// Spacing in t* at which a run has at least this many snapshots from its start to its end, but one a step at
-/// most.
+/// Spacing in t* at which a run has at least this many snapshots from its start to its end, but at most one
+/// per step.
 ///
 /// # Errors
 /// When the series cannot be read, or has no rows.
@@ -145,7 +145,7 @@ pub fn delays(movie: &Movie, pace: MoviePace) -> Result<Vec<u16>, RunPictureErro
             seconds: SHORTEST_SHOWN * weights.iter().sum::<f64>() / 100.0,
         });
     }
-    // Rounded at their ends, so that all together take as long as they should.
+    // The ends of the pictures are rounded, so that the total duration is right.
     let mut end = 0.0;
     let ends = weights.iter().map(|weight| {
         let start: f64 = end;
@@ -232,12 +232,12 @@ mod tests {
         assert_eq!(usual(199)[..2], [100, 8]);
         assert_eq!(usual(3)[..2], [200, 100]);
         assert_eq!(usual(999)[..2], [100, 5]);
-        // 5 and 95 parts of 10 s.
+        // An instant with 5 parts and 95 pictures with one part each share 10 s.
         let timed = delays(&movie(95), MoviePace::Seconds(10.0)).unwrap();
         assert_eq!(timed[..3], [50, 10, 10]);
         let timed = delays(&movie(196), MoviePace::Seconds(7.0)).unwrap();
         assert_eq!(timed.iter().map(|delay| usize::from(*delay)).sum::<usize>(), 700);
-        // 100/30 hundredths, in turns of 3, 4 and 3.
+        // 100/30 hundredths, as 3, 4 and 3 in turn.
         let paced = delays(&movie(5), MoviePace::PerSecond(30.0)).unwrap();
         assert_eq!(paced, [3, 4, 3, 3, 4, 3]);
         let said = delays(&movie(995), MoviePace::Seconds(5.0))

@@ -11,8 +11,8 @@ use crate::observers::precursors::{FILE, PrecursorRow, read_csv};
 use crate::run_files::RunFiles;
 
 /// Draws the reach of the events of slip of a slider driven at an edge, against the load after them; none for
-/// another run. An event counts if it is longer than all before: a shorter one slips over the part that these
-/// have left behind.
+/// other runs. An event counts if it is longer than all earlier ones: a shorter one slips over a part that
+/// has already slipped.
 pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>, RunPictureError> {
     let Some(file) = run.found(FILE)? else {
         return Ok(None);
@@ -56,7 +56,7 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
 }
 
 /// Kinetic coefficient and slope of the pressure from the driven end, for a chain of equal thresholds that is
-/// pulled along itself.
+/// pulled along its axis.
 fn equal_chain(case: &CaseFile) -> Option<(f64, f64)> {
     let (slider, load, friction) = (&case.slider, &case.load, &case.friction);
     let edge = case.drive.edge()?;

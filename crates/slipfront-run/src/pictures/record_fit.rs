@@ -1,11 +1,11 @@
-//! The place of a measured record on the curve of a run: how far its times or displacements are shifted.
+//! Alignment of a measured record with the curve of a run: the shift of its times or displacements.
 
 use crate::interpolation::interpolate;
 
-/// Times or displacements that never fall, and the friction at each.
+/// Non-decreasing times or displacements, and the friction at each.
 pub(super) type Points<'p> = (&'p [f64], &'p [f64]);
 
-/// A shift of a record at which it fits a curve better than at the shifts around it.
+/// A shift at which a record fits a curve better than at neighbouring shifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fitting {
     pub(super) shift: f64,
@@ -21,15 +21,15 @@ pub struct Misfit {
     pub points: usize,
 }
 
-/// Part of the shorter of record and curve that both must have in common for a misfit: less of it tells
-/// nothing of them.
+/// Least overlap of record and curve for a misfit, over the length of the shorter of both: a smaller overlap
+/// is not meaningful.
 const LEAST_COMMON: f64 = 0.1;
 
-/// Misfit relative to the least one up to which another shift may be the right one as well.
+/// Misfit relative to the least one, up to which another shift may also be the right one.
 const AS_GOOD: f64 = 2.0;
 
-/// Difference between two shifts, relative to the shorter of record and curve, up to which they are one in a
-/// picture.
+/// Difference between two shifts, relative to the shorter of record and curve, up to which they look the same
+/// in a picture.
 const SAME_SHIFT: f64 = 0.05;
 
 /// Largest number of shifts that are refined.
@@ -42,7 +42,7 @@ fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
 }
 
 /// Distance between a record, shifted, and a curve, over the points of the record within the curve; none if
-/// they have too little in common.
+/// they overlap too little.
 pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<Misfit> {
     let ([from, to], [start, end]) = (ends(xs).map(|x| x + shift), ends(curve.0));
     if to.min(end) - from.max(start) < LEAST_COMMON * (to - from).min(end - start) {
@@ -72,7 +72,7 @@ pub(super) fn ends(values: &[f64]) -> [f64; 2] {
 pub(super) fn fitting_shifts(record: Points, curve: Points) -> Vec<Fitting> {
     const POINTS: usize = 2000;
     const SHIFTS: u32 = 400;
-    // Some points tell as much as all, sooner.
+    // A part of the points gives the same result as all of them, in less time.
     let thin = |values: &[f64]| -> Vec<f64> {
         let step = values.len().div_ceil(POINTS);
         values.iter().step_by(step).copied().collect()
@@ -108,7 +108,7 @@ pub(super) fn fitting_shifts(record: Points, curve: Points) -> Vec<Fitting> {
     least
 }
 
-/// The shift of the least badness between two, within bounds, by golden section.
+/// The shift with the least badness between two shifts, within bounds, by golden-section search.
 fn refined(from: f64, to: f64, [low, high]: [f64; 2], badness: impl Fn(f64) -> f64) -> f64 {
     const ROUNDS: u32 = 40;
     let (mut low, mut high) = (from.max(low), to.min(high));
@@ -125,7 +125,7 @@ fn refined(from: f64, to: f64, [low, high]: [f64; 2], badness: impl Fn(f64) -> f
 }
 
 /// The first of the `others` that fits about as well as the best shift, or better, and is not that shift;
-/// `length` is that of the shorter of record and curve.
+/// `length` is the length of the shorter of record and curve.
 pub(super) fn rival(best: Fitting, others: &[Fitting], length: f64) -> Option<Fitting> {
     let is_other = |other: &&Fitting| {
         (other.shift - best.shift).abs() > SAME_SHIFT * length && other.misfit <= AS_GOOD * best.misfit
@@ -165,7 +165,7 @@ mod tests {
         let (xs, ys) = curve();
         let (at, of) = record(0.1, 0.8, 0.37);
         let found = fitting_shifts((&at, &of), (&xs, &ys));
-        // A tenth of the distance of the points of the curve, between which it is straight.
+        // A tenth of the spacing of the points of the curve, which is linear between them.
         assert!((found[0].shift - 0.37).abs() < 1e-4, "{found:?}");
         assert_eq!(rival(found[0], &found, 0.7), None);
     }
@@ -180,7 +180,7 @@ mod tests {
         assert!(rival(found[0], &found, 0.2).is_some(), "{found:?}");
     }
 
-    /// Beyond its ends a curve says nothing, and little in common says little.
+    /// There is no misfit beyond the ends of a curve, nor with too little overlap.
     #[test]
     fn a_record_beside_the_curve_has_no_misfit() {
         let (xs, ys) = curve();

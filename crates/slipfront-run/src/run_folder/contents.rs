@@ -1,4 +1,4 @@
-//! The files of a run folder that belong to slipfront: those that are listed with the hash that they have.
+//! The files of a run folder that belong to slipfront: those that are listed with their present hash.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::manifest::{ManifestFile, is_one_of};
 use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, RunPicture, SERIES, STATE, SUMMARY};
 use crate::observers::tables;
 
-/// The files that a run writes beside its case and the copies in `inputs/`, the manifest first.
+/// The files that a run writes in addition to its case and the copies in `inputs/`, the manifest first.
 pub(super) fn result_files() -> impl Iterator<Item = String> {
     let tables = tables().map(|table| table.file);
     let files = [MANIFEST, SUMMARY, SERIES].into_iter().chain(tables);
@@ -20,8 +20,8 @@ pub(super) fn result_files() -> impl Iterator<Item = String> {
 
 /// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so
 /// that the folder does not look complete, and the case last, which marks the folder as one of a run. The
-/// files are those that are `listed` and unchanged, whatever has become of the others, and those in the
-/// hidden subfolder.
+/// files are the `listed` ones that are unchanged, even if others have changed, and those in the hidden
+/// subfolder.
 pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
     let mut names = Vec::new();
     for name in listed_names(folder, listed)? {
@@ -45,8 +45,8 @@ pub(super) fn managed_bytes(folder: &Path, listed: &[ManifestFile]) -> Result<u6
     names.map(|name| length(folder.join(name))).sum()
 }
 
-/// Names that a run may write, each once, so that no file elsewhere is touched, whatever a manifest or a
-/// journal lists.
+/// Listed names that a run may write, each once. Other names are left out, so that no other file is touched,
+/// whatever a manifest or a journal lists.
 fn listed_names(folder: &Path, listed: &[ManifestFile]) -> Result<Vec<String>, FolderError> {
     let copies = folder.join("inputs");
     let has_copies = is_folder(&copies).map_err(FolderError::read(&copies))?;
@@ -64,7 +64,7 @@ pub(super) fn is_as_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -
     Ok(is_one_of(folder, name, listed)?.unwrap_or(false))
 }
 
-/// Whether a name is that of a file, without a folder, that a file system can hold.
+/// Whether a name is a file name without a folder, of a length that file systems allow.
 fn is_plain(name: &str) -> bool {
     const LONGEST: usize = 255;
     let mut parts = Path::new(name).components();
@@ -81,7 +81,7 @@ pub(super) fn refuse_unmanaged(
     managed: &[String],
     listed: &[ManifestFile],
 ) -> Result<(), FolderError> {
-    // A link counts even if nothing is at its end.
+    // A dangling link also counts.
     let found = |path: &Path| found_at(path).map_err(FolderError::read(path));
     for name in names.filter(|name| !managed.contains(name)) {
         let path = folder.join(&name);
@@ -116,7 +116,7 @@ pub(super) fn remove_files(
     for name in names {
         remove_if_there(&folder.join(name)).map_err(FolderError::unwritable(folder))?;
     }
-    // A file of somebody else keeps it.
+    // The folder stays if it has a file of somebody else.
     let _ = std::fs::remove_dir(folder.join("inputs"));
     Ok(())
 }

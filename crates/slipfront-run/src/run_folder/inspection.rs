@@ -26,8 +26,8 @@ pub struct Inspection {
 /// Owner and state of a folder.
 #[derive(Debug)]
 pub enum Contents {
-    /// A free folder: it does not exist, or holds no more than a run leaves that is killed before it has
-    /// written its case.
+    /// A free folder: it does not exist, or holds only what a run leaves that was killed before it wrote its
+    /// case.
     Empty,
     /// A folder of somebody else.
     Foreign,
@@ -37,7 +37,7 @@ pub enum Contents {
     Complete(Result<Box<Manifest>, ManifestError>),
 }
 
-/// Reason for which the case in a folder was not written by a run.
+/// Reason why the case in a folder was not written by a run.
 #[derive(Debug)]
 pub enum CaseDefect {
     /// The case cannot be read.
@@ -52,7 +52,7 @@ impl Inspection {
     /// Reads the case and the manifest of a folder.
     ///
     /// # Errors
-    /// When the folder cannot be listed, or the system does not tell what it holds.
+    /// When the folder cannot be listed, or the system cannot determine what it holds.
     pub fn of(folder: &Path) -> Result<Self, FolderError> {
         let is_unused = is_unused(folder)?;
         let case = read_case(folder);
@@ -122,7 +122,7 @@ impl Inspection {
         Ok(listed)
     }
 
-    /// Whether a file of this name stands unchanged in the folder since slipfront has written it.
+    /// Whether the folder has a file of this name that is unchanged since slipfront wrote it.
     pub fn has_written(&self, name: &str) -> Result<bool, FolderError> {
         let listed = self.listed()?;
         is_as_listed(&self.path, name, &listed).map_err(FolderError::read(&self.path.join(name)))
@@ -138,7 +138,7 @@ impl Inspection {
 /// names may have no other copy.
 fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
     let path = folder.join(CASE);
-    // A user may hand over a case through a pipe; in a folder of results it would block.
+    // A user may pass a case through a pipe, but in a folder of results a pipe would block.
     open_limited(&path, TEXT_MAX_BYTES).map_err(CaseDefect::Unreadable)?;
     let text = read_text(&path).map_err(CaseDefect::Invalid)?;
     let case = CaseFile::parse(&text, &path.display().to_string(), &[]).map_err(CaseDefect::Invalid)?;

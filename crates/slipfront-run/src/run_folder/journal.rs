@@ -1,7 +1,7 @@
-//! The journal of a run that is not complete: name, length and hash of every file that it has finished, a
-//! line of JSON each.
+//! The journal of a run that is not complete: name, length and hash of every file that it has finished, as
+//! one line of JSON for each.
 //!
-//! A line is on the disk before its file takes its name, so that a file of the run is always listed, whenever
+//! A line is synced to disk before its file gets its name, so that every file of the run is listed, whenever
 //! the run is killed. A file of a listed name with other contents is somebody else's.
 
 use std::fs::{File, OpenOptions};
@@ -17,8 +17,7 @@ use crate::manifest::ManifestFile;
 pub struct Journal(File);
 
 impl Journal {
-    /// Opens the journal, or makes an empty one. The part of a line that a kill has left at the end is cut
-    /// off.
+    /// Opens the journal, or creates an empty one. A partial line that a kill has left at the end is removed.
     pub(super) fn open(path: &Path) -> std::io::Result<Self> {
         let mut options = OpenOptions::new();
         let file = options.create(true).append(true).open(path)?;

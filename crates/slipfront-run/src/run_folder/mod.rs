@@ -1,8 +1,8 @@
-//! The run folder: everything needed to read a run's results and to make them again.
+//! The run folder: everything needed to read a run's results and to reproduce them.
 //!
-//! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
-//! Slipfront's own files are those that the manifest lists, or the journal of a run that is not complete,
-//! with the hash that they have.
+//! Files appear complete or not at all, and `manifest.json` comes last: if it exists, the run is complete.
+//! Slipfront's own files are those that the manifest, or the journal of an incomplete run, lists with their
+//! present hash.
 
 mod contents;
 pub mod inspection;
@@ -70,8 +70,8 @@ impl OpenedFolder {
         })
     }
 
-    /// Makes the folder ready for a run that reads these `inputs`: it is created, or is empty, or with
-    /// `force` the files of an earlier run are removed (and nothing else).
+    /// Prepares the folder for a run that reads these `inputs`: it is created, or is empty, or with `force`
+    /// the files of an earlier run are removed (and nothing else).
     ///
     /// # Errors
     /// When the folder holds other files, which includes foreign files in the place of the copies, or cannot
@@ -80,7 +80,7 @@ impl OpenedFolder {
         self.claim(force, inputs)?.take()
     }
 
-    /// Makes the folder ready as [`prepare`](Self::prepare) does, but removes nothing yet.
+    /// Prepares the folder as [`prepare`](Self::prepare) does, but removes nothing yet.
     ///
     /// # Errors
     /// As for `prepare`.
@@ -94,7 +94,7 @@ impl OpenedFolder {
         }
         if !self.existed {
             make_folders(&path).map_err(FolderError::unwritable(&path))?;
-            // Another process may have made it since.
+            // Another process may have created it in the meantime.
             self = Self::open(&path)?;
         }
         let is_complete = matches!(self.inspection.contents, Contents::Complete(_));
@@ -113,7 +113,7 @@ impl OpenedFolder {
         let mut folder = RunFolder::begin(path, self.lock)?;
         folder.new = true;
         if is_complete {
-            // Once the manifest is gone, nothing else says whose they are.
+            // Once the manifest is removed, only the journal marks these files as slipfront's.
             folder.list(&listed)?;
         }
         Ok(ClaimedFolder {
@@ -127,7 +127,7 @@ impl OpenedFolder {
     /// again. The case, the files that it reads and the checkpoints stay.
     ///
     /// # Errors
-    /// When a file that the run has not written stands where its results go: then nothing is removed.
+    /// When a file that the run has not written is in the place of a result: then nothing is removed.
     pub fn resume(self, case: &Case) -> Result<RunFolder, FolderError> {
         let listed = self.inspection.listed()?;
         let path = self.inspection.path;
@@ -137,7 +137,7 @@ impl OpenedFolder {
         remove_files(&folder.path, result_files())?;
         let cleared = folder.unfinished.clear_temporary();
         cleared.map_err(FolderError::unwritable(&folder.temporary()))?;
-        // A case that was loaded can be written.
+        // A case that was loaded can always be written.
         let text = case.file.to_toml().unwrap_or_default();
         let mut hasher = blake3::Hasher::new();
         let written = ManifestFile::hashed(CASE, hasher.update(text.as_bytes()));
@@ -150,7 +150,7 @@ impl OpenedFolder {
     }
 }
 
-/// A folder that is ready for a new run, but for the files of an earlier one.
+/// A folder that is ready for a new run, except for the files of an earlier one.
 #[derive(Debug)]
 pub struct ClaimedFolder {
     folder: RunFolder,
@@ -170,7 +170,8 @@ impl ClaimedFolder {
             self.replaced.into_iter().partition(|name| name == MANIFEST);
         if !manifest.is_empty() {
             remove_files(&self.folder.path, manifest)?;
-            // After a power failure a manifest would say that the run is complete, whatever else has gone.
+            // Otherwise, after a power failure, a manifest could mark the run as complete although other
+            // files are gone.
             self.folder.sync()?;
         }
         remove_files(&self.folder.path, others)?;
@@ -179,7 +180,7 @@ impl ClaimedFolder {
 
     /// Restores the folder as it was found.
     pub fn release(self) {
-        // Why the run does not begin is what matters.
+        // Errors are ignored here: the reason why the run does not begin is more important.
         if self.made.contains(&self.folder.path.join(UNFINISHED)) {
             let _ = self.folder.unfinished.remove();
         }
@@ -189,8 +190,8 @@ impl ClaimedFolder {
     }
 }
 
-/// Fails on all ranks, with the same words, unless each of them sees under its path the folder in which rank
-/// 0 is about to run. Every rank must ask.
+/// Fails on all ranks, with the same message, unless each of them sees under its path the folder in which
+/// rank 0 is about to run. Every rank must call this function.
 ///
 /// # Errors
 /// When a rank does not; the sentence names it.
@@ -236,7 +237,7 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Opens a folder and makes it ready: see [`OpenedFolder::open`] and [`OpenedFolder::prepare`].
+    /// Opens a folder and prepares it: see [`OpenedFolder::open`] and [`OpenedFolder::prepare`].
     pub fn prepare(path: &Path, force: bool, inputs: &[Input]) -> Result<Self, FolderError> {
         OpenedFolder::open(path)?.prepare(force, inputs)
     }
@@ -267,7 +268,7 @@ impl RunFolder {
     pub fn discard(self) {
         if self.new {
             let names = self.written.iter().map(|file| &file.name).rev();
-            // The error of the run is what matters.
+            // Errors are ignored here: the error of the run is more important.
             let _ = remove_files(&self.path, names);
             let _ = self.unfinished.remove();
         }
@@ -289,7 +290,7 @@ impl RunFolder {
         &self.path
     }
 
-    /// Writes a file of the run, where no foreign file stands in its place.
+    /// Writes a file of the run, unless a foreign file is in its place.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let file = write_temp(&self.temporary(), |file| file.write_all(bytes));
         let path = self.path.join(name);
@@ -301,7 +302,7 @@ impl RunFolder {
         self.unfinished.temporary()
     }
 
-    /// Copies a file that the case reads, where no foreign file stands in its place.
+    /// Copies a file that the case reads, unless a foreign file is in its place.
     ///
     /// # Errors
     /// When the file has changed since the case was made from it, or cannot be read or written.
@@ -327,8 +328,8 @@ impl RunFolder {
         self.place_listed(copied, file)
     }
 
-    /// Makes a finished temporary file a file of the run: it is listed in the journal, and then takes its
-    /// name, where no foreign file stands in its place.
+    /// Makes a finished temporary file a file of the run: it is listed in the journal, and then gets its
+    /// name, unless a foreign file is in its place.
     pub fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
         let listed = ManifestFile::of_copy(name, &file).map_err(FolderError::write(&self.path.join(name)))?;
         self.place_listed(listed, file)
@@ -354,7 +355,7 @@ impl RunFolder {
         self.journal.append(files).map_err(FolderError::write(&path))
     }
 
-    /// Writes the manifest: the run is complete, if every file is unchanged since it was written.
+    /// Writes the manifest, which makes the run complete, if every file is unchanged since it was written.
     pub fn complete(
         mut self,
         case: &Case,
@@ -376,15 +377,15 @@ impl RunFolder {
         Ok(manifest)
     }
 
-    /// Makes a finished temporary file the manifest. Every other file has its name on the disk before, so
-    /// that no power failure leaves a manifest without the files that it lists, and the manifest has its own
-    /// after.
+    /// Makes a finished temporary file the manifest. The names of all other files are synced to disk before,
+    /// and that of the manifest after, so that no power failure leaves a manifest without the files that it
+    /// lists.
     pub(crate) fn place_manifest(&mut self, file: TempPath) -> Result<(), FolderError> {
         self.sync()?;
         self.place(MANIFEST, file)?;
         sync_folder(&self.path).map_err(|error| {
             let path = self.path.join(MANIFEST);
-            // What may not be on the disk is not complete.
+            // A run is not complete if its manifest may not be on the disk.
             let _ = std::fs::remove_file(&path);
             FolderError::write(&path)(error)
         })
@@ -392,9 +393,9 @@ impl RunFolder {
 
     /// Ends a run that is complete: removes the hidden subfolder.
     pub(crate) fn close(self) {
-        // Windows removes no folder that holds an open file.
+        // Windows cannot remove a folder that holds an open file.
         drop(self.journal);
-        // The run is complete whether it can be removed or not.
+        // The run is complete, whether the subfolder can be removed or not.
         let _ = self.unfinished.remove();
     }
 }
@@ -405,8 +406,8 @@ fn is_folder_behind(path: &Path) -> Result<bool, FolderError> {
     Ok(found.is_some_and(|found| found.is_dir()))
 }
 
-/// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of
-/// folders: the run goes on without.
+/// Locks a folder for one process. Some cluster file systems have no locks, and some operating systems cannot
+/// lock folders: the run then continues without a lock.
 fn lock(path: &Path) -> Result<Option<File>, FolderError> {
     let Ok(folder) = File::open(path) else {
         return Ok(None);

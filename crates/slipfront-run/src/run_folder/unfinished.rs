@@ -39,7 +39,7 @@ impl Unfinished {
     /// slipfront's.
     ///
     /// # Errors
-    /// When the system does not say.
+    /// When the system cannot determine this.
     pub fn is_managed(&self) -> Result<bool, FolderError> {
         let read = FolderError::read(&self.path);
         if !is_folder(&self.path).map_err(&read)? {
@@ -57,7 +57,7 @@ impl Unfinished {
     /// Whether a checkpoint was saved.
     ///
     /// # Errors
-    /// When the system does not say.
+    /// When the system cannot determine this.
     pub fn has_checkpoint(&self) -> Result<bool, FolderError> {
         for path in [CHECKPOINT, PREVIOUS].map(|name| self.path.join(name)) {
             if found_at(&path).map_err(FolderError::read(&path))?.is_some() {
@@ -67,14 +67,14 @@ impl Unfinished {
         Ok(false)
     }
 
-    /// Makes the subfolder, where it is not there yet; an error if a link or a file stands in its place.
+    /// Creates the subfolder if it does not exist; an error if a link or a file is in its place.
     pub fn create(&self) -> Result<Journal, FolderError> {
         let run = self.path.parent().unwrap_or(&self.path);
         make_folder(&self.path, run)?;
         let path = self.journal();
         let journal = Journal::open(&path).map_err(FolderError::write(&path))?;
-        // What it lists must not outlast it in a power failure, also where a process that was killed has made
-        // it.
+        // Files that the journal lists must not survive a power failure without it, even if a killed process
+        // has created the journal.
         for folder in [&self.path, run] {
             sync_folder(folder).map_err(FolderError::write(folder))?;
         }
@@ -87,7 +87,7 @@ impl Unfinished {
         self.path.join(JOURNAL)
     }
 
-    /// The files that the run has finished; none where the subfolder is not slipfront's.
+    /// The files that the run has finished; none if the subfolder is not slipfront's.
     pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
         let path = self.journal();
         if !self.is_managed()? || !self.has_journal()? {
@@ -96,8 +96,8 @@ impl Unfinished {
         journal::read(&path).map_err(FolderError::read(&path))
     }
 
-    /// Files that may stand in the subfolder beside the journal, as paths in the run folder; none where it is
-    /// not slipfront's.
+    /// Files that may be in the subfolder in addition to the journal, as paths in the run folder; none if the
+    /// subfolder is not slipfront's.
     pub(super) fn managed_files(&self) -> Result<Vec<String>, FolderError> {
         if !self.is_managed()? {
             return Ok(Vec::new());
@@ -116,7 +116,7 @@ impl Unfinished {
         names.try_for_each(|name| remove_if_there(&folder.join(name)))
     }
 
-    /// Removes the subfolder: the run is complete. Files of others stay, and so does the subfolder then.
+    /// Removes the subfolder of a complete run. Foreign files stay, and then so does the subfolder.
     pub fn remove(&self) -> std::io::Result<()> {
         self.clear_temporary()?;
         for name in [CHECKPOINT, PREVIOUS] {
@@ -126,7 +126,8 @@ impl Unfinished {
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
             _ => {}
         }
-        // Until here it says whose the rest is, which no power failure may bring back without it.
+        // Until here, the journal marks the other files as slipfront's. No power failure may restore them
+        // without the journal.
         if self.has_journal().unwrap_or(true) {
             sync_folder(&self.path)?;
         }
@@ -150,7 +151,7 @@ fn make_folder(path: &Path, path_in_error: &Path) -> Result<(), FolderError> {
     }
 }
 
-/// Names of the entries of a folder but its subfolders; none behind a link.
+/// Names of the entries of a folder except its subfolders; none if the folder is a link.
 fn names_in(folder: &Path) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     if is_folder(folder)? {

@@ -1,5 +1,5 @@
-//! Reductions of static friction by dimples in a bulk body: of a half-space, by a quasi-static solver, and of
-//! the sheets and stacks that the product takes for it.
+//! Reductions of static friction by dimples on a bulk body: on a half-space, from a quasi-static solver, and
+//! on the sheets and stacks with which the product models it.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-bulk-tests --example bulk_tables
@@ -7,8 +7,8 @@
 //!
 //! Dimples are half a pitch wide, R* = 0.5. Prints reductions in % over `w p (1 - nu)/G`, with the weakening
 //! `w = (mu_s - mu_k) p_c/D_c` and the pressure p_c of the blocks in contact: by a square array with 16
-//! blocks a pitch, where a body is 5 pitches high; then by a band of two columns across the drive, a patch of
-//! 2 x 2 and 16 dimples at random places on 4 x 4 pitches.
+//! blocks per pitch, where a body is 5 pitches high; then by a band of two columns across the drive, a patch
+//! of 2 x 2 and 16 dimples at random places on 4 x 4 pitches.
 
 #![allow(clippy::unwrap_used)] // A run that fails ends the program.
 
@@ -42,7 +42,7 @@ fn main() {
     row("half-space, nu = 1/3, 32 blocks a pitch", &|w| {
         finer.on_half_space(THIRD, w, equal)
     });
-    // G/H, and what fits, in G over the pitch.
+    // The mount G/H, and the mount that fits best, in G over the pitch.
     for (name, thickness, mount) in [
         ("sheet, h = 5 p", 5.0, 0.2),
         ("sheet, h = 0.5 p", 0.5, 0.2),

@@ -12,7 +12,7 @@ pub(crate) const RATIO: f64 = 0.5;
 /// Edge of a block, and Young's modulus, of the product.
 pub(crate) const BLOCK: f64 = 10e-6;
 pub(crate) const YOUNG_MODULUS: f64 = 2.6e6;
-/// Coefficient of static friction of the product, whose pressure is 1 Pa.
+/// Coefficient of static friction of the product; its pressure is 1 Pa.
 const MU_STATIC: f64 = 0.6;
 
 /// Keys of the product for a slow drive, and for little damping: sheets that move with the drive have a drag
@@ -67,7 +67,7 @@ impl Dimples {
             .any(|&centre| self.distance(block, centre) < radius)
     }
 
-    /// Load of every block over its mean of all.
+    /// Load of every block over the mean of all blocks.
     fn load(&self, sharing: Sharing) -> Vec<f64> {
         let n = self.side * self.side;
         let (textured, contact): (Vec<usize>, Vec<usize>) = (0..n).partition(|&b| self.is_textured(b));
@@ -138,7 +138,7 @@ impl Dimples {
         let case = Case::parse(&text, "dimples", "", body).unwrap_or_else(|error| panic!("{text}\n{error}"));
         let surface = &case.model.surface;
         for (block, load) in self.load(sharing).into_iter().enumerate() {
-            // Of one sum of quotients.
+            // Rounding of one sum of quotients.
             assert!((surface.normal_force(block) - load).abs() < 1e-12, "{block}");
         }
         case
@@ -156,7 +156,7 @@ impl Dimples {
         100.0 * (1.0 - run_summary(&case).unwrap().static_friction_star)
     }
 
-    /// Reduction in % of the stack that the product takes for a deep body.
+    /// Reduction in % on the stack with which the product models a deep body.
     pub(crate) fn on_stack(&self, poisson: f64, weakening: f64, sharing: Sharing, keys: &[&str]) -> f64 {
         let body = [
             "slider.body='bulk'".to_owned(),
@@ -167,10 +167,11 @@ impl Dimples {
         self.in_product(poisson, weakening, sharing, &keys)
     }
 
-    /// Reduction in % of a sheet with Poisson's ratio 1/3, whose thickness is in pitches and whose mount in G
+    /// Reduction in % on a sheet with Poisson's ratio 1/3. The thickness is in pitches, and the mount in G
     /// over the pitch.
     pub(crate) fn on_sheet(&self, weakening: f64, thickness: f64, mount: f64) -> f64 {
-        /// Speed of the drive over that with which a swing of the mount takes all of the strength.
+        /// Speed of the drive over the speed with which an oscillation of the mount takes all of the
+        /// strength.
         const SPEED: f64 = 1e-3;
         /// Drag over the strength.
         const DRAG: f64 = 5e-4;
@@ -189,8 +190,8 @@ impl Dimples {
     }
 }
 
-/// Keys of the product for three sheets that are within 0.3 % of a deep body of nu = 1/4, from a longest wave
-/// of so many blocks to a sixteenth of it.
+/// Keys of the product for three sheets that are within 0.3 % of a deep body of nu = 1/4, for waves from
+/// `longest` blocks to a sixteenth of it.
 pub(crate) fn three_sheets(longest: usize) -> [String; 3] {
     /// In `G/(0.6495 E q_a)` and `G q_a`, by a plain search over all six numbers (`docs/validation/bulk.md`).
     const SHEETS: [[f64; 2]; 3] = [[0.0297, 13.25], [0.2146, 3.069], [0.9147, 0.5870]];
@@ -210,7 +211,7 @@ pub(crate) fn three_sheets(longest: usize) -> [String; 3] {
 }
 
 /// A band of two columns of dimples across the drive, a patch of 2 x 2, and 16 dimples at random places, on a
-/// slider of 4 x 4 pitches of so many blocks.
+/// slider of 4 x 4 pitches of `pitch` blocks.
 pub(crate) fn patterns(pitch: usize) -> [Dimples; 3] {
     /// Drawn at random, at least 0.6 pitches apart; in pitches.
     const RANDOM: [[f64; 2]; 16] = [

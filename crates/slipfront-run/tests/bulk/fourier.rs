@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::{Add, Mul, Sub};
 
-/// A complex number; of a vector in the plane, its components.
+/// A complex number, also for the components of a vector in the plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Complex {
     pub(crate) x: f64,
@@ -57,12 +57,12 @@ pub(crate) struct Fourier {
     side: usize,
     /// `exp(-i 2 pi k/side)`.
     roots: Vec<Complex>,
-    /// The index whose binary digits stand in the opposite order.
+    /// Index with the binary digits in reverse order, for every index.
     reversed: Vec<usize>,
 }
 
 impl Fourier {
-    /// Transforms of side x side numbers, a power of two and at least 2.
+    /// Transforms of side x side numbers; `side` is a power of two and at least 2.
     pub(crate) fn new(side: usize) -> Self {
         assert!(side.is_power_of_two() && side > 1, "{side}");
         let digits = side.trailing_zeros();
@@ -79,14 +79,15 @@ impl Fourier {
         }
     }
 
-    /// `sum_j a_j exp(-i q.j)`, whose rows and columns are exchanged.
+    /// `sum_j a_j exp(-i q.j)`, with rows and columns exchanged.
     pub(crate) fn forward(&self, square: &mut [Complex]) {
         self.rows(square);
         self.exchange(square);
         self.rows(square);
     }
 
-    /// The numbers whose transform, with rows and columns exchanged, these are.
+    /// Inverse transform of numbers with rows and columns exchanged, as [`forward`](Self::forward) gives
+    /// them.
     pub(crate) fn back(&self, square: &mut [Complex]) {
         let share = 1.0 / (self.side * self.side) as f64;
         for number in square.iter_mut() {
@@ -134,7 +135,7 @@ impl Fourier {
 mod tests {
     use super::*;
 
-    /// A single wave has a single number, and the way back leads to it.
+    /// The transform of a single wave has a single number, and the inverse transform gives the wave again.
     #[test]
     fn a_wave_is_a_number() {
         let (side, across, along) = (8, 3, 1);

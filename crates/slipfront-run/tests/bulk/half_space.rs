@@ -1,10 +1,11 @@
-//! The largest friction of an elastic body on a rigid plane, quasi-statically: its surface is a periodic
-//! square of blocks, under a prescribed pressure, and its interior is a stiffness for every wave number.
+//! The largest friction of an elastic body on a rigid plane, from a quasi-static solution. The surface of the
+//! body is a periodic square of blocks under a prescribed pressure. Its interior is a stiffness for every
+//! wave number.
 //!
-//! A displacement of the surface `u exp(i q.x)` takes a traction of `L(q)` along the wave and `T(q)` across
-//! it. Blocks hold up to their strength, and slide against a friction that falls in proportion to slip until
-//! it is kinetic. The body is pulled by a traction that grows slowly; where no state of rest is near any
-//! longer, slip runs away and friction has been at its largest.
+//! A displacement of the surface `u exp(i q.x)` has the stiffness `L(q)` along the wave and `T(q)` across it.
+//! Blocks stick up to their strength, and slide against friction that falls linearly with slip to the kinetic
+//! value. The body is pulled by a slowly growing traction. When no state of rest is near any longer, slip
+//! runs away, and friction has passed its maximum.
 //!
 //! Lengths are in blocks, stiffnesses per area in `G/(1 - nu)` per block.
 
@@ -12,8 +13,8 @@ use std::f64::consts::TAU;
 
 use crate::fourier::{Complex, Fourier};
 
-/// Uncertainty of the largest traction, and largest force on a block that counts as none, over the mean
-/// strength: a hundredth of a point in the reduction of friction.
+/// Uncertainty of the largest traction, and largest force on a block that counts as zero, over the mean
+/// strength: a hundredth of a percentage point in the reduction of friction.
 const TOLERANCE: f64 = 1e-4;
 /// Largest increment of the traction.
 const INCREMENT: f64 = 0.1;
@@ -22,7 +23,7 @@ const INCREMENT: f64 = 0.1;
 pub(crate) struct Body {
     side: usize,
     fourier: Fourier,
-    /// `(L + T)/2` of every wave; those of a row belong to one wave number along y.
+    /// `(L + T)/2` of every wave; the values of a row belong to one wave number along y.
     mean: Vec<f64>,
     /// `(L - T)/2 exp(2 i phi)` of a wave in the direction phi.
     difference: Vec<Complex>,
@@ -31,7 +32,7 @@ pub(crate) struct Body {
 
 /// Blocks on the plane.
 pub(crate) struct Blocks {
-    /// Static strength over its mean of all blocks; 0 of a textured block.
+    /// Static strength over the mean of all blocks; 0 for a textured block.
     pub(crate) strength: Vec<f64>,
     /// Ratio of kinetic to static strength.
     pub(crate) ratio: f64,
@@ -47,8 +48,8 @@ struct State {
 }
 
 impl Body {
-    /// A body of side x side blocks with these stiffnesses along and across a wave of wave number q. All
-    /// blocks together are not held.
+    /// A body of side x side blocks with these stiffnesses along and across a wave of wave number q. A
+    /// uniform displacement of all blocks has no stiffness.
     pub(crate) fn new(side: usize, stiffness: impl Fn(f64) -> [f64; 2]) -> Self {
         let wave_number = |k: usize| {
             let k = if 2 * k > side {
@@ -66,7 +67,8 @@ impl Body {
             let [along, across] = stiffness(q);
             mean.push(0.5 * (along + across));
             let turned = (wave * wave).times(0.5 * (along - across) / (q * q));
-            // At the shortest wave length waves to either side are one, and what differs in sign cancels.
+            // At the shortest wave length, waves in opposite directions are the same wave, and parts of
+            // opposite sign cancel.
             let cancels = 2 * (k / side) == side || 2 * (k % side) == side;
             difference.push(Complex::new(turned.x, if cancels { 0.0 } else { turned.y }));
             stiffest = stiffest.max(along).max(across);
@@ -116,7 +118,7 @@ impl Body {
             displacement: vec![Complex::default(); n],
             slip: vec![0.0; n],
         };
-        // Sliding blocks carry the kinetic strength at the least.
+        // Sliding blocks carry at least the kinetic strength.
         let (mut held, mut slides) = (0.0, f64::INFINITY);
         let mut pull = blocks.ratio;
         while slides - held > TOLERANCE {
@@ -132,11 +134,11 @@ impl Body {
         held
     }
 
-    /// Whether the blocks come to rest under a traction along x, before all of them have slid as far as
-    /// friction falls.
+    /// Whether the blocks come to rest under a traction along x, before all of them have slid the distance
+    /// over which friction falls.
     ///
-    /// Blocks move in proportion to the force that friction does not hold. The stiffest wave goes half as far
-    /// again as to balance, which is stable and too little to slip by.
+    /// Blocks move in proportion to the force that friction does not balance. The stiffest wave moves 1.5
+    /// times the distance to equilibrium, which is stable, and too little to cause slip.
     fn comes_to_rest(&self, blocks: &Blocks, pull: f64, state: &mut State) -> bool {
         let mobility = 1.5 / self.stiffest;
         let mut traction = Vec::new();

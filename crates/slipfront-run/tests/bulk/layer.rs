@@ -19,7 +19,7 @@ pub(crate) fn response(x: f64, poisson: f64) -> [f64; 2] {
     // Unit displacements along the wave and normal to it, and a unit traction, each alone at the lower face.
     let [by_u, by_w, by_t] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]
         .map(|start| integrated(start, along));
-    // Both displacements are none at the upper face: U + T = 0 in the first two rows, for U = 1.
+    // Both displacements are zero at the upper face: U + T = 0 in the first two rows, for U = 1.
     let determinant = by_w[0] * by_t[1] - by_w[1] * by_t[0];
     let t = -(by_w[0] * by_u[1] - by_w[1] * by_u[0]) / determinant;
     // Across the wave: v' = T, T' = q^2 v.
@@ -29,7 +29,7 @@ pub(crate) fn response(x: f64, poisson: f64) -> [f64; 2] {
     [-t, by_v[0] / by_shear[0]]
 }
 
-/// The end of a solution from z = 0 to 1, by the method of Runge and Kutta of fourth order.
+/// The solution at z = 1 that starts at z = 0, by the fourth-order Runge-Kutta method.
 fn integrated<const N: usize>(start: [f64; N], slope: impl Fn([f64; N]) -> [f64; N]) -> [f64; N] {
     let step = 1.0 / STEPS as f64;
     let moved =
@@ -50,7 +50,7 @@ fn integrated<const N: usize>(start: [f64; N], slope: impl Fn([f64; N]) -> [f64;
 mod tests {
     use super::*;
 
-    /// Long waves shear the layer as a whole, and it is deep for short ones.
+    /// Long waves shear the layer as a whole, and for short waves it is a half-space.
     #[test]
     fn a_layer_is_a_block_or_a_half_space() {
         for poisson in [0.0, 0.25, 0.45] {

@@ -1,4 +1,4 @@
-//! Bulk bodies against references that know neither sheets nor the engine.
+//! Bulk bodies against references that use neither sheets nor the engine.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 

@@ -7,9 +7,9 @@ use crate::layer;
 
 /// `w p (1 - nu)/G`.
 const WEAKENING: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
-/// Reductions in % by a square array on 32 x 32 blocks a pitch, by a solver that follows damped motion, for
-/// nu = 1/3 and 1/4. A lattice of springs in three dimensions found 6.33 and 25.64 for nu = 1/4, `w p/mu*` of
-/// 2 and 10.
+/// Reductions in % by a square array on 32 x 32 blocks per pitch, from a solver of damped motion, for nu =
+/// 1/3 and 1/4. A three-dimensional lattice of springs gave 6.33 and 25.64 for nu = 1/4, `w p/mu*` of 2 and
+/// 10.
 const KNOWN: [(f64, [f64; 5]); 2] = [
     (1.0 / 3.0, [3.54, 7.74, 16.98, 27.00, 35.32]),
     (0.25, [3.05, 6.48, 15.2, 25.5, 34.1]),
@@ -21,16 +21,17 @@ fn the_reference_finds_what_is_known() {
         for (weakening, known) in WEAKENING.into_iter().zip(known) {
             let found = Dimples::array(16).on_half_space(poisson, weakening, Sharing::Equal);
             println!("nu = {poisson:.2}, w p (1 - nu)/G = {weakening}: {found:.2} % for {known} %");
-            // On 32 x 32 blocks it differs by up to 1 %, and the known figure by as much.
+            // On 32 x 32 blocks, the reference differs by up to 1 %, and the known figure may be off by as
+            // much.
             assert!((found / known - 1.0).abs() < 0.02, "{found} {known}");
         }
     }
     let finer = Dimples::array(32).on_half_space(1.0 / 3.0, 5.0, Sharing::Equal);
-    // Loading in steps of 2e-4 of the strength, and the last digit of the known figure.
+    // Error of loading in steps of 2e-4 of the strength, and of the last digit of the known figure.
     assert!((finer - 16.98).abs() < 0.05, "{finer}");
 }
 
-/// Poisson's ratio, and by how much of itself, in %, a reduction by two sheets is too large.
+/// Poisson's ratio, and the relative error in % of reductions with two sheets.
 const EXCESS: [(f64, [f64; 5]); 4] = [
     (0.25, [-5.5, -1.4, -2.5, -0.6, -1.7]),
     (0.3, [-4.3, -2.4, -2.1, 0.0, -7.2]),
@@ -38,9 +39,9 @@ const EXCESS: [(f64, [f64; 5]); 4] = [
     (0.49, [-6.4, -3.5, -1.1, 0.4, -0.5]),
 ];
 
-/// Two sheets find the reductions of a half-space within 8 % of each, from Poisson's ratio of glass to that
-/// of rubber. At the smallest reductions, 1 to 2 % are the drag of the drive. At the largest most is the
-/// mesh, which has 1.9 blocks in the critical size.
+/// Two sheets reproduce each reduction of a half-space within 8 %, for Poisson's ratios from glass to rubber.
+/// At the smallest reductions, 1 to 2 % come from the drag of the drive. At the largest, most of the error
+/// comes from the mesh, which has 1.9 blocks in the critical size.
 #[test]
 fn dimples_on_a_stack_reduce_friction_as_in_a_half_space() {
     let dimples = Dimples::array(16);
@@ -52,15 +53,15 @@ fn dimples_on_a_stack_reduce_friction_as_in_a_half_space() {
             println!(
                 "nu = {poisson:.2}, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %, {excess:+.1}"
             );
-            // Rounding of what was measured.
+            // Rounding of the measured value.
             assert!((excess - measured).abs() < 0.06, "{weakening}: {excess}");
             assert!((-8.0..8.0).contains(&excess), "{weakening}: {excess}");
         }
     }
 }
 
-/// Blocks in the height of a glued layer, Poisson's ratio, and by how much of itself, in %, a reduction by
-/// two sheets is too large where w p (1 - nu)/G is 5 and 10.
+/// Blocks in the height of a glued layer, Poisson's ratio, and the relative error in % of reductions with two
+/// sheets at w p (1 - nu)/G = 5 and at 10.
 const ON_LAYERS: [(f64, f64, [f64; 2]); 4] = [
     (8.0, 0.3, [-2.9, -0.9]),
     (8.0, 0.49, [-3.1, -1.0]),
@@ -68,8 +69,8 @@ const ON_LAYERS: [(f64, f64, [f64; 2]); 4] = [
     (4.0, 0.49, [-12.8, -6.5]),
 ];
 
-/// Dimples on a layer that is glued to a rigid face, half and a quarter of a pitch high: in so thin a layer
-/// both directions differ less where waves are long, and more where they are short, than in the stack.
+/// Dimples on a layer that is glued to a rigid face, half and a quarter of a pitch high: in such a thin
+/// layer, both directions differ less for long waves, and more for short waves, than in the stack.
 #[test]
 fn dimples_on_a_glued_layer() {
     let dimples = Dimples::array(16);
@@ -85,13 +86,13 @@ fn dimples_on_a_glued_layer() {
             println!(
                 "{height} blocks high, nu = {poisson}, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %, {excess:+.1}"
             );
-            // Rounding of what was measured.
+            // Rounding of the measured value.
             assert!((excess - measured).abs() < 0.06, "{excess}");
         }
     }
 }
 
-/// Three sheets find them within 4 % where drag does not count.
+/// Three sheets reproduce the reductions within 4 % where drag is negligible.
 #[test]
 fn three_sheets_are_closer() {
     let (poisson, dimples) = (0.25, Dimples::array(16));
@@ -108,7 +109,7 @@ fn three_sheets_are_closer() {
     }
 }
 
-/// Blocks in a pitch, and the reduction in % of an array whose critical size is 0.116 pitches.
+/// Blocks in a pitch, and the reduction in % of an array with a critical size of 0.116 pitches.
 const ON_BLOCKS: [(usize, f64); 4] = [(16, 32.5), (24, 34.1), (32, 34.8), (48, 34.6)];
 
 /// Three blocks in the critical size of a bulk body are enough for 2 % of a reduction, and two are not.
@@ -124,7 +125,7 @@ fn three_blocks_in_the_critical_size_are_enough() {
         let found = Dimples::array(pitch).on_stack(0.3, 20.0, Sharing::Equal, WITH_LITTLE_DRAG);
         let blocks = 2.316 * pitch as f64 / 20.0;
         println!("{blocks:.1} blocks in the critical size: {found:.2} %");
-        // Rounding of what was measured.
+        // Rounding of the measured value.
         assert!((found - measured).abs() < 0.06, "{blocks}: {found}");
         assert_eq!(
             (found / finest - 1.0).abs() < 0.02,
@@ -138,7 +139,7 @@ fn three_blocks_in_the_critical_size_are_enough() {
 #[test]
 fn an_array_whose_load_is_shared_within_a_pitch() {
     let poisson = 1.0 / 3.0;
-    // Of one pitch every block is within a pitch.
+    // On a slider of a single pitch, every block is within a pitch.
     let dimples = Dimples {
         side: 32,
         pitch: 16,
@@ -146,7 +147,7 @@ fn an_array_whose_load_is_shared_within_a_pitch() {
     };
     for weakening in [2.0, 10.0] {
         let expected = dimples.on_half_space(poisson, weakening, Sharing::Near);
-        // Single dimples have no pitch: the case says which wave length is the longest one of an array.
+        // Single dimples have no pitch: the case states the longest wave length of an array.
         let keys = [WITH_LITTLE_DRAG, &["slider.longest_wave='160 um'"]].concat();
         let found = dimples.on_stack(poisson, weakening, Sharing::Near, &keys);
         println!("within a pitch, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %");
@@ -155,7 +156,7 @@ fn an_array_whose_load_is_shared_within_a_pitch() {
 }
 
 /// Dimples on a part of a slider of 4 x 4 pitches, or anywhere in it, have waves up to its length: two sheets
-/// find their reductions within 8 %.
+/// reproduce their reductions within 8 %.
 #[test]
 fn other_patterns_on_a_stack_reduce_friction_as_in_a_half_space() {
     let weakening = 2.0;

@@ -1,4 +1,4 @@
-//! The stack of a case under a sinusoidal traction, against the body that it stands for.
+//! The stack of a case under a sinusoidal traction, against the body that it models.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -9,11 +9,11 @@ use slipfront_case::case::Case;
 use crate::dimples::{BLOCK, YOUNG_MODULUS, three_sheets};
 use crate::layer;
 
-/// Blocks of the longest wave length of the stack: q l is 0.05 to 0.4 where it is fitted.
+/// Number of blocks of the longest wave length of the stack: q l is 0.05 to 0.4 where the stack is fitted.
 const LONGEST: usize = 126;
 
-/// A bulk body without texture, whose longest wave length has so many blocks; its height is over that wave
-/// length, and infinite if not given.
+/// A bulk body without texture, with a longest wave length of `longest` blocks. Its height is given over that
+/// wave length, and infinite if not given.
 pub(crate) fn bare(longest: usize, poisson: f64, height: Option<f64>) -> Case {
     let metres = |height: f64| format!("slider.height='{:e} m'", height * longest as f64 * BLOCK);
     let mut keys: Vec<String> = height.map(metres).into_iter().collect();
@@ -21,7 +21,7 @@ pub(crate) fn bare(longest: usize, poisson: f64, height: Option<f64>) -> Case {
     bare_with(longest, &keys)
 }
 
-/// Three sheets for a deep body of nu = 1/4 without texture, whose longest wave length has so many blocks.
+/// Three sheets for a deep body of nu = 1/4 without texture, with a longest wave length of `longest` blocks.
 pub(crate) fn of_three_sheets(longest: usize) -> Case {
     bare_with(longest, &three_sheets(longest))
 }
@@ -40,11 +40,11 @@ pub(crate) fn unit_of_stiffness(case: &Case, poisson: f64) -> f64 {
     case.scales.thickness / case.scales.block_size * 2.0 * (1.0 + poisson)
 }
 
-/// Traction over displacement along and across a wave of which the slider has so many, in G per block: stuck
-/// blocks are displaced, and the upper sheet comes to rest.
+/// Traction over displacement along and across a wave that fits `waves` times in the longest wave length, in
+/// G per block: stuck blocks are displaced, and the upper sheet comes to rest.
 fn of_the_stack(case: &Case, poisson: f64, waves: usize) -> [f64; 2] {
     const AMPLITUDE: f64 = 1e-3;
-    /// Upper sheets swing with damping close to critical, and are at rest to 1e-5 of their path.
+    /// Upper sheets oscillate with damping close to critical, and are then at rest to 1e-5 of their path.
     const STEPS: usize = 1500;
     let n = 3 * LONGEST;
     let phase = |b: usize| TAU * (waves * (b % LONGEST)) as f64 / LONGEST as f64;
@@ -72,9 +72,9 @@ fn of_the_stack(case: &Case, poisson: f64, waves: usize) -> [f64; 2] {
 
 /// Waves in the longest wave length, and the stiffness of the stack over that of the body, along and across.
 ///
-/// A stack that is right in the mean is too stiff along and yields too much across: its sheets are made a
-/// little stiffer along for the sake of the reductions of friction. Beyond 8 waves it is a sheet, and its
-/// stiffness grows as q^2.
+/// A stack that is right in the mean is too stiff along the wave and too soft across it: its sheets are made
+/// a little stiffer along the wave, so that the reductions of friction are right. Beyond 8 waves it is a
+/// sheet, and its stiffness grows as q^2.
 type Ratios = [(usize, [f64; 2]); 5];
 
 const DEEP: Ratios = [
@@ -112,7 +112,7 @@ fn a_stack_answers_waves_as_its_body_does() {
             let mean = (found[0] * found[1]).sqrt();
             println!("nu = {poisson:.2}, height {height:?}, {waves} waves: {found:.3?}, mean {mean:.3}");
             for (found, measured) in found.into_iter().zip(ratios) {
-                // Rounding of what was measured.
+                // Rounding of the measured value.
                 assert!((found - measured).abs() < 1e-3, "{waves}: {found} {measured}");
             }
             // From the longest wave to an eighth of it, for which two sheets are fitted.
@@ -123,8 +123,9 @@ fn a_stack_answers_waves_as_its_body_does() {
     }
 }
 
-/// All blocks together yield as the springs do in series, where a body has G/H: a stack knows of no wave that
-/// is longer than its longest, and is too stiff from a tenth of that in height on.
+/// All blocks together have the stiffness of the springs in series, and a body has G/H. A stack does not
+/// model waves longer than its longest one, and is too stiff if it is higher than a tenth of that wave
+/// length.
 #[test]
 fn all_blocks_together_yield_less_than_in_a_body() {
     let poisson = 1.0 / 3.0;
@@ -139,7 +140,7 @@ fn all_blocks_together_yield_less_than_in_a_body() {
         let [coupling, mount] = [case.model.sheets()[0].coupling, case.model.drive.k_drive];
         let series = unit_of_stiffness(&case, poisson) * coupling * mount / (coupling + mount);
         let found = series * height * LONGEST as f64;
-        // Rounding of what was measured.
+        // Rounding of the measured value.
         assert!(
             (found / measured - 1.0).abs() < 1e-3,
             "{height}: {found} {measured}"

@@ -1,7 +1,7 @@
 //! A body as a cubic lattice of springs in three dimensions, with inertia, on a rigid plane.
 //!
 //! Springs of stiffness 0.4 E l join every block to its 6 nearest and 12 second neighbours: an isotropic body
-//! with nu = 1/4 and G = 0.4 E. In its lower and upper face, which have half as much of the body behind them,
+//! with nu = 1/4 and G = 0.4 E. In its lower and upper face, which represent half as much of the body,
 //! springs in the plane and masses count half. It is periodic along x and y; its lower face is in contact and
 //! free to rise, and the upper one has springs to the drive. Units are l, E and the mass of a block.
 
@@ -28,7 +28,7 @@ const NEIGHBOURS: [[isize; 3]; 9] = [
 type Vector = [f64; 3];
 
 struct Spring {
-    /// The blocks that it joins.
+    /// The blocks that the spring joins.
     ends: [usize; 2],
     /// Stiffness over the square of the distance between both in blocks.
     stiffness: f64,
@@ -151,7 +151,7 @@ fn reduction(dimples: &Dimples, weakening: f64) -> f64 {
     const SPEED: f64 = 4e-3;
     const DAMPING: f64 = 0.05;
     let [side, depth] = [dimples.side, dimples.pitch / 4];
-    // Above a quarter of a pitch is a mount that answers the longest wave as the rest of a deep body does.
+    // Above a quarter of a pitch, a mount responds to the longest wave like the rest of a deep body.
     let mount = SHEAR_MODULUS * TAU / dimples.pitch as f64;
     let body = Body::new([side, side, depth + 1], mount);
     let (layer, n) = (body.layer(), body.n());
@@ -197,9 +197,9 @@ fn reduction(dimples: &Dimples, weakening: f64) -> f64 {
     100.0 * (1.0 - largest)
 }
 
-/// A sinusoidal traction on the lower face moves it as in a half-space but for terms of the square of the
-/// block over the wave length, whose known sizes are 1.002, 1.008, 1.032 and 1.116 along and 1.001, 1.003,
-/// 1.013 and 1.045 across for q l = 0.1, 0.2, 0.4 and 0.8.
+/// A sinusoidal traction on the lower face moves it as in a half-space, except for terms of the square of the
+/// block size over the wave length. The known ratios are 1.002, 1.008, 1.032 and 1.116 along and 1.001,
+/// 1.003, 1.013 and 1.045 across for q l = 0.1, 0.2, 0.4 and 0.8.
 #[test]
 fn the_lattice_is_a_half_space_for_long_waves() {
     for (blocks, nominal, [along, across]) in [
@@ -210,7 +210,7 @@ fn the_lattice_is_a_half_space_for_long_waves() {
     ] {
         let q = TAU / f64::from(blocks);
         let row = blocks as usize;
-        // Depth of 1.3 wave lengths: its upper face feels the lower one by exp(-8).
+        // Depth of 1.3 wave lengths: the upper face feels the lower one by exp(-8).
         let body = Body::new([row, 1, 4 * row / 3], SHEAR_MODULUS * q);
         for (axis, known) in [along, across].into_iter().enumerate() {
             let mut loads = vec![[0.0; 3]; body.n()];

@@ -1,15 +1,15 @@
-//! The size from which on slip runs away, in a body on a rigid plane.
+//! The size above which slip runs away, in a body on a rigid plane.
 
 use slipfront::Sheet;
 use slipfront_case::case::Case;
 
 use crate::response::{bare, of_three_sheets, unit_of_stiffness};
 
-/// Blocks of the longest wave length of the stack.
+/// Number of blocks of the longest wave length of the stack.
 const LONGEST: usize = 512;
 
-/// Sheets in a row of blocks that are alike across it, in units of the lowest one: a strip of the lowest
-/// sheet slides, in a periodic row whose other sheets are free.
+/// Sheets as a periodic row of blocks, uniform across the row, in units of the lowest sheet: a strip of the
+/// lowest sheet slides, and the other sheets are free.
 struct Strip {
     sliding: usize,
     row: usize,
@@ -79,7 +79,7 @@ impl Strip {
         let mut shape = vec![0.0; self.sliding + self.upper.len() * self.row];
         shape[..self.sliding].fill(1.0);
         let mut stiffness = 0.0;
-        // The error falls by the square of the ratio of two eigenvalues, some 5, in every turn.
+        // The error falls by the square of the ratio of two eigenvalues, about 5, in every iteration.
         for _ in 0..8 {
             let slip = self.displacements(&shape);
             let size = dot(&slip[..self.sliding], &slip[..self.sliding]).sqrt();
@@ -96,13 +96,13 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Slip runs away in a strip of the width L where weakening is 2.316 G/((1 - nu) L) for slip along the width,
-/// and 2.316 G/L for slip across it: twice what K. Uenishi and J. R. Rice (2003) found for two elastic
-/// bodies. Returns the weakening of a stack over that, along and across, for a strip that is the longest wave
-/// length over `part`.
+/// Slip runs away in a strip of width L when the weakening is 2.316 G/((1 - nu) L) for slip along the width,
+/// and 2.316 G/L for slip across it: twice the value of K. Uenishi and J. R. Rice (2003) for two elastic
+/// bodies. Returns the weakening of a stack over this value, along and across, for a strip with a width of
+/// the longest wave length over `part`.
 fn weakening(case: &Case, poisson: f64, part: usize) -> [f64; 2] {
     let sliding = LONGEST / part;
-    // The strip ends at the middle of the blocks that are held beside it.
+    // The strip ends at the middle of the stuck blocks next to it.
     let length = (sliding + 1) as f64;
     let springs = case.model.springs();
     [(springs.along(), 1.0 / (1.0 - poisson)), (springs.diagonal, 1.0)].map(|(bond, body)| {
@@ -121,16 +121,16 @@ fn mean([along, across]: [f64; 2]) -> f64 {
     (along * across).sqrt()
 }
 
-/// A stack of two sheets holds more than a body, by 13 to 15 % along and 2 to 5 % across, since its sheets
-/// are made a little stiffer along; and in the geometric mean of both by 8 to 9 %, since a strip also has
-/// waves that are longer than those of the fit, which meet the mount.
+/// A stack of two sheets holds more than a body: 13 to 15 % along and 2 to 5 % across, because its sheets are
+/// made a little stiffer along; and 8 to 9 % in the geometric mean of both, because a strip also has waves
+/// that are longer than those of the fit, on which the mount acts.
 ///
-/// A strip of half the longest wave length is held by the mount above all.
+/// A strip of half the longest wave length is held mainly by the mount.
 #[test]
 fn strips_run_away_late() {
     let poisson = 1.0 / 3.0;
     let case = bare(LONGEST, poisson, None);
-    // As measured, to a hundredth, in which strips of other numbers of blocks differ.
+    // Measured values, to a hundredth, by which strips with other numbers of blocks differ.
     for (part, measured) in [(2, [1.20, 1.26]), (4, [1.13, 1.05]), (8, [1.15, 1.02])] {
         let found = weakening(&case, poisson, part);
         println!(
@@ -143,7 +143,7 @@ fn strips_run_away_late() {
     }
 }
 
-/// Three sheets hold a strip as a body does within 5 %, in the mean of both directions.
+/// Three sheets hold a strip like a body within 5 %, in the mean of both directions.
 #[test]
 fn strips_on_three_sheets() {
     let poisson = 0.25;

@@ -29,7 +29,7 @@ fn rows(data: &RunData, case: &Case) -> Vec<EventRow> {
     read_csv(RunFile::of_bytes("events.csv", &table(data, case))).unwrap()
 }
 
-/// Small blocks with a thickness of their own, so that no scale is 1.
+/// Small blocks with a different thickness, so that no scale is 1.
 const UNITS: &str = "slider.block_size = '2 um'\nslider.thickness = '5 um'\nslider.young_modulus = '3 GPa'\n\
                      load.pressure = '50 kPa'\nfriction.mu_static = 0.6\n";
 
@@ -49,7 +49,8 @@ fn numbers_follow_from_the_rows() {
     let moments = || rows.iter().map(|row| row.moment_star);
     assert_eq!(events.moment_star_max, moments().reduce(f64::max));
     assert_eq!(events.moment_star_sum, moments().sum::<f64>());
-    // One block repeats itself but for the steps that its begin and end are rounded to, 0.02 of 45.
+    // The motion of one block is periodic, except that its beginning and end are rounded to time steps: 0.02
+    // of 45.
     let period = (rows.last().unwrap().time_star - rows[0].time_star) / (rows.len() - 1) as f64;
     assert_eq!(events.waiting_time_star, Some(period));
     assert!(events.waiting_time_variation.unwrap() < 0.02 / period);
@@ -84,7 +85,7 @@ fn a_catalogue_is_asked_for() {
     assert!(data.summary.events.is_none() && data.observers.tables(&without.scales).unwrap().is_empty());
     let asked = running::run(&with, 1).unwrap();
     assert!(asked.summary.events.is_some());
-    // Within an event there is one more number of each block.
+    // Within an event, each block has one more number.
     let columns = |case: &Arc<Case>| {
         let mut running = Running::start(case, None, Execution::default());
         let mut found = Vec::new();
@@ -100,8 +101,7 @@ fn a_catalogue_is_asked_for() {
     assert_eq!(plain.len(), 1);
 }
 
-/// Rough, with a cavity: events of few blocks and of many, the last of
-/// which goes on.
+/// A rough surface with a cavity: events of few blocks and of many; the last one is in progress at the end.
 const ROUGH: &str = "slider.blocks = [19, 23]\nslider.omega_star = 0.3\nfriction.sigma_static_star = 0.2\n\
                      drive = { v_star = 0.05, loading = 'held', direction = 25 }\n\
                      time = { step = 0.2, duration_star = 55, kinetic_from_star = 54 }\n\
@@ -146,8 +146,8 @@ fn until_end(running: &mut Running) -> StopReason {
     }
 }
 
-/// A run that is stopped every so many steps, within events and between them, and goes on from what was
-/// written has the same catalogue.
+/// A run that is stopped at regular steps, within events and between them, and resumed from its saved state
+/// has the same catalogue.
 #[test]
 fn a_catalogue_goes_on_where_it_was_stopped() {
     let case = parsed(ROUGH);
@@ -199,8 +199,9 @@ fn a_train_of_blocks_slips_in_events_of_all_sizes() {
     };
     let [one, some, all] = [1..=1, 2..=199, 200..=200].map(of_blocks);
     assert!(one > some && some > 10 * all && all > 3, "{one} {some} {all}");
-    // A block that slips alone goes by about twice the fall of its force over its springs, 0.02/1.5; of the
-    // train each goes by half of its load over its drive spring, 0.5/0.0075.
+    // A block that slips alone moves by about twice its force drop over the stiffness of its springs,
+    // 0.02/1.5; in a slip of the whole train, each block moves by half of its load over the stiffness of its
+    // drive spring, 0.5/0.0075.
     let moments: Vec<f64> = rows.iter().map(|row| row.moment_star).collect();
     let least = moments.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(data.summary.events.unwrap().moment_star_max > Some(1e5 * least));

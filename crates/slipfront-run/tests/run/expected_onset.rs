@@ -15,9 +15,9 @@ fn paths(texture: &str, redistribute: bool, drive: &str) -> ([f64; 2], f64) {
     (case.expected.onset_star.map(|star| star * v_star), found * v_star)
 }
 
-/// Sparse contacts are pulled by the blocks around them: without redistribution of their load they slip up to
-/// five times as early as blocks that bear it alone. A front that sets out before the rest takes 15 % at most
-/// from the earlier bound.
+/// Sparse contacts are pulled by the blocks around them: without redistribution of their load, they slip up
+/// to five times as early as blocks that carry it alone. A front that starts early lowers the earlier bound
+/// by at most 15 %.
 #[test]
 fn the_onset_of_sparse_contacts_is_expected_where_it_is_found() {
     const PILLARS: &str = "{ shape = 'cavity', lambda = '1.5 um', pitch = '8 um', invert = true }";
@@ -43,8 +43,8 @@ fn the_onset_of_sparse_contacts_is_expected_where_it_is_found() {
     );
 }
 
-/// A line of contacts whose load is all that the slider bears loses half of it when it slips: that is a
-/// transition, with a front, however small its share of the load is.
+/// A line of contacts that carries the only load of the slider loses half of its friction when it slips. This
+/// is a transition with a front, however small the line's share of the load is.
 #[test]
 fn a_line_of_contacts_has_a_transition() {
     let text = "slider.blocks = [40, 40]\nload.redistribute = false\ndrive.v_star = 0.003\n\

@@ -31,7 +31,7 @@ fn is_textured(row: usize, column: usize) -> bool {
     (row + column).is_multiple_of(3)
 }
 
-/// NaN in places.
+/// Time of first slip, with NaN in some places.
 fn first_slip(row: usize, column: usize) -> f64 {
     match (row + 2 * column) % 5 {
         0 => f64::NAN,
@@ -46,7 +46,7 @@ fn array(instant: usize, field: usize) -> usize {
 
 const FIELDS: [Field; 2] = [Field::ContactStress, Field::Traction];
 
-/// A lattice of known values, some rows of which are written.
+/// A lattice of known values; some of its rows are written.
 struct ExpectedFields {
     nx: usize,
     ny: usize,
@@ -63,7 +63,7 @@ fn small() -> ExpectedFields {
 }
 
 /// A field of floats takes more than 2 GiB, an array of doubles more than 4 GiB, and the number of flags is
-/// odd. Rows in the middle and at the end lie behind both limits; the others are holes.
+/// odd. Rows in the middle and at the end lie beyond both limits; the others are holes.
 #[cfg(unix)]
 fn large() -> ExpectedFields {
     let (nx, ny) = (30_001, 17_999);
@@ -90,7 +90,7 @@ impl ExpectedFields {
         })
     }
 
-    /// Writes the file as processes do that hold a range of rows each; the first of them creates it.
+    /// Writes the file like processes that each hold a range of rows; the first one creates it.
     fn write(&self, path: &Path) {
         let mut output = File::create(path).unwrap();
         for (process, rows) in self.written.iter().enumerate() {
@@ -208,14 +208,14 @@ fn files_with_64_bit_data_of_another_program_are_read() {
     assert!(whole.starts_with(b"CDF\x05"));
     let folder = tempfile::tempdir().unwrap();
     for length in 0..whole.len() {
-        // A name of its own each: some file systems wait for the disk when a file is replaced.
+        // A new name each time: some file systems wait for the disk when a file is replaced.
         let path = folder.path().join(format!("{length}.nc"));
         fs::write(&path, &whole[..length]).unwrap();
         assert!(read_fields(&path).is_err(), "cut after {length} bytes");
     }
 }
 
-// On other systems a file has holes only if it is asked for them.
+// On other systems, a file has holes only on request.
 #[cfg(unix)]
 #[test]
 fn a_file_of_more_than_4_gib_is_read_back() {
@@ -237,7 +237,7 @@ fn a_file_of_more_than_4_gib_is_read_back() {
     for rows in &known.written {
         assert_known(&path, &known, rows.clone());
     }
-    // A row that nobody wrote.
+    // A row that no process wrote.
     let hole = read_rows(&path, 1..2).unwrap();
     assert_eq!(hole.mu_kinetic, vec![0.0; known.nx]);
 }

@@ -1,4 +1,4 @@
-//! Every case under `cases/` loads, runs, and gives the numbers pinned in `pinned.toml` beside this file.
+//! Every case under `cases/` loads, runs, and gives the numbers pinned in `pinned.toml` next to this file.
 //!
 //! A new case fails until its pin is added: the failure prints the lines to add.
 
@@ -15,13 +15,14 @@ use slipfront_run::summary::Summary;
 /// Relative deviation that is accepted.
 ///
 /// A run gives the same bits every time and on every machine: the order of all sums is fixed, and no result
-/// depends on the system's mathematical library. So nothing has to be let pass today; 1e-9 leaves room for
-/// another order of summation, and is far below what any change of physics, scheme or random numbers does.
+/// depends on the system's mathematical library. So no deviation has to be accepted today; 1e-9 leaves room
+/// for another order of summation, and is far below the effect of any change of physics, scheme or random
+/// numbers.
 ///
-/// After the onset the motion is chaotic, and a change of rounding comes back as a change of kinetic friction
-/// by its statistical scatter, a few percent. It is pinned as tightly all the same, because rounding does not
-/// change by itself: whoever reorders a sum on purpose, and sees all pins hold but those of kinetic friction,
-/// may renew these.
+/// After the onset the motion is chaotic, and a change of rounding changes kinetic friction by its
+/// statistical scatter, a few percent. Kinetic friction has the same tolerance nevertheless, because rounding
+/// does not change by itself. After a sum was reordered on purpose, the pins of kinetic friction may be
+/// renewed if all other pins hold.
 const TOLERANCE: f64 = 1e-9;
 
 /// Folders of other tests, and of files that are not single cases.
@@ -51,7 +52,7 @@ impl Pin {
         }
     }
 
-    /// The pin as it stands in `pinned.toml`.
+    /// The pin as written in `pinned.toml`.
     fn lines(&self, name: &str) -> String {
         let kinetic = self.kinetic_friction_star;
         let kinetic = kinetic.map_or(String::new(), |mu| format!("kinetic_friction_star = {mu:?}\n"));
@@ -71,7 +72,7 @@ impl Pin {
                 (Some(pinned), Some(found)) => close(pinned, found),
                 (pinned, found) => pinned == found,
             }
-            // A count of blocks.
+            // Exact, because this is a count of blocks.
             && self.texture_percent == found.texture_percent
     }
 }

@@ -14,8 +14,8 @@ fn case(size: &str, density: f64, pressure: f64) -> Case {
     Case::parse(&text, "rigid", "", &[]).unwrap()
 }
 
-/// Slip begins when the spring bears mu_s times the weight, at t = mu_s W/(k V), and nothing depends on the
-/// size that is given with an equal mass and weight.
+/// Slip begins when the spring bears mu_s times the weight, at t = mu_s W/(k V), and the size has no effect
+/// at equal mass and weight.
 #[test]
 fn its_size_has_no_effect() {
     let (mass, weight) = (30.7e-3, 0.301);

@@ -36,7 +36,7 @@ fn a_speed_has_the_numbers_of_its_formulas() {
     assert!(near(without.drag_share, 0.75_f64.sqrt() * 0.1 * 0.03 / 0.1));
 }
 
-/// No other speed takes the place of one that is part of the physics.
+/// No other speed is proposed if the speed is part of the physics.
 #[test]
 fn a_speed_that_matters_has_no_others() {
     for change in [
