@@ -1,11 +1,10 @@
-//! Makes the runs of a calibration on a device, and on the CPU those that a device does not compute.
+//! Makes the runs of a calibration on a device.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use slipfront::device::{Device, DeviceError};
 use slipfront_run::device_curves::{CurveCase, device_curves};
-use slipfront_run::device_runs::refusal;
 use slipfront_study::TrainingError;
 
 use crate::set_up::{Curves, SetUp};
@@ -24,8 +23,7 @@ pub(crate) fn curves_on_device(
     device: &dyn Device,
     stop: &AtomicBool,
 ) -> Result<Vec<Made>, DeviceError> {
-    let ends = || stop.load(Ordering::Relaxed);
-    let cases = |&(shares, seed): &(&[f64], u64)| -> Result<Vec<CurveCase>, TrainingError> {
+    let cases_of = |&(shares, seed): &(&[f64], u64)| -> Result<Vec<CurveCase>, TrainingError> {
         let conditions = set_up.conditions.iter();
         let cases = conditions.map(|conditions| {
             Ok(CurveCase {
@@ -36,38 +34,17 @@ pub(crate) fn curves_on_device(
         });
         cases.collect()
     };
-    let cases: Vec<Result<Vec<CurveCase>, TrainingError>> = points.par_iter().map(cases).collect();
-    let (on_device, on_cpu): (Vec<&CurveCase>, Vec<&CurveCase>) = cases
-        .iter()
-        .flatten()
-        .flatten()
-        .partition(|one| refusal(&one.case, device).is_none());
-    let (on_device, on_cpu) = rayon::join(
-        || device_curves(&on_device, device, &ends),
-        || -> Vec<_> {
-            let runs = on_cpu.par_iter().with_max_len(1);
-            runs.map(|one| one.curve_unless(&ends)).collect()
-        },
-    );
-    let (mut on_device, mut on_cpu) = (on_device?.into_iter(), on_cpu.into_iter());
+    let cases: Vec<Result<Vec<CurveCase>, TrainingError>> = points.par_iter().map(cases_of).collect();
+    let valid: Vec<&CurveCase> = cases.iter().flatten().flatten().collect();
+    let mut runs = device_curves(&valid, device, &|| stop.load(Ordering::Relaxed))?.into_iter();
     let made = cases.into_iter().zip(points).map(|(cases, &(shares, _))| {
-        let mut curves = Some(Vec::new());
-        let cases = cases?;
-        // Every run is taken from its place, also behind a run with an error.
-        let runs = cases.iter().map(|one| match refusal(&one.case, device) {
-            None => on_device.next().flatten(),
-            Some(_) => on_cpu.next().flatten(),
-        });
-        for (record, run) in runs.collect::<Vec<_>>().into_iter().enumerate() {
-            curves = match (curves, run) {
-                (Some(mut curves), Some(run)) => {
-                    curves.push(set_up.recorded(shares, record, run)?);
-                    Some(curves)
-                }
-                _ => None,
-            };
-        }
-        Ok(curves)
+        let runs = runs.by_ref().take(cases?.len()).enumerate();
+        let curves =
+            runs.map(|(record, run)| run.map(|run| set_up.recorded(shares, record, run)).transpose());
+        // All runs of the point are taken before the first error counts.
+        let curves: Vec<Result<Option<Vec<f64>>, TrainingError>> = curves.collect();
+        let curves: Vec<Option<Vec<f64>>> = curves.into_iter().collect::<Result<_, _>>()?;
+        Ok(curves.into_iter().collect())
     });
     Ok(made.collect())
 }

@@ -194,6 +194,8 @@ export interface Elements {
   calibrate: HTMLDialogElement;
   'calibrate-form': HTMLFormElement;
   'calibrate-noise': HTMLInputElement;
+  'calibrate-from': HTMLInputElement;
+  'calibrate-to': HTMLInputElement;
   'calibrate-runs': HTMLInputElement;
   'calibrate-start': HTMLButtonElement;
   calibrated: HTMLDialogElement;

@@ -32,13 +32,11 @@ impl CurveCase {
 }
 
 /// Runs cases on a device, and returns their curves in the order of the cases, with the bits of
-/// [`run_curve_unless`]; none of a run that was given up because `ends` returned true.
+/// [`run_curve_unless`]; none of a run that was given up because `ends` returned true. Cases that the device
+/// does not compute run on the CPU.
 ///
 /// # Errors
 /// When the device fails.
-///
-/// # Panics
-/// If a case is one that a device [refuses](crate::device_runs::refusal).
 pub fn device_curves(
     cases: &[&CurveCase],
     device: &dyn Device,
@@ -105,7 +103,8 @@ mod tests {
     use super::*;
     use crate::device_runs::STEPS_AT_ONCE;
 
-    /// Curves over time and over displacement, of different lengths, and the sentence on a run that diverges.
+    /// Curves over time and over displacement, of different lengths, the sentence on a run that diverges, and
+    /// a case that the device does not compute.
     #[test]
     fn the_curves_are_those_of_the_cpu() {
         let cases = [
@@ -120,6 +119,7 @@ mod tests {
                 Measure::Time,
                 70.0,
             ),
+            ("drive.attach = 'left'", Measure::Time, 30.0),
             (
                 "slider.omega_star = 0\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
                  friction = { r_star = 0, sigma_static_star = 1 }\ntime.step = 0.9",
@@ -147,7 +147,7 @@ mod tests {
         for (one, found) in cases.iter().zip(&found) {
             assert_eq!(*found, one.curve_unless(&|| false));
         }
-        assert!(found[2].as_ref().unwrap().is_ok() && found[3].as_ref().unwrap().is_err());
+        assert!(found[2].as_ref().unwrap().is_ok() && found[4].as_ref().unwrap().is_err());
         let given_up = device_curves(&cases.each_ref(), &FusedDevice, &|| true).unwrap();
         assert!(given_up.iter().all(Option::is_none));
     }

@@ -1,5 +1,5 @@
 //! Runs many cases on a [`Device`], which records the totals of their steps, and replays these steps for the
-//! observers of each run.
+//! observers of each run. Cases that the device does not compute run on the CPU meanwhile.
 
 use std::sync::Arc;
 
@@ -26,6 +26,11 @@ pub(crate) trait DeviceRun: Send + Sized {
     /// Case of the run.
     fn case(&self) -> &Case;
 
+    /// Reason for which the device does not make the run; none if it does.
+    fn refusal(&self, device: &dyn Device) -> Option<String> {
+        refusal(self.case(), device)
+    }
+
     /// Rule that ends the run.
     fn stop(&self) -> Stop;
 
@@ -49,7 +54,7 @@ pub(crate) trait DeviceRun: Send + Sized {
 pub(crate) type Outcome<R> = Option<Result<<R as DeviceRun>::Kept, RunError>>;
 
 /// Reason for which a device does not compute the steps of a case; none if it does.
-pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
+pub(crate) fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     let (blocks, most) = (case.model.lattice.n_blocks(), device.most_blocks());
     if blocks > most {
         return Some(format!(
@@ -60,15 +65,35 @@ pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
     plain.err().map(|reason| reason.to_string())
 }
 
-/// Makes runs on a device, and returns their outcomes in the order of the runs. A run is given up when `ends`
-/// returns true.
+/// Makes runs on a device, and on rayon's threads those that it refuses, and returns their outcomes in the
+/// order of the runs. A run is given up when `ends` returns true.
 ///
 /// # Errors
 /// When the device fails.
-///
-/// # Panics
-/// If a case is one that a device [refuses](refusal).
 pub(crate) fn make_runs<R: DeviceRun>(
+    runs: Vec<R>,
+    device: &dyn Device,
+    ends: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Outcome<R>>, DeviceError> {
+    let is_refused: Vec<bool> = runs.iter().map(|run| run.refusal(device).is_some()).collect();
+    let (mut on_cpu, mut on_device) = (Vec::new(), Vec::new());
+    for (run, is_refused) in runs.into_iter().zip(&is_refused) {
+        if *is_refused { &mut on_cpu } else { &mut on_device }.push(run);
+    }
+    let (on_device, on_cpu) = join(
+        || make_on_device(on_device, device, ends),
+        || -> Vec<Outcome<R>> { on_cpu.into_par_iter().map(|run| run.on_cpu(ends)).collect() },
+    );
+    let (mut on_device, mut on_cpu) = (on_device?.into_iter(), on_cpu.into_iter());
+    let outcomes = is_refused.into_iter().filter_map(|is_refused| match is_refused {
+        true => on_cpu.next(),
+        false => on_device.next(),
+    });
+    Ok(outcomes.collect())
+}
+
+/// Makes runs that a device does not refuse.
+fn make_on_device<R: DeviceRun>(
     runs: Vec<R>,
     device: &dyn Device,
     ends: &(dyn Fn() -> bool + Sync),

@@ -1,5 +1,5 @@
 //! Runs many cases on a [`Device`] and keeps only their summaries, as
-//! [`run_summary`](crate::run_summary::run_summary) does of one on the CPU.
+//! [`run_summary`](crate::run_summary::run_summary) does for one case on the CPU.
 
 use std::sync::Arc;
 
@@ -8,40 +8,24 @@ use slipfront::observe::{Instants, Scheduled};
 use slipfront::{RunError, Simulation, Stop, StopReason};
 use slipfront_case::case::Case;
 
-use crate::device_runs::{self, DeviceRun, Outcome, make_runs};
+use crate::device_runs::{DeviceRun, Outcome, make_runs, refusal};
 use crate::run_summary::{run_summary_unless, summary};
 use crate::running::instants_of;
 use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
 
-/// Reason for which the summary of a case is not found by a device; none if it is.
-pub fn refusal(case: &Case, device: &dyn Device) -> Option<String> {
-    if case.file.output.events {
-        return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
-    }
-    device_runs::refusal(case, device)
-}
-
 /// Runs cases up to the ends that their `time.stop` set, and returns the numbers of their `summary.json` in
 /// the order of the cases, with the bits of [`run_summary`](crate::run_summary::run_summary); none of a run
-/// that was given up because `ends` returned true.
+/// that was given up because `ends` returned true. Cases that the device does not compute run on the CPU.
 ///
 /// # Errors
 /// When the device fails.
-///
-/// # Panics
-/// If a case is one that a device [refuses](refusal).
 pub fn device_summaries(
     cases: &[Arc<Case>],
     device: &dyn Device,
     ends: &(dyn Fn() -> bool + Sync),
 ) -> Result<Vec<Option<Result<Summary, RunError>>>, DeviceError> {
-    let runs = cases.iter().map(|case| SummaryRun {
-        case,
-        numbers: SummaryObservers::without_curve(case),
-        instants: instants_of(case, Vec::new()),
-    });
-    make_runs(runs.collect(), device, ends)
+    make_runs(cases.iter().map(SummaryRun::new).collect(), device, ends)
 }
 
 /// A run on a device, with the observers of its numbers.
@@ -51,11 +35,29 @@ struct SummaryRun<'a> {
     instants: Option<Instants>,
 }
 
+impl<'a> SummaryRun<'a> {
+    fn new(case: &'a Arc<Case>) -> Self {
+        Self {
+            case,
+            numbers: SummaryObservers::without_curve(case),
+            instants: instants_of(case, Vec::new()),
+        }
+    }
+}
+
 impl DeviceRun for SummaryRun<'_> {
     type Kept = Summary;
 
     fn case(&self) -> &Case {
         self.case
+    }
+
+    /// Adds the catalogue of events, which is made of blocks, to what a device refuses.
+    fn refusal(&self, device: &dyn Device) -> Option<String> {
+        if self.case.file.output.events {
+            return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
+        }
+        refusal(self.case, device)
     }
 
     fn stop(&self) -> Stop {
@@ -102,7 +104,8 @@ mod tests {
         Arc::new(Case::parse(&text, "case", "", &[]).unwrap())
     }
 
-    /// Cases that end at different steps, more of them than are recorded at once, and one that diverges.
+    /// Cases that end at different steps, more of them than are recorded at once, one that diverges, and some
+    /// that the device does not compute.
     #[test]
     fn the_summaries_are_those_of_the_cpu() {
         let cases: Vec<_> = [
@@ -110,7 +113,9 @@ mod tests {
             "texture = [{ shape = 'cavity', coverage = 10 }]\ntime.stop = 'after_onset'",
             "time.stop = 'after_onset'\ndrive.direction = 40\nfriction.seed = 7",
             "drive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.2 }]\noutput.series = 7",
+            "drive.loading = 'held'\ntime.stop = 'after_onset'",
             "drive.v_star = 0.1\ntime.duration_star = 20",
+            "drive.v_star = 0.1\ntime.duration_star = 20\noutput.events = true",
             "drive.v_star = 0.1\noutput.snapshots = [10, 20]\nslider.edges = 'periodic'",
             "slider.omega_star = 0\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
              friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }",
@@ -146,18 +151,14 @@ mod tests {
                 "constant coefficients",
             ),
         ] {
-            let refused = refusal(&case(text), &FusedDevice).unwrap();
+            let case = case(text);
+            let refused = SummaryRun::new(&case).refusal(&FusedDevice).unwrap();
             assert!(
                 refused.contains(reason) && refused.ends_with("CPU alone"),
                 "{refused}"
             );
         }
-        assert_eq!(
-            refusal(
-                &case("texture = [{ shape = 'groove', coverage = 10 }]"),
-                &FusedDevice
-            ),
-            None
-        );
+        let plain = case("texture = [{ shape = 'groove', coverage = 10 }]");
+        assert_eq!(SummaryRun::new(&plain).refusal(&FusedDevice), None);
     }
 }

@@ -22,7 +22,7 @@ use crate::scheduler::{Scheduler, Task, TaskResult};
 use crate::study_results::{Progress, StudyResults};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::device_summaries::{device_summaries, refusal};
+use slipfront_run::device_summaries::device_summaries;
 use slipfront_run::names::RUNS;
 
 /// Largest number of simultaneous runs.
@@ -93,54 +93,34 @@ impl DeviceRuns<'_> {
     /// Makes several runs at the same time.
     fn make_at_once(&self, tasks: Vec<Task>) -> Vec<TaskResult> {
         let made = tasks.into_par_iter().map(|task| (self.case(&task), task));
-        let (mut cases, mut on_device, mut results) = (Vec::new(), Vec::new(), Vec::new());
-        let mut on_cpu = Vec::new();
+        let (mut cases, mut begun, mut results) = (Vec::new(), Vec::new(), Vec::new());
         for (case, task) in made.collect::<Vec<_>>() {
             match case {
-                Ok(Some(case)) if refusal(&case, self.device).is_none() => {
+                Ok(Some(case)) => {
                     cases.push(case);
-                    on_device.push(task);
+                    begun.push(task);
                 }
-                Ok(Some(_)) => on_cpu.push(task),
                 Ok(None) => results.push(Ok(None)),
                 Err(error) => results.push(Err(error)),
             }
         }
-        let (made_on_cpu, (summaries, seconds)) = rayon::join(
-            || -> Vec<TaskResult> {
-                on_cpu
-                    .into_par_iter()
-                    .map(|task| self.make_on_cpu(task))
-                    .collect()
-            },
-            || {
-                let began = Instant::now();
-                let summaries = device_summaries(&cases, self.device, self.is_stopped);
-                (summaries, began.elapsed().as_secs_f64())
-            },
-        );
-        results.extend(made_on_cpu);
-        match summaries {
-            Ok(summaries) => {
-                let wall_time_s = seconds / cases.len().max(1) as f64;
-                results.extend(
-                    on_device
-                        .into_iter()
-                        .zip(summaries)
-                        .map(|(task, ended)| match ended {
-                            None => Ok(None),
-                            Some(Ok(summary)) => Ok(Some(FinishedRun {
-                                id: task.id,
-                                wall_time_s,
-                                outcome: Outcome::of(summary),
-                            })),
-                            // The CPU repeats a failed run and keeps the files of it.
-                            Some(Err(_)) => self.make_on_cpu(task),
-                        }),
-                );
-            }
-            Err(error) => results.push(Err(error.into())),
-        }
+        let began = Instant::now();
+        let summaries = match device_summaries(&cases, self.device, self.is_stopped) {
+            Ok(summaries) => summaries,
+            Err(error) => return vec![Err(error.into())],
+        };
+        let wall_time_s = began.elapsed().as_secs_f64() / cases.len().max(1) as f64;
+        let ended = begun.into_iter().zip(summaries).map(|(task, ended)| match ended {
+            None => Ok(None),
+            Some(Ok(summary)) => Ok(Some(FinishedRun {
+                id: task.id,
+                wall_time_s,
+                outcome: Outcome::of(summary),
+            })),
+            // A run that failed is repeated, which writes the folder that is kept of it.
+            Some(Err(_)) => self.make_on_cpu(task),
+        });
+        results.extend(ended);
         results
     }
 
