@@ -193,9 +193,9 @@ export interface Elements {
   'read-again': HTMLButtonElement;
   calibrate: HTMLDialogElement;
   'calibrate-form': HTMLFormElement;
-  'calibrate-noise': HTMLInputElement;
   'calibrate-from': HTMLInputElement;
   'calibrate-to': HTMLInputElement;
+  'calibrate-noise': HTMLInputElement;
   'calibrate-runs': HTMLInputElement;
   'calibrate-start': HTMLButtonElement;
   calibrated: HTMLDialogElement;

@@ -13,7 +13,7 @@ import { parse } from '../../web/frames.js';
 import { rowsOf } from '../../web/letters.js';
 import { makeLink, readLink } from '../../web/link.js';
 import { fixed, length, metres, number, quantity, ticks, typed } from '../../web/quantity.js';
-import { alongUnit, inStars, roundedUp, sorted } from '../../web/record.js';
+import { alongUnit, inStars, roundedUp, unitOf } from '../../web/record.js';
 import { center, coverageOf, create, enlarge, handles, inside, kind, move, turn } from '../../web/shapes.js';
 import { endText, rangeOf, unknownsOf } from '../../web/unknowns.js';
 
@@ -247,7 +247,9 @@ test('records stand in t* and mu* of the case, with their shift', () => {
   assert.equal(inStars(record, 0, turned), null);
   assert.ok(inStars({ ...record, of: 'coefficient' }, 0, turned) !== null);
   assert.equal(inStars(path, 0, { ...shown, values: {} }), null);
-  assert.deepEqual(sorted({ along: 'time', of: 'force', x: [2, 1], y: [3, 4] }), { along: 'time', of: 'force', x: [1, 2], y: [4, 3] });
+  // The unit is that of the end farther from 0.
+  assert.deepEqual(unitOf(record), [1, 's']);
+  assert.deepEqual(unitOf({ ...path, x: [-2e-3, 1e-4] }), [1e-3, 'mm']);
 });
 
 test('noise is rounded up to two digits, and is never none', () => {
