@@ -1,21 +1,21 @@
-//! Power of the check of a calibration: records that were changed in one way each, and how many of them are
-//! refused.
+//! Power of the check of a calibration: the share of refused records among records that were changed in one
+//! way.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-calibrate --example calibration_check -- one_block 200 1
 //! ```
 //!
 //! The arguments are the set-up (`one_block`, `lattice` or `rate_and_state`), the number of records of each
-//! kind, and the number of the first record: other numbers are other records. Further arguments name kinds
-//! that count alone, by a part of their name. Records are made apart from the library's instruments: by
-//! filters of this file, and rate and state by an integration apart. Noise is 1 % of the mean.
+//! kind, and the number of the first record: other numbers are other records. Further arguments select kinds
+//! by a part of their name. Records do not use the instruments of the library, but filters of this file, and
+//! rate and state is integrated separately. Noise is 1 % of the mean.
 //!
-//! Prints for every kind: the share of records that is refused, by either part of the check; the share whose
-//! interval misses some truth by more than its half width; the share of those that is refused; and of the
-//! records that pass, the root mean square of what differs from the closest curve beyond the noise, in units
-//! of the noise, and the share of intervals of each unknown that hold the truth. Records "told" are
-//! calibrated by a file that describes their filter, and have their truth anywhere in the ranges; that of the
-//! others is a tenth of a range away from its ends.
+//! Prints for every kind: the share of refused records, by either part of the check; the share of records
+//! with an interval that misses the truth by more than its half width; the refused share of these; and of the
+//! records that pass, the root mean square of the differences from the closest curve beyond the noise, in
+//! units of the noise, and for each unknown the share of intervals that contain the truth. Calibrations of
+//! kinds that are "described", or described "as" another filter, have this filter in their file, and the
+//! truth is anywhere in the ranges. For other kinds it is at least a tenth of a range away from the ends.
 
 #[path = "support/random.rs"]
 mod random;
@@ -81,8 +81,8 @@ enum Change {
 struct Kind {
     name: &'static str,
     change: Change,
-    /// The instrument of the calibration file, which has none if this is empty.
-    told: &'static str,
+    /// Table `[instrument]` of the calibration file; empty for a file without it.
+    described: &'static str,
 }
 
 /// A kind of records of which the calibration file knows nothing.
@@ -90,7 +90,7 @@ const fn kind(name: &'static str, change: Change) -> Kind {
     Kind {
         name,
         change,
-        told: "",
+        described: "",
     }
 }
 
@@ -135,12 +135,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .filter(|kind| is_wanted(kind.name))
         .collect();
-    let mut told: Vec<&str> = wanted.iter().map(|kind| kind.told).collect();
-    told.sort_unstable();
-    told.dedup();
-    for told in told {
-        let trained = Trained::new(&experiment, told)?;
-        for kind in wanted.iter().filter(|kind| kind.told == told) {
+    let mut described: Vec<&str> = wanted.iter().map(|kind| kind.described).collect();
+    described.sort_unstable();
+    described.dedup();
+    for described in described {
+        let trained = Trained::new(&experiment, described)?;
+        for kind in wanted.iter().filter(|kind| kind.described == described) {
             let judged: Vec<Judged> = (first..first + records)
                 .into_par_iter()
                 .with_max_len(1)
@@ -159,12 +159,12 @@ struct Trained {
 }
 
 impl Trained {
-    fn new(experiment: &Experiment, told: &str) -> Result<Self, Box<dyn Error>> {
+    fn new(experiment: &Experiment, described: &str) -> Result<Self, Box<dyn Error>> {
         let go_on = AtomicBool::new(false);
-        let instrument = if told.is_empty() {
+        let instrument = if described.is_empty() {
             None
         } else {
-            Some(told.parse()?)
+            Some(described.parse()?)
         };
         let set_up = SetUp {
             instrument,
@@ -465,49 +465,49 @@ fn one_block() -> Result<Experiment, Box<dyn Error>> {
         kind("low-pass 10 Hz", low_pass(10.0)),
         kind("mean over 0.1 s", Change::Mean(0.1)),
         Kind {
-            name: "20 Hz, told",
+            name: "20 Hz, described",
             change: low_pass(20.0),
-            told: "filter = 'first_order'\ncutoff = '20 Hz'",
+            described: "filter = 'first_order'\ncutoff = '20 Hz'",
         },
         Kind {
-            name: "20 Hz, half of it told",
+            name: "20 Hz as 10 Hz",
             change: low_pass(20.0),
-            told: "filter = 'first_order'\ncutoff = '10 Hz'",
+            described: "filter = 'first_order'\ncutoff = '10 Hz'",
         },
         Kind {
-            name: "20 Hz, twice of it told",
+            name: "20 Hz as 40 Hz",
             change: low_pass(20.0),
-            told: "filter = 'first_order'\ncutoff = '40 Hz'",
+            described: "filter = 'first_order'\ncutoff = '40 Hz'",
         },
         Kind {
-            name: "10 Hz, told",
+            name: "10 Hz, described",
             change: low_pass(10.0),
-            told: "filter = 'first_order'\ncutoff = '10 Hz'",
+            described: "filter = 'first_order'\ncutoff = '10 Hz'",
         },
         Kind {
-            name: "10 Hz, half of it told",
+            name: "10 Hz as 5 Hz",
             change: low_pass(10.0),
-            told: "filter = 'first_order'\ncutoff = '5 Hz'",
+            described: "filter = 'first_order'\ncutoff = '5 Hz'",
         },
         Kind {
-            name: "10 Hz, twice of it told",
+            name: "10 Hz as 20 Hz",
             change: low_pass(10.0),
-            told: "filter = 'first_order'\ncutoff = '20 Hz'",
+            described: "filter = 'first_order'\ncutoff = '20 Hz'",
         },
         Kind {
-            name: "mean over 0.1 s, told",
+            name: "mean over 0.1 s, described",
             change: Change::Mean(0.1),
-            told: "filter = 'moving_mean'\ntime = '0.1 s'",
+            described: "filter = 'moving_mean'\ntime = '0.1 s'",
         },
         Kind {
-            name: "mean, half of it told",
+            name: "mean over 0.1 s as 0.05 s",
             change: Change::Mean(0.1),
-            told: "filter = 'moving_mean'\ntime = '0.05 s'",
+            described: "filter = 'moving_mean'\ntime = '0.05 s'",
         },
         Kind {
-            name: "mean, twice of it told",
+            name: "mean over 0.1 s as 0.2 s",
             change: Change::Mean(0.1),
-            told: "filter = 'moving_mean'\ntime = '0.2 s'",
+            described: "filter = 'moving_mean'\ntime = '0.2 s'",
         },
         kind(
             "ageing",
