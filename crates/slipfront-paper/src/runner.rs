@@ -41,10 +41,19 @@ impl FigureRunner<'_> {
         Ok(Case::parse(&text, file, "", &overrides)?)
     }
 
-    /// A case on each of the random surfaces: five, or two in the reduced version.
+    /// Number of random surfaces: five, or two in the reduced version.
+    fn surfaces(&self) -> u64 {
+        if self.reduced { 2 } else { 5 }
+    }
+
+    /// Note on the bands of a picture of means over the random surfaces.
+    pub(super) fn note_on_bands(&self) -> String {
+        format!("95 % interval of the mean, n = {}", self.surfaces())
+    }
+
+    /// A case on each of the random surfaces.
     pub(super) fn case_on_surfaces(&self, file: &str) -> Result<Vec<Case>, PaperError> {
-        let surfaces: u64 = if self.reduced { 2 } else { 5 };
-        (1..=surfaces)
+        (1..=self.surfaces())
             .map(|seed| self.case(file, &[&format!("friction.seed={seed}")]))
             .collect()
     }

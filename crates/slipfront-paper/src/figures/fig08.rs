@@ -20,6 +20,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             x_title: "drive speed V*".to_owned(),
             y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
             curves: vec![measured("", &speeds, &numbers)],
+            note: runner.note_on_bands(),
             ..Responses::default()
         }),
     );

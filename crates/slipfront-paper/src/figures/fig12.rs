@@ -37,6 +37,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
             legend_title: "V*".to_owned(),
             curves,
+            note: runner.note_on_bands(),
             ..Responses::default()
         }),
     );

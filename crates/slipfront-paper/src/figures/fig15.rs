@@ -31,6 +31,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             y_title: "reduction of \u{3bc}\u{209b}* (%)".to_owned(),
             legend_title: "\u{3c3}\u{209b}*".to_owned(),
             curves: curves.collect(),
+            note: runner.note_on_bands(),
             ..Responses::default()
         }),
     );

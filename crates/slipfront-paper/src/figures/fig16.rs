@@ -36,6 +36,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
                 level(ACROSS, "groove across"),
                 level(ALONG, "groove along"),
             ],
+            note: runner.note_on_bands(),
             ..Responses::default()
         }),
     );
