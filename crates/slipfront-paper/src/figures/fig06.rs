@@ -35,7 +35,6 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
                 measured("n\u{209b}*", &speeds, &steps),
                 Response::of_formula("(15/4)/V*\u{b2}", &speeds, |v| 3.75 / (v * v)),
             ],
-            note: runner.note_on_bands(),
             ..Responses::default()
         }),
     );
