@@ -19,8 +19,11 @@ use crate::set_up::{Curves, SetUp};
 /// Number of runs after which the journal and the progress are updated.
 const AT_ONCE: usize = 32;
 
-/// Number of runs that a device makes before they are kept and shown.
+/// Largest number of runs that a device makes before they are kept and shown.
 const AT_ONCE_ON_DEVICE: usize = 1024;
+
+/// Memory in bytes for the curves of the runs that a device makes at once.
+const CURVES_OF_DEVICE: f64 = 1e9;
 
 /// A line of the journal.
 #[derive(Serialize, Deserialize)]
@@ -77,6 +80,12 @@ impl<'a> Runs<'a> {
             point: self.points[number].clone(),
             surface: self.first_surface + number as u64,
         }
+    }
+
+    /// Number of runs that a device makes at once, so that their curves fit in memory.
+    fn at_once_on_device(&self) -> Result<usize, StudyError> {
+        let bytes = self.set_up.bytes_of_run(0)? * self.set_up.conditions.len() as f64;
+        Ok(((CURVES_OF_DEVICE / bytes) as usize).clamp(AT_ONCE, AT_ONCE_ON_DEVICE))
     }
 
     /// Point of the ranges and surface of the run of this number.
@@ -285,7 +294,10 @@ impl<'a> RunMaker<'a> {
         let stop = self.stop;
         // The runs of a search are too few for a device.
         let device = self.device.filter(|_| stage != CalibrationStage::Closest);
-        let at_once = device.map_or(AT_ONCE, |_| AT_ONCE_ON_DEVICE);
+        let at_once = match device {
+            Some(_) => runs.at_once_on_device()?,
+            None => AT_ONCE,
+        };
         for some in missing.chunks(at_once) {
             let made = runs.curves(some, device, stop)?;
             let made: Option<Vec<Curves>> = made.into_iter().collect::<Result<_, _>>()?;

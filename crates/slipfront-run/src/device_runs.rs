@@ -104,7 +104,7 @@ fn make_on_device<R: DeviceRun>(
     let at_once = (MEMORY / bytes).max(1);
     let mut outcomes = Vec::with_capacity(runs.len());
     let mut runs = runs.into_iter();
-    while outcomes.len() < outcomes.capacity() {
+    while runs.len() > 0 {
         outcomes.extend(make_at_once(runs.by_ref().take(at_once).collect(), device, ends)?);
     }
     Ok(outcomes)
