@@ -10,12 +10,13 @@
 //! by a part of their name. Records do not use the instruments of the library, but filters of this file, and
 //! rate and state is integrated separately. Noise is 1 % of the mean.
 //!
-//! Prints for every kind: the share of refused records, by either part of the check; the share of records
-//! with an interval that misses the truth by more than its half width; the refused share of these; and of the
-//! records that pass, the root mean square of the differences from the closest curve beyond the noise, in
-//! units of the noise, and for each unknown the share of intervals that contain the truth. Calibrations of
-//! kinds that are "described", or described "as" another filter, have this filter in their file, and the
-//! truth is anywhere in the ranges. For other kinds it is at least a tenth of a range away from the ends.
+//! Prints for every kind: the root mean square of what a filter changes in a record, over the noise; the
+//! share of refused records, by either part of the check; the share of records with an interval that misses
+//! the truth by more than its half width; the refused share of these; and of the records that pass, the root
+//! mean square of the differences from the closest curve beyond the noise, in units of the noise, and for
+//! each unknown the share of intervals that contain the truth. Calibrations of kinds that are "described", or
+//! described "as" another filter, have this filter in their file, and the truth is anywhere in the ranges.
+//! For other kinds it is at least a tenth of a range away from the ends.
 
 #[path = "support/random.rs"]
 mod random;
@@ -126,7 +127,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         unknowns.join(", ")
     );
     println!(
-        "kind                          refused compared  closest   misses   caught  beyond   held, of those that pass, %  differs most in"
+        "kind                         filter  refused compared  closest   misses   caught  beyond   held, of those that pass, %  differs most in"
     );
     let is_wanted =
         |kind: &str| kinds.is_empty() || kinds.iter().any(|wanted| kind.contains(wanted.as_str()));
@@ -191,6 +192,8 @@ struct Judged {
     misses: bool,
     /// Ratio of the differences from the closest curve to the noise, where that was looked for.
     noise_ratio: Option<f64>,
+    /// Root mean square of what a filter changes, over the standard deviation of the noise.
+    filtered_by: f64,
     /// Whether the interval of every unknown holds the truth.
     held: Vec<bool>,
     differs: &'static str,
@@ -204,7 +207,7 @@ impl Trained {
         // Intervals promise their share over the whole ranges. What a change does to them is clearer inside.
         let margin = if set_up.instrument.is_some() { 0.0 } else { 0.1 };
         let truth: Vec<f64> = truth.iter().map(|u| margin + (1.0 - 2.0 * margin) * u).collect();
-        let measured = record_of(experiment, change, &truth, record)?;
+        let (measured, filtered_by) = record_of(experiment, change, &truth, record)?;
         let clipped = Clipped::of(0, &measured);
         let values = [set_up.conditions[0].grid.record(&measured)];
         let estimate = calibration.estimate(&values);
@@ -243,6 +246,7 @@ impl Trained {
             by_closest,
             misses: misses.contains(&true),
             noise_ratio: closest.map(|closest| closest.noise_ratio),
+            filtered_by,
             held,
             differs: comparison.differs_in[0].0,
         })
@@ -270,8 +274,10 @@ fn report(kind: &str, judged: &[Judged]) {
         *counts.entry(one.differs).or_default() += 1;
     }
     let most = counts.into_iter().max_by_key(|(name, count)| (*count, *name));
+    let square = |one: &Judged| one.filtered_by * one.filtered_by;
+    let filtered_by = (judged.iter().map(square).sum::<f64>() / judged.len() as f64).sqrt();
     println!(
-        "{kind:28} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:>7}   {held:28} {}",
+        "{kind:28} {filtered_by:6.2} {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:6.1} % {:>7}   {held:28} {}",
         share(&all, &|one| one.is_refused),
         share(&all, &|one| one.by_comparison),
         share(&all, &|one| one.by_closest),
@@ -282,13 +288,14 @@ fn report(kind: &str, judged: &[Judged]) {
     );
 }
 
-/// A record of this truth, changed, with noise.
+/// A record of this truth, changed, with noise; and the root mean square of what a filter changes, over the
+/// standard deviation of the noise.
 fn record_of(
     experiment: &Experiment,
     change: Change,
     truth: &[f64],
     record: usize,
-) -> Result<MeasuredRecord, String> {
+) -> Result<(MeasuredRecord, f64), String> {
     let (times, fine) = if experiment.is_rate_and_state {
         let fine = friction(truth, STEPS, matches!(change, Change::SlipLaw));
         let dt = experiment.spacing / STEPS as f64;
@@ -300,18 +307,24 @@ fn record_of(
     let filtered = match change {
         Change::Lag(constant) => lagged(&fine, dt, constant),
         Change::Mean(width) => running_mean(&fine, (width / dt).round() as usize),
-        _ => fine,
-    };
-    let at = |time: f64| {
-        let place = (time / dt).min((filtered.len() - 1) as f64);
-        let before = (place as usize).min(filtered.len() - 2);
-        filtered[before] + (place - before as f64) * (filtered[before + 1] - filtered[before])
+        _ => fine.clone(),
     };
     let x: Vec<f64> = (0..experiment.count)
         .map(|k| k as f64 * experiment.spacing)
         .collect();
-    let plain: Vec<f64> = x.iter().map(|x| at(*x)).collect();
+    let at_values = |curve: &[f64]| -> Vec<f64> {
+        let at = |time: &f64| {
+            let place = (time / dt).min((curve.len() - 1) as f64);
+            let before = (place as usize).min(curve.len() - 2);
+            curve[before] + (place - before as f64) * (curve[before + 1] - curve[before])
+        };
+        x.iter().map(at).collect()
+    };
+    let plain = at_values(&filtered);
     let mean = plain.iter().sum::<f64>() / plain.len() as f64;
+    let changes = plain.iter().zip(at_values(&fine));
+    let squares: f64 = changes.map(|(after, before)| (after - before).powi(2)).sum();
+    let filtered_by = (squares / plain.len() as f64).sqrt() / (NOISE * mean);
     let factor = if let Change::Noise(factor) = change {
         factor
     } else {
@@ -342,7 +355,7 @@ fn record_of(
         let bound = sorted[(quantile * last) as usize];
         y.iter_mut().for_each(|y| *y = y.min(bound));
     }
-    Ok(measured(x, y))
+    Ok((measured(x, y), filtered_by))
 }
 
 /// Times and friction of every step of a run of this truth.
