@@ -126,6 +126,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         experiment.runs,
         unknowns.join(", ")
     );
+    if name == "lattice" {
+        println!(
+            "curves of two surfaces differ by {:.1} times the noise",
+            scatter(&experiment)?
+        );
+    }
     println!(
         "kind                         filter  refused compared  closest   misses   caught  beyond   held, of those that pass, %  differs most in"
     );
@@ -251,6 +257,21 @@ impl Trained {
             differs: comparison.differs_in[0].0,
         })
     }
+}
+
+/// Root mean square of the difference of the curves of two surfaces with equal unknowns, over the noise.
+fn scatter(experiment: &Experiment) -> Result<f64, String> {
+    const PAIRS: usize = 50;
+    let squares = (0..PAIRS).into_par_iter().map(|pair| {
+        let truth = uniform(pair, experiment.set_up.unknowns.len());
+        let curve = |surface| run(experiment, Change::Nothing, &truth, surface);
+        let ((_, one), (_, other)) = (curve(2 * pair)?, curve(2 * pair + 1)?);
+        let mean = one.iter().sum::<f64>() / one.len() as f64;
+        let squares: f64 = one.iter().zip(&other).map(|(a, b)| (a - b).powi(2)).sum();
+        Ok(squares / one.len() as f64 / (NOISE * mean).powi(2))
+    });
+    let squares: Vec<f64> = squares.collect::<Result<_, String>>()?;
+    Ok((squares.iter().sum::<f64>() / PAIRS as f64).sqrt())
 }
 
 fn report(kind: &str, judged: &[Judged]) {
