@@ -226,11 +226,11 @@ test('two unknowns of a record are found, with their intervals; using them is on
   const last = x[x.length - 1] * 0.9;
   const of = { ns: 1e-9, '\u00b5s': 1e-6, ms: 1e-3, s: 1 }[unit];
   await lab.find('#calibrate-to').fill(String(Number((last / of).toPrecision(6))));
-  const told = new Set();
+  const stages = new Set();
   const hear = lab.hear.bind(lab);
   lab.hear = (payload) => {
     hear(payload);
-    if (lab.last.calibrating) told.add(lab.last.calibrating.stage);
+    if (lab.last.calibrating) stages.add(lab.last.calibrating.stage);
   };
   await lab.after(() => lab.press('calibrate-start'), 'calibrating');
   // The page is there meanwhile.
@@ -238,7 +238,9 @@ test('two unknowns of a record are found, with their intervals; using them is on
   await until(async () => /\d+ of \d+ runs$/.test(await lab.text('calibrating-state')), 'how far it is');
   const { results, outcome } = await until(() => lab.last.calibrated, 'the end of the calibration');
   assert.equal(outcome, 'done');
-  assert.ok(told.has('training') && told.has('prediction'), [...told].join(' '));
+  // A stage that is shorter than the time between two reports is in none of them: here that may be any but the first.
+  const [first, ...later] = stages;
+  assert.ok(first === 'training' && later.length > 0, [...stages].join(' '));
   assert.equal(results.is_refused, false, results.report);
   assert.deepEqual(results.unknowns.map(({ key }) => key).sort(), Object.keys(TRUTH).sort());
   for (const { key, interval: [low, high], median } of results.unknowns) {
