@@ -80,7 +80,7 @@ fn send(signal: &str, target: Target, child: &Child) {
 /// All ranks produce the same usage, help and refusals, and only one prints them.
 #[rstest]
 #[case("run --nonsense", 2, "unexpected argument '--nonsense'")]
-#[case("--help", 0, "byte for byte")]
+#[case("--help", 0, "bit-identical")]
 #[case("licences", 0, "Copyright (c) The slipfront developers")]
 #[case(
     "run --set slider.blocks=[40,2] -o results",
