@@ -2,15 +2,23 @@
 
 use std::sync::Arc;
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use slipfront::device::{Device, DeviceError};
 
 use crate::failure::Failure;
 use crate::print_stderr::print_notes;
 
+/// Option of commands with many runs.
+#[derive(Args)]
+pub(crate) struct DeviceArgs {
+    /// Device for the runs; results do not depend on it
+    #[arg(long, value_name = "DEVICE", value_enum, default_value_t)]
+    device: DeviceChoice,
+}
+
 /// Where runs are computed. Results do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum DeviceChoice {
+enum DeviceChoice {
     /// On the cores of this machine
     #[default]
     Cpu,
@@ -20,11 +28,15 @@ pub(crate) enum DeviceChoice {
     Auto,
 }
 
-impl DeviceChoice {
+impl DeviceArgs {
     /// Opens the device; returns none for the cores of this machine. `refused` says why the device cannot be
     /// used for this work, if it cannot.
-    pub(crate) fn open(self, refused: Option<&str>, quiet: bool) -> Result<Option<Arc<dyn Device>>, Failure> {
-        if self == Self::Cpu {
+    pub(crate) fn open(
+        &self,
+        refused: Option<&str>,
+        quiet: bool,
+    ) -> Result<Option<Arc<dyn Device>>, Failure> {
+        if self.device == DeviceChoice::Cpu {
             return Ok(None);
         }
         let opened = match refused {
@@ -36,7 +48,7 @@ impl DeviceChoice {
                 note(quiet, format!("plain runs are computed on the GPU ({name})"));
                 Ok(Some(device))
             }
-            Err(reason) if self == Self::Auto => {
+            Err(reason) if self.device == DeviceChoice::Auto => {
                 note(quiet, format!("runs are computed on the CPU: {reason}"));
                 Ok(None)
             }

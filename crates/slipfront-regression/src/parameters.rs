@@ -151,7 +151,7 @@ impl<'a> Sample<'a> {
         noise.variances(&self.fit(weights, ridge)?.residuals)
     }
 
-    /// The same weight for all summaries, from the logarithms of this weight and of the ridge.
+    /// Weights of all summaries, which are equal, from the logarithms of this weight and of the ridge.
     fn equal_weights(&self, common: &[f64]) -> Vec<f64> {
         vec![libm::exp(common[0]); self.d()]
     }

@@ -82,7 +82,13 @@ pub(crate) fn make_runs<R: DeviceRun>(
     }
     let (on_device, on_cpu) = join(
         || make_on_device(on_device, device, ends),
-        || -> Vec<Outcome<R>> { on_cpu.into_par_iter().map(|run| run.on_cpu(ends)).collect() },
+        || -> Vec<Outcome<R>> {
+            on_cpu
+                .into_par_iter()
+                .with_max_len(1)
+                .map(|run| run.on_cpu(ends))
+                .collect()
+        },
     );
     let (mut on_device, mut on_cpu) = (on_device?.into_iter(), on_cpu.into_iter());
     let outcomes = is_refused.into_iter().filter_map(|is_refused| match is_refused {

@@ -127,7 +127,7 @@ pub fn unit_force_star(case: &Case) -> Option<f64> {
     FrictionUnit::of(&case.scales, &case.model).force(1.0)
 }
 
-/// Converts what was noted of a run.
+/// Converts the recorded times, paths and friction of a run to SI units.
 pub(crate) fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {
     let scales = &case.scales;
     let times = |mut values: Vec<f64>, unit: f64| {

@@ -110,17 +110,20 @@ impl DeviceRuns<'_> {
             Err(error) => return vec![Err(error.into())],
         };
         let wall_time_s = began.elapsed().as_secs_f64() / cases.len().max(1) as f64;
-        let ended = begun.into_iter().zip(summaries).map(|(task, ended)| match ended {
-            None => Ok(None),
-            Some(Ok(summary)) => Ok(Some(FinishedRun {
-                id: task.id,
-                wall_time_s,
-                outcome: Outcome::of(summary),
-            })),
-            // A run that failed is repeated, which writes the folder that is kept of it.
-            Some(Err(_)) => self.make_on_cpu(task),
-        });
-        results.extend(ended);
+        let ended = begun
+            .into_par_iter()
+            .zip(summaries)
+            .map(|(task, ended)| match ended {
+                None => Ok(None),
+                Some(Ok(summary)) => Ok(Some(FinishedRun {
+                    id: task.id,
+                    wall_time_s,
+                    outcome: Outcome::of(summary),
+                })),
+                // A run that failed is repeated, which writes the folder that is kept of it.
+                Some(Err(_)) => self.make_on_cpu(task),
+            });
+        results.par_extend(ended);
         results
     }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder, SampledRecord};
 use slipfront_study::StudyError;
 
-use crate::device::DeviceChoice;
+use crate::device::DeviceArgs;
 use crate::failure::Failure;
 use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
@@ -35,7 +35,7 @@ pub(crate) struct CalibrateCommand {
     records: Vec<PathBuf>,
     /// Plan a measurement: simulate records and print the expected intervals, also for longer, slower and
     /// faster experiments, and write nothing; given records only supply their times
-    #[arg(long)]
+    #[arg(long, conflicts_with = "device")]
     dry_run: bool,
     /// End of the planned record with its unit, such as "20 s", instead of records
     #[arg(long, value_name = "PLACE", requires = "dry_run", conflicts_with = "records")]
@@ -55,15 +55,8 @@ pub(crate) struct CalibrateCommand {
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Device for the runs; results do not depend on it
-    #[arg(
-        long,
-        value_name = "DEVICE",
-        value_enum,
-        default_value_t,
-        conflicts_with = "dry_run"
-    )]
-    device: DeviceChoice,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Do not print progress and estimates
     #[arg(short, long)]
     quiet: bool,

@@ -9,7 +9,7 @@ use slipfront_study::{CostLimits, StudyFolder};
 
 use super::study::{dry_run, run_all};
 use crate::case_args::CaseArgs;
-use crate::device::DeviceChoice;
+use crate::device::DeviceArgs;
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::ranks::CommandRanks;
@@ -47,15 +47,8 @@ pub(crate) struct ConvergeCommand {
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Device for the runs; results do not depend on it
-    #[arg(
-        long,
-        value_name = "DEVICE",
-        value_enum,
-        default_value_t,
-        conflicts_with = "dry_run"
-    )]
-    device: DeviceChoice,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Refuse to run if all runs together need more memory, in GB
     #[arg(long, value_name = "GB")]
     max_memory: Option<f64>,
@@ -63,7 +56,7 @@ pub(crate) struct ConvergeCommand {
     #[arg(long, value_name = "TIME")]
     max_time: Option<SignedDuration>,
     /// Print the meshes and the estimated time of their runs, without running them
-    #[arg(long)]
+    #[arg(long, conflicts_with = "device")]
     dry_run: bool,
     /// Do not print progress and tables
     #[arg(short, long)]

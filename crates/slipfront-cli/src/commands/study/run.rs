@@ -8,7 +8,7 @@ use slipfront_base::disk::is_same;
 use slipfront_study as study;
 use slipfront_study::{Plan, Progress, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
-use crate::device::DeviceChoice;
+use crate::device::DeviceArgs;
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::print_stderr::print_notes;
@@ -35,9 +35,8 @@ pub(crate) struct StudyRun {
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
-    /// Device for the runs; results do not depend on it
-    #[arg(long, value_name = "DEVICE", value_enum, default_value_t)]
-    device: DeviceChoice,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Do not print progress and tables
     #[arg(short, long)]
     quiet: bool,
