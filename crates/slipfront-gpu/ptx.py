@@ -17,7 +17,7 @@ from pathlib import Path
 
 NVRTC = "nvidia-cuda-nvrtc-cu12==12.8.93"
 OPTIONS = ["--gpu-architecture=compute_70", "--std=c++17", "--fmad=false"]
-KERNELS = Path(__file__).parent / "kernels"
+KERNELS = Path(__file__).resolve().parent / "kernels"
 
 
 def library():

@@ -51,6 +51,8 @@ struct Arrays {
 };
 
 static const u32 MEASUREMENT_INTERVAL = 16;
+// The first slip of a block that has not slipped in contact.
+static const u32 NEVER = 0xffffffffu;
 
 // Formula for the forces of springs.
 enum Springs { SHORT_SERIES, LONG_SERIES, SQUARE_ROOT };
@@ -127,19 +129,39 @@ FN void begin_step(const Lattice& lattice, const double* positions, Bounds& b, S
     s.measures = (number + 1) % MEASUREMENT_INTERVAL == 0 && k + 1 < lattice.steps;
 }
 
-// Sums over all blocks, and maxima.
-struct Totals {
-    Words displacement[2], velocity[2], motion_square, friction_work;
-    Words velocity_squares, displacement_square, lattice_energy;
-    u32 sliding, slipping;
-    double stress_square, speed_square;
-    // Extent of displacements and differences of the ends of springs, see Bounds.
-    double measured[6];
+// Extent of displacements and their differences along springs, see Bounds.
+struct Measured {
+    double largest[6];
 };
 
-FN void take_measured(Bounds& b, const double* measured) {
-    for (int k = 0; k < 4; k++) b.extent[k] = measured[k];
-    for (int k = 0; k < 2; k++) b.difference[k] = measured[4 + k];
+FN Measured nothing_measured() {
+    const double none = -of_bits(0x7ff0000000000000LL);
+    Measured m = {{none, none, none, none, 0.0, 0.0}};
+    return m;
+}
+
+// The last three are needed for energies alone.
+enum Sum { DISPLACEMENT, VELOCITY = 2, MOTION_SQUARE = 4, FRICTION_WORK, VELOCITY_SQUARES, DISPLACEMENT_SQUARE, LATTICE_ENERGY, SUMS };
+
+// Sums over all blocks, and maxima.
+struct Totals {
+    Words sums[SUMS];
+    u32 sliding, slipping;
+    double stress_square, speed_square;
+    Measured measured;
+};
+
+static_assert(sizeof(Step) == 120 && sizeof(Totals) == 216, "the sizes that src/batch.rs has");
+
+FN Totals no_totals() {
+    Totals t = {};
+    t.measured = nothing_measured();
+    return t;
+}
+
+FN void take_measured(Bounds& b, const Measured& m) {
+    for (int k = 0; k < 4; k++) b.extent[k] = m.largest[k];
+    for (int k = 0; k < 2; k++) b.difference[k] = m.largest[4 + k];
 }
 
 // Records a step, and what the next one needs of it.
@@ -149,25 +171,25 @@ FN void finish_step(const Equations& e, Motion& motion, const Step& s, const Tot
     b.speed = sqrt(t.speed_square);
     double differences[2];
     for (int axis = 0; axis < 2; axis++) {
-        differences[axis] = value_of(t.displacement[axis], b.windows[axis].limit);
+        differences[axis] = value_of(t.sums[DISPLACEMENT + axis], b.windows[axis].limit);
         record.displacement[axis] = e.n_blocks * s.centre[axis] + differences[axis];
-        record.velocity_after[axis] = motion.velocity_after[axis] = value_of(t.velocity[axis], s.velocity_limit);
+        record.velocity_after[axis] = motion.velocity_after[axis] = value_of(t.sums[VELOCITY + axis], s.velocity_limit);
     }
-    record.velocity_square = 0.25 * value_of(t.motion_square, s.motion_limit);
-    record.friction_power = -0.5 * value_of(t.friction_work, s.work_limit);
+    record.velocity_square = 0.25 * value_of(t.sums[MOTION_SQUARE], s.motion_limit);
+    record.friction_power = -0.5 * value_of(t.sums[FRICTION_WORK], s.work_limit);
     record.stress_square_max = motion.stress_square_max;
     record.n_sliding[0] = t.sliding;
     record.n_sliding[1] = t.slipping;
     double kinetic = 0.0, lattice = 0.0, drive_springs = 0.0;
     if (s.has_energies) {
-        double stretch_square = value_of(t.displacement_square, s.stretch_limit);
+        double stretch_square = value_of(t.sums[DISPLACEMENT_SQUARE], s.stretch_limit);
         for (int axis = 0; axis < 2; axis++) {
             double position = s.position[axis] - s.centre[axis];
             double mean = differences[axis] / e.n_blocks;
             stretch_square += e.n_blocks * position * (position - 2.0 * mean);
         }
-        kinetic = 0.25 * value_of(t.velocity_squares, s.motion_limit);
-        lattice = value_of(t.lattice_energy, s.lattice_limit) / (2.0 * e.stiffness[0]);
+        kinetic = 0.25 * value_of(t.sums[VELOCITY_SQUARES], s.motion_limit);
+        lattice = value_of(t.sums[LATTICE_ENERGY], s.lattice_limit) / (2.0 * e.stiffness[0]);
         drive_springs = 0.5 * e.k_drive * larger(0.0, stretch_square);
     }
     record.stored[0] = kinetic;

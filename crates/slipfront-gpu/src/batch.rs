@@ -20,6 +20,28 @@ pub(crate) struct Lattice {
     unused: u32,
 }
 
+#[cfg(feature = "cuda")]
+impl Lattice {
+    /// Number of steps that the lattice takes.
+    pub(crate) fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// Number of tiles of some blocks along x and y that cover the lattice.
+    pub(crate) fn tiles(&self, [along_x, along_y]: [usize; 2]) -> usize {
+        let [nx, ny] = [self.nx, self.n / self.nx].map(|size| size as usize);
+        nx.div_ceil(along_x) * ny.div_ceil(along_y)
+    }
+}
+
+/// Size of the struct `Step` of `kernels/step.h`, in numbers of 8 bytes.
+#[cfg(feature = "cuda")]
+pub(crate) const STEP: usize = 120 / 8;
+
+/// Size of the struct `Totals` of `kernels/step.h`, in numbers of 8 bytes.
+#[cfg(feature = "cuda")]
+pub(crate) const TOTALS: usize = 216 / 8;
+
 // The sizes of these structs in `kernels/step.h`.
 const _: () = assert!(size_of::<Lattice>() == 408 && size_of::<StepRecord>() == 88);
 

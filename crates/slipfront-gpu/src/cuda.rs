@@ -7,33 +7,50 @@ use std::sync::Arc;
 use cudarc::driver::sys::CUdevice_attribute_enum::CU_DEVICE_ATTRIBUTE_MAX_SHARED_MEMORY_PER_BLOCK_OPTIN;
 use cudarc::driver::sys::CUfunction_attribute_enum::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
 use cudarc::driver::{
-    CudaContext, CudaFunction, CudaStream, DeviceRepr, DriverError, LaunchConfig, PushKernelArg, sys,
+    CudaContext, CudaFunction, CudaSlice, CudaStream, DeviceRepr, DriverError, LaunchConfig, PushKernelArg,
+    sys,
 };
 use cudarc::nvrtc::{self, CompileOptions, Ptx};
 use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::batch::{Batch, Lattice, RECORD};
+use crate::large::LargeKernels;
 
 /// The kernels as PTX, written by `ptx.py`; empty if that script was not run before this crate was compiled.
 const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/kernels.ptx"));
 
 /// The source of the kernels, for NVRTC. Each file includes only files before it in this list.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 9] = [
     include_str!("../kernels/target.h"),
     include_str!("../kernels/fixed_point.h"),
     include_str!("../kernels/step.h"),
     include_str!("../kernels/block.h"),
     include_str!("../kernels/warp.h"),
+    include_str!("../kernels/group.h"),
     include_str!("../kernels/small_lattices.h"),
+    include_str!("../kernels/large_lattices.h"),
     include_str!("../kernels/kernels.cu"),
 ];
 
 /// Bytes of shared memory that a kernel needs per block of the lattice.
 const BYTES_PER_BLOCK: usize = 6 * size_of::<f64>() + size_of::<u32>();
 
-/// Thread-group sizes for which there are kernels, and the largest number of blocks for each if memory
-/// allows.
+/// Thread-group sizes for which there are kernels for small lattices, and the largest number of blocks for each
+/// if memory allows.
 const GROUPS: [(u32, usize); 3] = [(128, 1024), (256, 2304), (512, usize::MAX)];
+
+/// Largest number of blocks of a lattice: kernels count them in 32 bits with a sign.
+const MOST_BLOCKS: usize = i32::MAX as usize;
+
+/// Largest number of lattices at once, the size of a grid along y.
+const MOST_LATTICES: usize = 65_535;
+
+/// Bytes of the GPU's memory that a block needs: its state before and after a step, its limits, its flags and
+/// first slip, and its part of the sums of a group.
+const BYTES_ON_GPU: usize = 10 * size_of::<f64>() + size_of::<u16>() + size_of::<u32>() + 1;
+
+/// Bytes of the GPU's memory that a step of a lattice needs.
+const BYTES_PER_STEP: usize = 8 * RECORD + 2 * size_of::<f64>();
 
 /// Kernel for lattices up to a given size.
 #[derive(Debug)]
@@ -43,13 +60,25 @@ struct Kernel {
     most_blocks: usize,
 }
 
+/// Numbers of lattices in the memory of the GPU, as in [`Batch`].
+#[derive(Debug)]
+pub(crate) struct Arrays {
+    pub(crate) lattices: CudaSlice<Lattice>,
+    pub(crate) state: CudaSlice<f64>,
+    pub(crate) given: CudaSlice<f64>,
+    pub(crate) flags: CudaSlice<u16>,
+    pub(crate) first_slips: CudaSlice<u32>,
+    pub(crate) records: CudaSlice<u64>,
+}
+
 /// An NVIDIA GPU.
 #[derive(Debug)]
 pub struct Gpu {
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
     /// Kernels for [`GROUPS`], in their order.
-    kernels: Vec<Kernel>,
+    small: Vec<Kernel>,
+    large: LargeKernels,
 }
 
 // SAFETY: the struct has no padding and no pointers, and has the layout of the struct of the kernels.
@@ -89,10 +118,15 @@ impl Gpu {
                 most_blocks,
             })
         };
-        let kernels: Result<Vec<_>, DriverError> = GROUPS.into_iter().map(load).collect();
+        let kernels = || {
+            let small: Result<_, DriverError> = GROUPS.into_iter().map(load).collect();
+            Ok((small?, LargeKernels::load(&module)?))
+        };
+        let (small, large) = kernels().map_err(failed("the GPU does not take the kernels"))?;
         Ok(Self {
             stream: context.default_stream(),
-            kernels: kernels.map_err(failed("the GPU does not take the kernels"))?,
+            small,
+            large,
             context,
         })
     }
@@ -106,61 +140,81 @@ impl Gpu {
     }
 
     /// Runs the steps of a batch of lattices with at most `most_blocks` blocks each.
-    fn launch(&self, batch: &mut Batch, kernel: &Kernel, most_blocks: usize) -> Result<(), DriverError> {
+    fn launch(&self, batch: &mut Batch, most_blocks: usize) -> Result<(), DriverError> {
         let stream = &self.stream;
-        let mut lattices = stream.clone_htod(&batch.lattices)?;
-        let mut state = stream.clone_htod(&batch.state)?;
-        let given = stream.clone_htod(&batch.given)?;
-        let flags = stream.clone_htod(&batch.flags)?;
-        let mut first_slips = stream.clone_htod(&batch.first_slips)?;
-        let mut records = stream.alloc_zeros::<u64>(batch.records.len())?;
-        let config = LaunchConfig {
-            grid_dim: (batch.lattices.len() as u32, 1, 1),
-            block_dim: (kernel.threads, 1, 1),
-            shared_mem_bytes: (most_blocks * BYTES_PER_BLOCK) as u32,
+        let mut arrays = Arrays {
+            lattices: stream.clone_htod(&batch.lattices)?,
+            state: stream.clone_htod(&batch.state)?,
+            given: stream.clone_htod(&batch.given)?,
+            flags: stream.clone_htod(&batch.flags)?,
+            first_slips: stream.clone_htod(&batch.first_slips)?,
+            records: stream.alloc_zeros(batch.records.len())?,
         };
-        let mut launch = stream.launch_builder(&kernel.function);
-        launch
-            .arg(&mut lattices)
-            .arg(&mut state)
-            .arg(&given)
-            .arg(&flags)
-            .arg(&mut first_slips)
-            .arg(&mut records);
-        // SAFETY: the arguments have the types of the kernel's parameters, and the batch has checked the
-        // lengths of the arrays.
-        unsafe { launch.launch(config) }?;
-        stream.memcpy_dtoh(&lattices, &mut batch.lattices)?;
-        stream.memcpy_dtoh(&state, &mut batch.state)?;
-        stream.memcpy_dtoh(&first_slips, &mut batch.first_slips)?;
-        stream.memcpy_dtoh(&records, &mut batch.records)?;
+        match self.small.iter().find(|kernel| most_blocks <= kernel.most_blocks) {
+            Some(kernel) => kernel.launch(stream, &mut arrays, most_blocks)?,
+            None => self.large.launch(stream, &mut arrays, &batch.lattices)?,
+        }
+        stream.memcpy_dtoh(&arrays.lattices, &mut batch.lattices)?;
+        stream.memcpy_dtoh(&arrays.state, &mut batch.state)?;
+        stream.memcpy_dtoh(&arrays.first_slips, &mut batch.first_slips)?;
+        stream.memcpy_dtoh(&arrays.records, &mut batch.records)?;
         stream.synchronize()
     }
 
-    /// Number of lattices with `blocks` blocks that fit into half of the free memory, with the numbers of
-    /// `steps` steps.
+    /// Half of the bytes that are free in the memory of the GPU.
+    fn room(&self) -> Result<usize, DeviceError> {
+        let memory = self.context.mem_get_info();
+        let (free, _) = memory.map_err(failed("the GPU does not say how much memory is free"))?;
+        Ok(free / 2)
+    }
+
+    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps.
     fn lattices_at_once(&self, blocks: usize, steps: u32) -> Result<usize, DeviceError> {
-        let (free, _) = self
-            .context
-            .mem_get_info()
-            .map_err(failed("the GPU does not say how much memory is free"))?;
-        let per_block = 6 * size_of::<f64>() + size_of::<u16>() + size_of::<u32>();
-        let per_step = 8 * RECORD + 2 * size_of::<f64>();
-        let bytes = size_of::<Lattice>() + blocks * per_block + steps as usize * per_step;
-        match free / 2 / bytes {
+        let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + steps as usize * BYTES_PER_STEP;
+        let room = self.room()?;
+        match room / bytes {
             0 => Err(DeviceError(format!(
-                "a lattice of {blocks} blocks needs {bytes} bytes for {steps} steps, twice which the GPU does not have free: \
-                 the CPU gives the same results"
+                "a lattice of {blocks} blocks needs {:.2} GB of the GPU's memory for {steps} steps, and half of \
+                 what is free there is {:.2} GB: the CPU gives the same results",
+                bytes as f64 * 1e-9,
+                room as f64 * 1e-9
             ))),
-            count => Ok(count),
+            count => Ok(count.min(MOST_LATTICES)),
         }
+    }
+}
+
+impl Kernel {
+    fn launch(
+        &self,
+        stream: &Arc<CudaStream>,
+        arrays: &mut Arrays,
+        most_blocks: usize,
+    ) -> Result<(), DriverError> {
+        let config = LaunchConfig {
+            grid_dim: (arrays.lattices.len() as u32, 1, 1),
+            block_dim: (self.threads, 1, 1),
+            shared_mem_bytes: (most_blocks * BYTES_PER_BLOCK) as u32,
+        };
+        let mut launch = stream.launch_builder(&self.function);
+        launch
+            .arg(&mut arrays.lattices)
+            .arg(&mut arrays.state)
+            .arg(&arrays.given)
+            .arg(&arrays.flags)
+            .arg(&mut arrays.first_slips)
+            .arg(&mut arrays.records);
+        // SAFETY: the arguments have the types of the kernel's parameters, and the batch has checked the
+        // lengths of the arrays.
+        unsafe { launch.launch(config) }?;
+        Ok(())
     }
 }
 
 impl Device for Gpu {
     fn most_blocks(&self) -> usize {
-        let of_kernels = self.kernels.iter().map(|kernel| kernel.most_blocks);
-        of_kernels.max().unwrap_or(0)
+        let fit = self.room().map_or(0, |room| room / BYTES_ON_GPU);
+        fit.min(MOST_BLOCKS)
     }
 
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
@@ -168,17 +222,10 @@ impl Device for Gpu {
         let Some(most) = lattices.iter().map(blocks).max() else {
             return Ok(());
         };
-        let Some(kernel) = self.kernels.iter().find(|kernel| most <= kernel.most_blocks) else {
-            return Err(DeviceError(format!(
-                "a lattice of {most} blocks is larger than the {} that the GPU takes: the CPU gives the same results",
-                self.most_blocks()
-            )));
-        };
         let count = self.lattices_at_once(most, steps)?;
         for some in lattices.chunks_mut(count) {
             let mut batch = Batch::new(some, steps)?;
-            self.launch(&mut batch, kernel, most)
-                .map_err(failed("the GPU failed"))?;
+            self.launch(&mut batch, most).map_err(failed("the GPU failed"))?;
             batch.return_to(some);
         }
         Ok(())

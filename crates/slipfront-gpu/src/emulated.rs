@@ -14,6 +14,9 @@ pub struct Emulated {
     /// Distance from a thread that waits to the thread that runs next: any odd number. Results do not depend
     /// on it.
     pub stride: u32,
+    /// Number of groups that share the tiles of each lattice, as on a GPU for lattices that are large; none for
+    /// one group with all blocks in its own memory, as for small ones.
+    pub groups: Option<u32>,
 }
 
 /// The struct `Arrays` of `kernels/step.h`.
@@ -27,20 +30,26 @@ struct Arrays {
     records: *mut u64,
 }
 
-// SAFETY: `kernels/emulated.cpp` defines a function of this name and type, which keeps none of the pointers.
+// SAFETY: `kernels/emulated.cpp` defines functions of these names and types, which keep none of the pointers.
 unsafe extern "C" {
-    /// Takes `count` lattices through their steps on groups of `threads` emulated threads.
-    fn slipfront_run_emulated(arrays: *const Arrays, count: usize, threads: i32, stride: i32);
+    /// Takes `count` small lattices through their steps, each on a group of `threads` emulated threads.
+    fn slipfront_run_small(arrays: *const Arrays, count: usize, threads: i32, stride: i32);
+    /// Takes `count` lattices through their steps, each on `groups` groups of `threads` emulated threads.
+    fn slipfront_run_large(arrays: *const Arrays, count: usize, groups: u32, threads: i32, stride: i32);
 }
 
 impl Device for Emulated {
-    /// Number of warps times the number of terms that the sum of a warp may have.
+    /// Number of warps times the number of terms that the sum of a warp may have, if tiles were divided evenly.
     fn most_blocks(&self) -> usize {
-        (1 << 11) * self.threads as usize / 32
+        (1 << 11) * (self.threads / 32 * self.groups.unwrap_or(1)) as usize
     }
 
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
-        let Self { threads, stride } = *self;
+        let Self {
+            threads,
+            stride,
+            groups,
+        } = *self;
         assert!(
             threads.is_power_of_two() && (32..=1024).contains(&threads) && !stride.is_multiple_of(2),
             "no group of {threads} threads goes on in strides of {stride}"
@@ -54,15 +63,14 @@ impl Device for Emulated {
             first_slips: batch.first_slips.as_mut_ptr(),
             records: batch.records.as_mut_ptr(),
         };
+        let (count, threads, stride) = (batch.lattices.len(), threads as i32, stride as i32);
         // SAFETY: the pointers lead to arrays of the batch, which has checked their lengths, and nothing else
         // refers to these arrays during the call.
         unsafe {
-            slipfront_run_emulated(
-                &raw const arrays,
-                batch.lattices.len(),
-                threads as i32,
-                stride as i32,
-            );
+            match groups {
+                None => slipfront_run_small(&raw const arrays, count, threads, stride),
+                Some(groups) => slipfront_run_large(&raw const arrays, count, groups, threads, stride),
+            }
         }
         batch.return_to(lattices);
         Ok(())

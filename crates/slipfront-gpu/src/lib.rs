@@ -14,6 +14,8 @@ mod batch;
 mod cuda;
 #[cfg(feature = "emulated")]
 mod emulated;
+#[cfg(feature = "cuda")]
+mod large;
 
 #[cfg(feature = "cuda")]
 pub use cuda::Gpu;

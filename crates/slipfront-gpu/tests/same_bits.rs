@@ -76,7 +76,8 @@ fn edges() -> impl Strategy<Value = Edges> {
 prop_compose! {
     /// A plain model, its time step and an initial state.
     fn models()(
-        (nx, ny) in (3_usize..24, 3_usize..20),
+        // Two tiles along x and y, or one.
+        (nx, ny) in (3_usize..40, 3_usize..20),
         edges in (edges(), edges()),
         (degrees, speed) in (prop_oneof![Just(0.0), -180.0..180.0], prop_oneof![Just(0.1), 0.01..2.0]),
         goes_back in any::<bool>(),
@@ -131,18 +132,25 @@ proptest! {
         (model, dt_star, state) in models(),
         threads in prop_oneof![Just(32_u32), Just(64), Just(128)],
         half_stride in 0..16_u32,
+        groups in prop::option::of(1..4_u32),
         (first, second) in (1..40_u32, 1..60_u32),
         every in 1..9_u32,
     ) {
         let mut simulation = Simulation::new(model.clone(), dt_star, state.clone(), Execution::default());
         prop_assume!(simulation.run(Stop::at_step(u64::from(first + second)), &mut []).is_ok(), "diverges");
-        compare(&model, dt_star, state.as_ref(), Emulated { threads, stride: 2 * half_stride + 1 }, [first, second, every]);
+        compare(&model, dt_star, state.as_ref(), Emulated { threads, stride: 2 * half_stride + 1, groups }, [first, second, every]);
     }
 }
 
 /// The baseline of the paper through its onset.
 #[test]
 fn the_baseline_slips() {
+    for groups in [None, Some(2)] {
+        compare_baseline(groups);
+    }
+}
+
+fn compare_baseline(groups: Option<u32>) {
     let lattice = Lattice::free(25, 25);
     let gauss = |mean: f64| Distribution {
         mean,
@@ -171,6 +179,7 @@ fn the_baseline_slips() {
     let device = Emulated {
         threads: 128,
         stride: 1,
+        groups,
     };
     compare(&model, 0.2, None, device, [100, 60, 7]);
     let mut lattice = DeviceLattice::new(model, 0.2, None, EnergySteps { every: 1, last: 0 }).unwrap();

@@ -1,0 +1,141 @@
+//! Launches of the kernels for lattices of any size, `kernels/large_lattices.h`.
+
+#![allow(unsafe_code)] // Kernels are launched, and a struct is passed to the GPU.
+
+use std::mem;
+use std::sync::Arc;
+
+use cudarc::driver::sys::CUdeviceptr;
+use cudarc::driver::{
+    CudaFunction, CudaModule, CudaStream, DevicePtr, DevicePtrMut, DeviceRepr, DriverError, LaunchConfig,
+    PushKernelArg,
+};
+
+use crate::batch::{Lattice, STEP, TOTALS};
+use crate::cuda::Arrays;
+
+/// Blocks of a tile along x and y in `kernels/large_lattices.h`.
+const TILE: [usize; 2] = [32, 16];
+
+/// Threads of a group.
+const THREADS: u32 = 256;
+
+/// Largest number of tiles that a group takes: a warp adds up at most 2^11 terms.
+const MOST_TILES: usize = (1 << 11) * (THREADS as usize / 32) / (TILE[0] * TILE[1]);
+
+/// Number of groups that keeps every GPU busy: beyond it a group takes several tiles.
+const MANY_GROUPS: usize = 1024;
+
+/// Kernels for lattices of any size.
+#[derive(Debug)]
+pub(crate) struct LargeKernels {
+    measure: CudaFunction,
+    step: CudaFunction,
+    join: CudaFunction,
+}
+
+/// The struct `LargeLattices` of `kernels/large_lattices.h`.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct LargeLattices {
+    lattices: CUdeviceptr,
+    state: CUdeviceptr,
+    given: CUdeviceptr,
+    flags: CUdeviceptr,
+    first_slips: CUdeviceptr,
+    records: CUdeviceptr,
+    state_after: CUdeviceptr,
+    steps: CUdeviceptr,
+    totals: CUdeviceptr,
+    groups: u32,
+    done: u32,
+}
+
+// SAFETY: the struct has no padding, and has the layout of the struct of the kernels, in which pointers have
+// 8 bytes.
+unsafe impl DeviceRepr for LargeLattices {}
+
+impl LargeKernels {
+    /// Finds the kernels in their module.
+    pub(crate) fn load(module: &Arc<CudaModule>) -> Result<Self, DriverError> {
+        Ok(Self {
+            measure: module.load_function("measure_large")?,
+            step: module.load_function("step_large")?,
+            join: module.load_function("join_large")?,
+        })
+    }
+
+    /// Runs the steps of lattices, all of which take the same number of them.
+    pub(crate) fn launch(
+        &self,
+        stream: &Arc<CudaStream>,
+        arrays: &mut Arrays,
+        lattices: &[Lattice],
+    ) -> Result<(), DriverError> {
+        let (count, n_steps) = (lattices.len(), lattices.first().map_or(0, Lattice::steps));
+        let tiles = lattices.iter().map(|lattice| lattice.tiles(TILE)).max();
+        let tiles = tiles.unwrap_or(1);
+        let groups = tiles.div_ceil((tiles / MANY_GROUPS).clamp(1, MOST_TILES));
+        let mut after = stream.alloc_zeros::<f64>(arrays.state.len())?;
+        let mut steps = stream.alloc_zeros::<u64>(count * STEP)?;
+        let mut totals = stream.alloc_zeros::<u64>(count * groups * TOTALS)?;
+        {
+            let lattices = arrays.lattices.device_ptr_mut(stream);
+            let state = arrays.state.device_ptr_mut(stream);
+            let given = arrays.given.device_ptr(stream);
+            let flags = arrays.flags.device_ptr(stream);
+            let first_slips = arrays.first_slips.device_ptr_mut(stream);
+            let records = arrays.records.device_ptr_mut(stream);
+            let after = after.device_ptr_mut(stream);
+            let steps = steps.device_ptr_mut(stream);
+            let totals = totals.device_ptr_mut(stream);
+            let pointers = LargeLattices {
+                lattices: lattices.0,
+                state: state.0,
+                given: given.0,
+                flags: flags.0,
+                first_slips: first_slips.0,
+                records: records.0,
+                state_after: after.0,
+                steps: steps.0,
+                totals: totals.0,
+                groups: groups as u32,
+                done: 0,
+            };
+            self.launch_steps(stream, pointers, count as u32, n_steps)?;
+        }
+        if n_steps % 2 == 1 {
+            mem::swap(&mut arrays.state, &mut after);
+        }
+        Ok(())
+    }
+
+    /// Launches the kernels for `n_steps` steps of `count` lattices: two for each step.
+    fn launch_steps(
+        &self,
+        stream: &Arc<CudaStream>,
+        mut lattices: LargeLattices,
+        count: u32,
+        n_steps: u32,
+    ) -> Result<(), DriverError> {
+        let launch = |function, lattices: &LargeLattices, groups| {
+            let config = LaunchConfig {
+                grid_dim: (groups, count, 1),
+                block_dim: (THREADS, 1, 1),
+                shared_mem_bytes: 0,
+            };
+            // SAFETY: the argument has the type of the kernel's parameter. The batch has checked the lengths
+            // of its arrays, and the others have a number for each group.
+            unsafe { stream.launch_builder(function).arg(lattices).launch(config) }.map(|_| ())
+        };
+        launch(&self.measure, &lattices, lattices.groups)?;
+        launch(&self.join, &lattices, 1)?;
+        for done in 1..=n_steps {
+            launch(&self.step, &lattices, lattices.groups)?;
+            lattices.done = done;
+            launch(&self.join, &lattices, 1)?;
+            mem::swap(&mut lattices.state, &mut lattices.state_after);
+        }
+        Ok(())
+    }
+}
