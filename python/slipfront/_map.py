@@ -12,7 +12,7 @@ from ._simulation import _threads
 
 
 def map(
-    cases: Iterable[CaseLike], overrides: Overrides | None = None, *, threads: int | None = None
+    cases: Iterable[CaseLike], overrides: Overrides | None = None, *, threads: int | None = None, device: str = "cpu"
 ) -> list[dict[str, Any]]:
     """Run cases, and return the numbers of each.
 
@@ -28,6 +28,8 @@ def map(
         Keys to change in every case.
     threads
         Runs in parallel, by default one per core. Results do not depend on it.
+    device
+        ``"cpu"``, or ``"gpu"`` for the first NVIDIA GPU; cases that it does not cover run on the CPU meanwhile. Results do not depend on it.
 
     Returns
     -------
@@ -40,6 +42,8 @@ def map(
         When one of them is invalid, before any is run; the message begins with its index in the list, from 0.
     RunError
         When a run diverges; the message begins with the index of the first one that does.
+    RuntimeError
+        When there is no GPU, or it fails.
 
     Examples
     --------
@@ -49,7 +53,7 @@ def map(
     [0.912, 0.878]
     """
     made = [_made(index, given, overrides) for index, given in enumerate(cases)]
-    summaries = _slipfront.run_summaries([case._native for case in made], _threads(threads))
+    summaries = _slipfront.run_summaries([case._native for case in made], _threads(threads), device)
     return [json.loads(summary) for summary in summaries]
 
 

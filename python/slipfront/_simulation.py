@@ -33,7 +33,12 @@ _ALL = 2**63
 
 
 def run(
-    case: CaseLike, overrides: Overrides | None = None, *, progress: Progress = None, threads: int | None = None
+    case: CaseLike,
+    overrides: Overrides | None = None,
+    *,
+    progress: Progress = None,
+    threads: int | None = None,
+    device: str = "cpu",
 ) -> Run:
     """Run a case to its end.
 
@@ -51,6 +56,8 @@ def run(
         the simulation every 50 ms.
     threads
         Largest number of threads, by default one per core. Results do not depend on it; a small slider uses one.
+    device
+        ``"cpu"``, or ``"gpu"`` for the first NVIDIA GPU. Results do not depend on it; a GPU is worth it for large sliders.
 
     Returns
     -------
@@ -60,6 +67,8 @@ def run(
     ------
     RunError
         When the run diverges.
+    RuntimeError
+        When there is no GPU, or it does not cover the case.
 
     Examples
     --------
@@ -69,7 +78,7 @@ def run(
     >>> float(result.series["mu_star"].max()) == result.static_friction_star
     True
     """
-    return Simulation(case, overrides, threads=threads).run(progress=progress)
+    return Simulation(case, overrides, threads=threads, device=device).run(progress=progress)
 
 
 class _Alone:
@@ -115,6 +124,8 @@ class Simulation:
         Keys of the case to change.
     threads
         Largest number of threads, by default one per core.
+    device
+        ``"cpu"``, or ``"gpu"`` for the first NVIDIA GPU. Copies, and the simulation after a `change`, run on the CPU.
 
     Examples
     --------
@@ -129,9 +140,11 @@ class Simulation:
     True
     """
 
-    def __init__(self, case: CaseLike, overrides: Overrides | None = None, *, threads: int | None = None) -> None:
+    def __init__(
+        self, case: CaseLike, overrides: Overrides | None = None, *, threads: int | None = None, device: str = "cpu"
+    ) -> None:
         case, threads = as_case(case, overrides), _threads(threads)
-        self._set(case, _slipfront.Simulation(case._native, threads), threads, Past())
+        self._set(case, _slipfront.Simulation(case._native, threads, device), threads, Past())
 
     def _set(
         self, case: Case, native: _slipfront.Simulation | None, threads: int, past: Past, ended: str | None = None

@@ -13,6 +13,7 @@ mod arrays;
 mod calibrate;
 mod case;
 mod design;
+mod device;
 mod errors;
 mod export;
 mod folder;

@@ -7,24 +7,28 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_run::device_summaries::device_summaries;
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::summary::summary_json;
 
 use crate::case::Case;
+use crate::device::{self, device_error};
 use crate::errors::{RunError, folder_error};
 use crate::process::{detached, watched};
 
-/// Runs cases, one on each thread at a time, and returns `summary.json` of each in their order. A signal ends
+/// Runs cases, one on each thread at a time, or all on a device, and returns `summary.json` of each in their order. A signal ends
 /// all of them. A run that diverges ends those after it, so that the error is always that of the first.
 #[pyfunction]
 pub(crate) fn run_summaries(
     py: Python<'_>,
     cases: Vec<Bound<'_, Case>>,
     threads: usize,
+    device: &str,
 ) -> PyResult<Vec<String>> {
     let cases: Vec<Arc<SlipfrontCase>> = cases.iter().map(|case| Arc::clone(&case.get().0)).collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(folder_error)?;
+    let device = detached(py, || device::device(device))??;
     let (stop, first_diverged) = (AtomicBool::new(false), AtomicUsize::new(usize::MAX));
     let run = |index: usize| {
         let ends = || stop.load(Ordering::Relaxed) || first_diverged.load(Ordering::Relaxed) < index;
@@ -32,9 +36,16 @@ pub(crate) fn run_summaries(
         if ended.is_err() {
             first_diverged.fetch_min(index, Ordering::Relaxed);
         }
-        Some(ended.map(|summary| summary_json(&summary)))
+        Some(ended)
     };
-    let runs = (0..cases.len()).into_par_iter().with_max_len(1).map(run);
+    let run_all = || match &device {
+        Some(device) => device_summaries(&cases, &**device, &|| stop.load(Ordering::Relaxed)),
+        None => Ok((0..cases.len())
+            .into_par_iter()
+            .with_max_len(1)
+            .map(run)
+            .collect()),
+    };
     let mut signal = None;
     let look = || {
         signal = signal
@@ -42,15 +53,16 @@ pub(crate) fn run_summaries(
             .or_else(|| Python::attach(|py| py.check_signals().err()));
         stop.store(signal.is_some(), Ordering::Relaxed);
     };
-    let ended: Option<Vec<_>> = detached(py, || watched(|| pool.install(|| runs.collect()), look))?;
+    let ended = detached(py, || watched(|| pool.install(run_all), look))?;
     if let Some(signal) = signal {
         return Err(signal);
     }
     let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the runs"))?;
+    let ended = ended.map_err(device_error)?;
     let named = ended.into_iter().zip(&cases).enumerate();
     let summaries = named.filter_map(|(index, (ended, case))| {
         let with_index = |error| RunError::new_err(format!("case {index} ({}): {error}", case.name));
-        Some(ended?.map_err(with_index))
+        Some(ended?.map(|summary| summary_json(&summary)).map_err(with_index))
     });
     summaries.collect()
 }

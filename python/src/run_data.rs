@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::field_info::field_info;
 use slipfront_run::fields::{FieldsData, KymographData};
+use slipfront_run::manifest::Processors;
 use slipfront_run::observers;
 use slipfront_run::pictures;
 use slipfront_run::results;
@@ -28,7 +29,7 @@ pub(crate) struct RunData {
     pub(crate) case: Arc<SlipfrontCase>,
     pub(crate) record: running::RunData,
     pub(crate) started: jiff::Timestamp,
-    pub(crate) threads: usize,
+    pub(crate) processors: Processors,
 }
 
 #[pymethods]
@@ -69,13 +70,13 @@ impl RunData {
 
     /// Writes the folder of the run, with the bytes that the command writes.
     fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
-        let (case, started, threads) = (&*self.case, self.started, self.threads);
+        let (case, started, processors) = (&*self.case, self.started, self.processors.clone());
         detached(py, || {
             let mut run = RunFolder::prepare(&folder, force, &case.inputs).map_err(folder_error)?;
             results::write_case(case, &mut run).map_err(folder_error)?;
             // Writing removes the fields from its argument.
             let mut record = self.record.clone();
-            pictures::write_run(case, &mut record, run, started, threads).map_err(folder_error)?;
+            pictures::write_run(case, &mut record, run, started, processors).map_err(folder_error)?;
             Ok(())
         })?
     }

@@ -1,12 +1,14 @@
 //! Runs in progress.
 
+use std::ffi::CString;
 use std::sync::Arc;
 use std::time::Instant;
 
 use numpy::{PyArray2, PyArray3};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use slipfront::device::DeviceError;
 use slipfront::observe::frames::Selection;
 use slipfront::{Execution, State, StopReason, VectorField};
 use slipfront_case::case::Case as SlipfrontCase;
@@ -14,6 +16,7 @@ use slipfront_case::field_info::field_named;
 use slipfront_run::checkpoint::hash_of;
 use slipfront_run::checksum::{verified, with_checksum};
 use slipfront_run::columns::Columns;
+use slipfront_run::device_summaries::refusal_of_run;
 use slipfront_run::fields::FieldFrame;
 use slipfront_run::running::{RunState, Running};
 use slipfront_run::series::{SeriesRow, counts};
@@ -21,6 +24,7 @@ use slipfront_run::{clock, program};
 
 use crate::arrays::{rows, stacked};
 use crate::case::Case;
+use crate::device::device_error;
 use crate::errors::{CaseError, RunError};
 use crate::process::{LOOK_EVERY, check_process, detached};
 use crate::run_data::{RunData, series};
@@ -79,10 +83,19 @@ fn ended() -> PyErr {
 impl Simulation {
     /// Begins a run of a case at rest.
     #[new]
-    fn new(py: Python<'_>, case: &Case, threads: usize) -> PyResult<Self> {
-        Self::of(detached(py, || {
-            Running::start(&case.0, None, Execution::on_threads(threads))
-        })?)
+    fn new(py: Python<'_>, case: &Case, threads: usize, device: &str) -> PyResult<Self> {
+        let device = detached(py, || crate::device::device(device))??;
+        if let Some(reason) = device
+            .as_deref()
+            .and_then(|device| refusal_of_run(&case.0, device))
+        {
+            return Err(device_error(DeviceError(reason)));
+        }
+        let execution = Execution {
+            device,
+            ..Execution::on_threads(threads)
+        };
+        Self::of(detached(py, || Running::start(&case.0, None, execution))?)
     }
 
     /// The run continued under another case; the position of the drive over each block, x and y in m; the
@@ -252,13 +265,17 @@ impl Simulation {
             "onset" => StopReason::Onset,
             _ => StopReason::End,
         };
-        let (case, threads) = (Arc::clone(running.case()), running.threads());
+        let (case, processors) = (Arc::clone(running.case()), running.processors());
+        if let Some(failure) = running.device_failure() {
+            let sentence = CString::new(format!("{failure}; the CPU computed the rest of the run"))?;
+            PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &sentence, 1)?;
+        }
         let record = detached(py, || running.record(reason))?;
         Ok(RunData {
             case,
             record,
             started: self.started,
-            threads,
+            processors,
         })
     }
 }

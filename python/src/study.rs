@@ -10,6 +10,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_run::manifest::Processors;
 use slipfront_run::{clock, running};
 use slipfront_study::converge::{self, MeshStudy};
 use slipfront_study::{
@@ -315,7 +316,7 @@ impl Shared {
             case: Arc::clone(case),
             record: record.clone(),
             started: clock::now(),
-            threads: 1,
+            processors: Processors::threads(1),
         };
         let values = Python::attach(|py| {
             let values = look.call1(py, (Case(Arc::clone(case)), record, key))?;

@@ -43,6 +43,7 @@ use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;
 
 use crate::commands::run::{CHECKPOINTS_HELP, RunCommand};
+pub use crate::device::open_gpu;
 use crate::divided_override::divided_override;
 use crate::failure::{Failure, STATUSES, report};
 use crate::print::{expect_printed, print};

@@ -5,7 +5,7 @@
 //! $ cargo run --release -p slipfront-gpu --features cuda --example gpu_ensembles
 //! ```
 //!
-//! The sliders are those of the paper's Fig. 3, with 25 x 25, 50 x 50 and 64 x 64 blocks and V* = 0.03. Each
+//! The sliders are those of the paper's Fig. 3, with 25 x 25, 50 x 50 and 100 x 100 blocks and V* = 0.03. Each
 //! has its own surface, takes 1000 steps of 0.1 t*, and yields one number from all its steps: the largest
 //! mu*. The times of the GPU run from the models to these numbers. They exclude the generation of surfaces,
 //! and include the copies to and from the GPU and the replay of the records on all CPU cores.
@@ -80,9 +80,9 @@ fn on_cpu(model: &Arc<Model>) -> f64 {
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let gpu = Gpu::open()?;
-    println!("{}, beside {} threads", gpu.name()?, rayon::current_num_threads());
+    println!("{}, beside {} threads", gpu.name(), rayon::current_num_threads());
     println!("blocks   runs/s: one core   all cores   GPU   GPU over one core   same bits");
-    for (size, n) in [(25, 8192), (50, 4096), (64, 2048)] {
+    for (size, n) in [(25, 8192), (50, 4096), (100, 1024)] {
         let models = (0..n)
             .map(|seed| model(size, seed))
             .collect::<Result<Vec<_>, _>>()?;

@@ -107,10 +107,10 @@ impl Batch {
         for field in [&u.x, &u.y, &v.x, &v.y] {
             self.state.extend(field);
         }
-        self.given.extend(&lattice.static_limit_squares);
-        self.given.extend(&lattice.kinetic_impulses);
+        self.given.extend(&*lattice.static_limit_squares);
+        self.given.extend(&*lattice.kinetic_impulses);
         self.given.extend(lattice.drive_positions(steps).flatten());
-        self.flags.extend(&lattice.flags);
+        self.flags.extend(&*lattice.flags);
         self.first_slips.extend(&lattice.first_slips);
         // The kernels rely on these lengths.
         let blocks = self.flags.len();

@@ -74,6 +74,7 @@ pub(crate) struct Arrays {
 /// An NVIDIA GPU.
 #[derive(Debug)]
 pub struct Gpu {
+    name: String,
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
     /// Kernels for [`GROUPS`], in their order.
@@ -124,19 +125,12 @@ impl Gpu {
         };
         let (small, large) = kernels().map_err(failed("the GPU does not take the kernels"))?;
         Ok(Self {
+            name: context.name().map_err(failed("the GPU has no name"))?,
             stream: context.default_stream(),
             small,
             large,
             context,
         })
-    }
-
-    /// Name of the GPU.
-    ///
-    /// # Errors
-    /// When the driver fails.
-    pub fn name(&self) -> Result<String, DeviceError> {
-        self.context.name().map_err(failed("the GPU has no name"))
     }
 
     /// Runs the steps of a batch of lattices with at most `most_blocks` blocks each.
@@ -212,6 +206,10 @@ impl Kernel {
 }
 
 impl Device for Gpu {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
     fn most_blocks(&self) -> usize {
         let fit = self.room().map_or(0, |room| room / BYTES_ON_GPU);
         fit.min(MOST_BLOCKS)

@@ -39,6 +39,10 @@ unsafe extern "C" {
 }
 
 impl Device for Emulated {
+    fn name(&self) -> String {
+        "emulated GPU".to_owned()
+    }
+
     /// Number of warps times the number of terms that the sum of a warp may have, if tiles were divided evenly.
     fn most_blocks(&self) -> usize {
         (1 << 11) * (self.threads / 32 * self.groups.unwrap_or(1)) as usize

@@ -19,7 +19,14 @@ fn a_gpu_has_the_same_bits_or_is_refused_with_a_remedy() {
             return;
         }
     };
-    let lattice = Lattice::free(25, 25);
+    // In the memory that threads share, and in that of the GPU.
+    for size in [25, 100] {
+        compare(&gpu, size);
+    }
+}
+
+fn compare(gpu: &Gpu, size: usize) {
+    let lattice = Lattice::free(size, size);
     let mut surface = Surface::uniform(&lattice, 1.0, 0.5);
     surface.textured[312] = true;
     let model = Model::new(

@@ -11,6 +11,7 @@ use slipfront_base::disk::{folder_of, make_folders, sync_folder};
 use slipfront_base::text::{display_path, truncated};
 use slipfront_case::case_file::CaseError;
 use slipfront_run::clock;
+use slipfront_run::manifest::Processors;
 use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -109,8 +110,9 @@ pub(crate) fn save(
             report_progress(running.snapshot().drive_steps as f64 / case.time_plan.last_step as f64);
         }
     };
+    let processors = Processors::threads(threads);
     let mut record = running.record(reason);
-    pictures::write_run(&case, &mut record, folder, started, threads).map_err(sentence)?;
+    pictures::write_run(&case, &mut record, folder, started, processors).map_err(sentence)?;
     Ok(true)
 }
 

@@ -28,6 +28,14 @@ pub fn device_summaries(
     make_runs(cases.iter().map(SummaryRun::new).collect(), device, ends)
 }
 
+/// Reason for which a device does not make the run of a case with its observers; none if it does.
+pub fn refusal_of_run(case: &Case, device: &dyn Device) -> Option<String> {
+    if case.file.output.events {
+        return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
+    }
+    refusal(case, device)
+}
+
 /// A run on a device, with the observers of its numbers.
 struct SummaryRun<'a> {
     case: &'a Arc<Case>,
@@ -54,10 +62,7 @@ impl DeviceRun for SummaryRun<'_> {
 
     /// Adds the catalogue of events, which is made of blocks, to what a device refuses.
     fn refusal(&self, device: &dyn Device) -> Option<String> {
-        if self.case.file.output.events {
-            return Some("the catalogue of events (`output.events`) is computed on the CPU alone".to_owned());
-        }
-        refusal(self.case, device)
+        refusal_of_run(self.case, device)
     }
 
     fn stop(&self) -> Stop {

@@ -47,6 +47,9 @@ pub struct Manifest {
     pub simd_width: String,
     /// Number of threads that the run was allowed; results do not depend on it.
     pub threads: usize,
+    /// Name of the device that computed the steps, if it was not the processor; results do not depend on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
     /// Name of the machine.
     pub host: String,
     /// Operating system and processor.
@@ -131,13 +134,32 @@ pub enum ManifestError {
     Damaged { path: PathBuf, why: String },
 }
 
+/// What computed a run; results do not depend on it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Processors {
+    /// Number of threads that the run was allowed.
+    pub threads: usize,
+    /// Name of the device that computed the steps, if it was not the processor.
+    pub device: Option<String>,
+}
+
+impl Processors {
+    /// Threads of the processor.
+    pub fn threads(threads: usize) -> Self {
+        Self {
+            threads,
+            device: None,
+        }
+    }
+}
+
 impl Manifest {
     /// Manifest of a run that has just finished and has written these files.
     pub(crate) fn of(
         files: Vec<ManifestFile>,
         case: &Case,
         started: jiff::Timestamp,
-        threads: usize,
+        processors: Processors,
     ) -> Self {
         // The clock may have been set back since another process began the run.
         let finished = clock::now().max(started);
@@ -146,7 +168,7 @@ impl Manifest {
             finished: finished.to_string(),
             wall_time_s: finished.duration_since(started).as_secs_f64(),
         };
-        Self::at(files, case, times, threads)
+        Self::at(files, case, times, processors)
     }
 
     /// The bytes of the manifest of a run on one thread with its files in memory, including the reason why it
@@ -162,13 +184,13 @@ impl Manifest {
             .map(|(name, contents)| ManifestFile::of_bytes(name, contents));
         let manifest = Self {
             without_pictures,
-            ..Self::at(files.collect(), case, times, 1)
+            ..Self::at(files.collect(), case, times, Processors::threads(1))
         };
         manifest.with_checksum().1
     }
 
     /// Manifest of a run that began and ended at these times.
-    fn at(files: Vec<ManifestFile>, case: &Case, times: RunTimes, threads: usize) -> Self {
+    fn at(files: Vec<ManifestFile>, case: &Case, times: RunTimes, processors: Processors) -> Self {
         let case_file = files.iter().find(|file| file.name == CASE);
         Self {
             version: program::VERSION.to_owned(),
@@ -176,7 +198,8 @@ impl Manifest {
             build: program::this_build().to_owned(),
             kernel: Kernel::default().for_model(&case.model).name().to_owned(),
             simd_width: simd_width().to_owned(),
-            threads,
+            threads: processors.threads,
+            device: processors.device,
             host: host_name().to_string_lossy().into_owned(),
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             started: times.started,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use slipfront::communicator::Communicator;
+use slipfront::device::{Device, DeviceError};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, StopReason};
@@ -12,6 +13,7 @@ use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, S
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
 use crate::front;
+use crate::manifest::Processors;
 use crate::observers::OptionalObservers;
 use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
@@ -379,6 +381,19 @@ impl Running {
         self.threads
     }
 
+    /// What computes the run.
+    pub fn processors(&self) -> Processors {
+        Processors {
+            threads: self.threads,
+            device: self.simulation.device().map(Device::name),
+        }
+    }
+
+    /// The failure of the device that computed the first steps, if the CPU computes the others.
+    pub fn device_failure(&self) -> Option<&DeviceError> {
+        self.simulation.device_failure()
+    }
+
     /// The largest contact stress so far, in units of `P mu_s`.
     pub fn contact_stress_max(&self) -> f64 {
         self.simulation.contact_stress_max()
@@ -550,6 +565,8 @@ fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Fr
 
 #[cfg(test)]
 mod tests {
+    use slipfront::testing::FusedDevice;
+
     use super::*;
 
     /// The values known during the run become its results.
@@ -619,6 +636,39 @@ mod tests {
                 is_near(one.0, other.0) && is_near(one.1, other.1) && is_near(one.2, other.2),
                 "{one:?} {other:?}"
             );
+        }
+    }
+
+    #[test]
+    fn a_run_on_a_device_has_the_same_results() {
+        for text in [
+            "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n",
+            "slider = { blocks = [14, 11], edges = ['periodic', 'free'] }\ndrive = { v_star = 0.1, direction = 30 }\n\
+             output.snapshots = { every = 7.0 }\n",
+            "slider = { blocks = [12, 12], outline = 'disc' }\ntime = { duration_star = 200, stop = 'after_onset' }\n",
+            // Computed on the CPU alone.
+            "slider.blocks = [9, 9]\nfriction.ageing = { law = 'logarithmic', beta = 0.07, time_star = 1 }\n",
+        ] {
+            let case = Arc::new(Case::parse(text, "case", "", &[]).unwrap());
+            let results = |device: Option<Arc<dyn Device>>| {
+                let execution = Execution {
+                    device,
+                    ..Execution::default()
+                };
+                let mut running = Running::start(&case, None, execution);
+                let processors = running.processors();
+                let reason = loop {
+                    if let Some(reason) = running.advance(61).unwrap() {
+                        break reason;
+                    }
+                };
+                (processors.device, format!("{:?}", running.record(reason)))
+            };
+            let (none, on_cpu) = results(None);
+            let (device, on_device) = results(Some(Arc::new(FusedDevice)));
+            assert!(on_cpu == on_device, "{text}");
+            let is_covered = !text.contains("ageing");
+            assert_eq!((none, device.is_some()), (None, is_covered));
         }
     }
 

@@ -191,6 +191,10 @@ mod tests {
     struct Small;
 
     impl Device for Small {
+        fn name(&self) -> String {
+            "small".to_owned()
+        }
+
         fn most_blocks(&self) -> usize {
             119
         }
@@ -213,6 +217,10 @@ mod tests {
     }
 
     impl Device for Broken {
+        fn name(&self) -> String {
+            "broken".to_owned()
+        }
+
         fn most_blocks(&self) -> usize {
             usize::MAX
         }

@@ -17,6 +17,7 @@ use crate::study_file::RetainRuns;
 use crate::study_results::{Progress, StudyResults};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
+use slipfront_run::manifest::Processors;
 use slipfront_run::names::RUNS;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::run_folder::RunFolder;
@@ -168,7 +169,7 @@ fn write_folder(
     let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
     if let Some(record) = record {
-        pictures::write_run(case, record, folder, started, 1)?;
+        pictures::write_run(case, record, folder, started, Processors::threads(1))?;
     }
     Ok(())
 }

@@ -21,6 +21,9 @@ pub const NEVER: u32 = u32::MAX;
 
 /// Computes the steps of lattices.
 pub trait Device: fmt::Debug + Send + Sync {
+    /// Name of the device, for a manifest.
+    fn name(&self) -> String;
+
     /// Largest number of blocks of a lattice that the device accepts.
     fn most_blocks(&self) -> usize;
 
@@ -125,11 +128,11 @@ pub struct DeviceLattice {
     /// Steps at which energies are computed.
     pub energies: EnergySteps,
     /// Squares of the static thresholds `mu_s F_n` of the blocks, row by row.
-    pub static_limit_squares: Vec<f64>,
+    pub static_limit_squares: Arc<[f64]>,
     /// Change of velocity by kinetic friction in a step, `q = dt mu_k F_n/c+`, of the blocks.
-    pub kinetic_impulses: Vec<f64>,
+    pub kinetic_impulses: Arc<[f64]>,
     /// [Flags](flag) of the blocks.
-    pub flags: Vec<u16>,
+    pub flags: Arc<[u16]>,
     /// Number of steps done: the next one has this number.
     pub steps_done: u64,
     /// Numbers of the lattice after the latest step, or at the start.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::{Clock, Rest};
 use crate::communicator::{Alone, Communicator, lowest_rank};
-use crate::device::DeviceLattice;
+use crate::device::{Device, DeviceError, DeviceLattice};
 use crate::error::RunError;
 use crate::friction::ContactTotals;
 use crate::kernel::engine::Engine;
@@ -81,6 +81,17 @@ impl Simulation {
     /// The lattice that a device advances by further steps, for a run that [replays](Self::replay) them.
     pub fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {
         self.engine.device_lattice()
+    }
+
+    /// The [device](Execution::device) that computes the steps, or computed the first of them.
+    pub fn device(&self) -> Option<&dyn Device> {
+        self.engine.device()
+    }
+
+    /// The failure of the [device](Execution::device) that computed the first steps, if the CPU computes the
+    /// others: with the same bits, but more slowly.
+    pub fn device_failure(&self) -> Option<&DeviceError> {
+        self.engine.device_failure()
     }
 
     /// Makes the first step.

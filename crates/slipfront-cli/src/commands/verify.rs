@@ -11,7 +11,7 @@ use slipfront_case::case::{Case, Ranks};
 use slipfront_design::DESIGNS;
 use slipfront_paper::verify as verify_paper;
 use slipfront_run::clock;
-use slipfront_run::manifest::Manifest;
+use slipfront_run::manifest::{Manifest, Processors};
 use slipfront_run::pictures;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
@@ -317,10 +317,11 @@ fn complete_as(
     folder: RunFolder,
     started: jiff::Timestamp,
 ) -> Result<Manifest, RunPictureError> {
+    let processors = Processors::threads(1);
     if before.is_none_or(Manifest::has_pictures) {
-        pictures::complete(case, folder, started, 1)
+        pictures::complete(case, folder, started, processors)
     } else {
-        Ok(folder.complete(case, started, 1)?)
+        Ok(folder.complete(case, started, processors)?)
     }
 }
 

@@ -18,6 +18,7 @@ use slipfront_case::case_file::CaseFile;
 use slipfront_design::{Bounds, DesignFile, RunCache};
 use slipfront_plot::PictureLook;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::manifest::Processors;
 use slipfront_run::measured::Measure;
 use slipfront_run::run_curve::run_curve_unless;
 use slipfront_run::run_files::RunFiles;
@@ -292,7 +293,14 @@ fn runs(all: &[&str], folder: &Path) {
             let mut record = running::run(&case, 2).unwrap();
             let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write_case(&case, &mut out).unwrap();
-            pictures::write_run(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
+            pictures::write_run(
+                &case,
+                &mut record,
+                out,
+                jiff::Timestamp::now(),
+                Processors::threads(1),
+            )
+            .unwrap();
             (case.budget.memory(), case.budget.disk())
         };
         let (taken, (memory, disk)) = peak(run);
@@ -417,7 +425,14 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     let mut record = running::run(&case, 1).unwrap();
     let out = folder.join("out");
     let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
-    pictures::write_run(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
+    pictures::write_run(
+        &case,
+        &mut record,
+        prepared,
+        jiff::Timestamp::now(),
+        Processors::threads(1),
+    )
+    .unwrap();
     drop((case, record));
     let before = LIVE.load(Ordering::Relaxed) as f64;
     let (taken, drawn) = peak(|| pictures::draw(RunFiles::Folder(&out), &PictureLook::default()).unwrap());

@@ -324,6 +324,7 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
         "nine places",
         "ten places",
         "eleven places",
+        "twelve places",
     ];
     assert!(
         number.starts_with(words[found.len()]),

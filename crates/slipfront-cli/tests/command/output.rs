@@ -3,7 +3,7 @@
 use slipfront_run::fields::{FieldFrame, FieldsData, read_fields, read_kymograph};
 
 use crate::fixtures::RUN_FILES;
-use crate::support::process::ended_with;
+use crate::support::process::{ended_with, stderr};
 use crate::support::workspace::Workspace;
 
 /// Keys that `summary.json` must contain (design, section 3).
@@ -120,6 +120,27 @@ fn vectors_can_be_limited_without_effect_on_results() {
         said.contains("`MMX` is not a vector instruction set of slipfront"),
         "{said}"
     );
+}
+
+/// The command that tests build lacks the feature `gpu`; one with that feature names the remedy as well.
+#[test]
+fn a_device_that_is_missing_is_refused_or_replaced_by_the_cpu() {
+    let workspace = Workspace::small();
+    let refused = workspace.fail("run small.toml -o out --device gpu", 2);
+    assert!(refused.contains("the CPU gives the same results"), "{refused}");
+    assert!(!workspace.exists("out"));
+    let output = workspace.output("run small.toml -o out --device auto");
+    let printed = stderr(&output);
+    let note = "note: the run is computed on the CPU: 30 blocks are too few for a GPU";
+    assert!(output.status.success() && printed.contains(note), "{printed}");
+    workspace.succeed("run small.toml -o cpu --device cpu --quiet");
+    for folder in ["out", "cpu"] {
+        let bytes = workspace.read(&format!("{folder}/manifest.json"));
+        let manifest: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+        assert_eq!(manifest.get("device"), None);
+    }
+    let [one, other] = ["out", "cpu"].map(|folder| workspace.read(&format!("{folder}/series.csv")));
+    assert_eq!(one, other);
 }
 
 #[test]

@@ -105,12 +105,20 @@ fn a_saved_run_has_the_bytes_of_the_command() {
 /// Runs the case into a folder with the functions of `slipfront run`.
 fn slipfront_run_of(case: &std::path::Path, out: &std::path::Path) -> bool {
     use slipfront_case::case::{Case, Ranks};
+    use slipfront_run::manifest::Processors;
     use slipfront_run::{pictures, results, run_folder::RunFolder, running};
     let case = std::sync::Arc::new(Case::load(case, &[], &mut |_| true, Ranks::ALONE).unwrap());
     let mut folder = RunFolder::prepare(out, false, &case.inputs).unwrap();
     results::write_case(&case, &mut folder).unwrap();
     let mut record = running::run(&case, 1).unwrap();
-    pictures::write_run(&case, &mut record, folder, slipfront_run::clock::now(), 1).is_ok()
+    pictures::write_run(
+        &case,
+        &mut record,
+        folder,
+        slipfront_run::clock::now(),
+        Processors::threads(1),
+    )
+    .is_ok()
 }
 
 /// Names and contents of all files below a folder.

@@ -200,7 +200,7 @@ pub fn hash_of(case: &Case) -> String {
 #[cfg(test)]
 mod tests {
     use slipfront::communicator::Alone;
-    use slipfront::testing::Threads;
+    use slipfront::testing::{FusedDevice, Threads};
     use slipfront_case::case::Ranks;
     use slipfront_case::case_file::CaseFile;
 
@@ -255,8 +255,8 @@ mod tests {
         }
     }
 
-    /// Ranks that share a lattice save the same bytes as a single rank, at many instants of a run with all
-    /// kinds of frames, and within events of slip.
+    /// Ranks that share a lattice, and a device, save the same bytes as a single rank, at many instants of a run
+    /// with all kinds of frames, and within events of slip.
     #[test]
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [
@@ -268,11 +268,8 @@ mod tests {
             let alone = tempfile::tempdir().unwrap();
             let case =
                 Arc::new(Case::to_run(parsed(), "case", Path::new(""), &mut |_| true, Ranks::ALONE).unwrap());
-            let saved = |case: &Arc<Case>, folder: &Path, communicator: Arc<dyn Communicator>| {
-                let execution = Execution {
-                    communicator: Arc::clone(&communicator),
-                    ..Execution::default()
-                };
+            let saved = |case: &Arc<Case>, folder: &Path, execution: Execution| {
+                let communicator = Arc::clone(&execution.communicator);
                 let mut running = Running::start(case, None, execution);
                 // The clocks of the ranks differ.
                 let started = Timestamp::from_nanosecond(communicator.rank() as i128).unwrap();
@@ -285,8 +282,13 @@ mod tests {
                 files
             };
             Unfinished::of(alone.path()).create().unwrap();
-            let expected = saved(&case, alone.path(), Arc::new(Alone));
+            let expected = saved(&case, alone.path(), Execution::default());
             assert!(expected.len() > 5);
+            let on_device = Execution {
+                device: Some(Arc::new(FusedDevice)),
+                ..Execution::default()
+            };
+            assert!(saved(&case, alone.path(), on_device) == expected);
             for size in [2, 3, 5] {
                 let folder = tempfile::tempdir().unwrap();
                 Unfinished::of(folder.path()).create().unwrap();
@@ -296,7 +298,11 @@ mod tests {
                         on_node: size,
                     };
                     let case = Case::to_run(parsed(), "case", Path::new(""), &mut |_| true, ranks);
-                    let found = saved(&Arc::new(case.unwrap()), folder.path(), Arc::new(rank.clone()));
+                    let of_rank = Execution {
+                        communicator: Arc::new(rank.clone()),
+                        ..Execution::default()
+                    };
+                    let found = saved(&Arc::new(case.unwrap()), folder.path(), of_rank);
                     for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
                         assert!(found == expected, "{size} ranks, checkpoint {k}");
                     }

@@ -26,7 +26,7 @@ pub use self::files::is_drawn_from;
 pub use self::front::{draw_kymograph, title_of_place};
 pub use self::maps::{draw_field, title_of_field};
 use self::movie::MoviePace;
-use crate::manifest::Manifest;
+use crate::manifest::{Manifest, Processors};
 use crate::names::{KYMOGRAPH, MOVIE, RunPicture, SERIES};
 use crate::observers::events::FILE as EVENTS;
 use crate::results;
@@ -57,10 +57,10 @@ pub fn write_run(
     data: &mut RunData,
     mut folder: RunFolder,
     started: jiff::Timestamp,
-    threads: usize,
+    processors: Processors,
 ) -> Result<Manifest, RunPictureError> {
     results::write(case, data, &mut folder)?;
-    complete(case, folder, started, threads)
+    complete(case, folder, started, processors)
 }
 
 /// Draws the pictures of a run from its [results](crate::results::write), and writes the manifest, which
@@ -69,13 +69,13 @@ pub fn complete(
     case: &Case,
     mut folder: RunFolder,
     started: jiff::Timestamp,
-    threads: usize,
+    processors: Processors,
 ) -> Result<Manifest, RunPictureError> {
     let place = folder.path().to_owned();
     each_file(RunFiles::Folder(&place), case.output.movie, |name, contents| {
         Ok(folder.write(name, contents)?)
     })?;
-    Ok(folder.complete(case, started, threads)?)
+    Ok(folder.complete(case, started, processors)?)
 }
 
 /// Draws the pictures of a run with its files in memory, and the movie if requested. Returns the files of the
@@ -174,7 +174,14 @@ mod tests {
         let run = || running::run(&case, 1).unwrap();
         let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();
         results::write_case(&case, &mut folder).unwrap();
-        write_run(&case, &mut run(), folder, jiff::Timestamp::now(), 1).unwrap();
+        write_run(
+            &case,
+            &mut run(),
+            folder,
+            jiff::Timestamp::now(),
+            Processors::threads(1),
+        )
+        .unwrap();
         let mut files = results::in_memory(&case, &mut run()).unwrap();
         files.extend(in_memory(&files, true).unwrap());
         let written: BTreeMap<String, Vec<u8>> = std::fs::read_dir(&out)

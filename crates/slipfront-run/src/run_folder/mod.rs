@@ -29,7 +29,7 @@ use self::journal::Journal;
 use self::unfinished::Unfinished;
 use crate::agree::{RankFailure, agree};
 use crate::folder_error::FolderError;
-use crate::manifest::{Manifest, ManifestFile, Until};
+use crate::manifest::{Manifest, ManifestFile, Processors, Until};
 use crate::names::{CASE, CHECKPOINT, JOURNAL, MANIFEST, PREVIOUS, UNFINISHED};
 
 /// A folder that was locked, if it exists, and inspected, for a run that begins or is resumed there.
@@ -360,7 +360,7 @@ impl RunFolder {
         mut self,
         case: &Case,
         started: jiff::Timestamp,
-        threads: usize,
+        processors: Processors,
     ) -> Result<Manifest, FolderError> {
         for file in &self.written {
             let path = self.path.join(&file.name);
@@ -370,7 +370,7 @@ impl RunFolder {
             }
         }
         let files = std::mem::take(&mut self.written);
-        let (manifest, bytes) = Manifest::of(files, case, started, threads).with_checksum();
+        let (manifest, bytes) = Manifest::of(files, case, started, processors).with_checksum();
         let file = write_temp(&self.temporary(), |file| file.write_all(&bytes));
         self.place_manifest(file.map_err(FolderError::write(&self.path.join(MANIFEST)))?)?;
         self.close();

@@ -3,12 +3,16 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::engine::Engine;
 use super::fused::{Fused, LargestFactors, SeriesNumbers, blocks_differ};
+use crate::checkpoint::BlockColumn;
+use crate::clock::Clock;
 use crate::communicator::Alone;
-use crate::device::{CpuOnly, DeviceLattice, EnergySteps, Equations, Motion, NEVER, flag};
+use crate::device::{CpuOnly, DeviceLattice, EnergySteps, Equations, Motion, NEVER, StepRecord, flag};
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
+use crate::position_bins::PositionBins;
 use crate::state::State;
 
 impl DeviceLattice {
@@ -96,6 +100,89 @@ impl DeviceLattice {
             velocity_at_start: velocity_after,
             model,
         })
+    }
+
+    /// Computes some steps with the fused kernel, which gives the same bits as any device.
+    pub(crate) fn run_on_cpu(&mut self, steps: u32) {
+        let model = Arc::clone(&self.model);
+        let mut kernel = Fused::of_device(self);
+        for _ in 0..steps {
+            let clock = Clock {
+                step: self.steps_done,
+                drive_steps: self.steps_done,
+                ..Clock::start(self.equations.dt_star)
+            };
+            let totals = kernel.step(&model, &clock, self.needs_energies(clock.step));
+            let stored = totals.stored_energy.unwrap_or_default();
+            self.records.push_back(StepRecord {
+                displacement: totals.displacement,
+                velocity_after: totals.velocity_after,
+                velocity_square: totals.velocity_square,
+                friction_power: totals.friction_power,
+                stress_square_max: kernel.stress_square_max(&model, &clock),
+                n_sliding: [totals.n_sliding, totals.n_slipping].map(|count| count as u32),
+                stored: [stored.kinetic, stored.lattice, stored.drive_springs],
+            });
+            self.steps_done += 1;
+        }
+        self.take_state(&kernel);
+    }
+
+    /// Takes the state of a kernel after the latest step.
+    pub(crate) fn take_state(&mut self, kernel: &Fused) {
+        self.motion = kernel.motion_of_device();
+        self.state = kernel.state();
+        let mut times_star = vec![0.0; self.first_slips.len()];
+        kernel.read_column(BlockColumn::FirstSlip, 0, &mut times_star);
+        for (step, time_star) in self.first_slips.iter_mut().zip(times_star) {
+            *step = if time_star.is_nan() {
+                NEVER
+            } else {
+                (time_star / self.equations.dt_star).round() as u32
+            };
+        }
+    }
+
+    /// Time of the first slip of a block, NaN if it has not slipped.
+    pub(crate) fn first_slip_time_star(&self, b: usize) -> f64 {
+        match self.first_slips[b] {
+            NEVER => f64::NAN,
+            step => f64::from(step) * self.equations.dt_star,
+        }
+    }
+
+    /// Reads a column of a checkpoint for the blocks from `first` on.
+    pub(crate) fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
+        let State {
+            displacement: u,
+            velocity: v,
+        } = &self.state;
+        let from = match column {
+            BlockColumn::DisplacementX => &u.x,
+            BlockColumn::DisplacementY => &u.y,
+            BlockColumn::VelocityX => &v.x,
+            BlockColumn::VelocityY => &v.y,
+            BlockColumn::FirstSlip => {
+                for (b, time_star) in (first..).zip(values) {
+                    *time_star = self.first_slip_time_star(b);
+                }
+                return;
+            }
+        };
+        values.copy_from_slice(&from[first..first + values.len()]);
+    }
+
+    /// Adds the blocks in contact to `counts`, each in its bin: those that slide if `sliding` is true, else
+    /// those that do not. A block slides in the present step if it moves after it.
+    pub(crate) fn count_in_contact(&self, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
+        let v = &self.state.velocity;
+        for (b, flags) in self.flags.iter().enumerate() {
+            let slides = v.x[b] != 0.0 || v.y[b] != 0.0;
+            if flags & flag::IN_CONTACT != 0 && slides == sliding {
+                let (i, j) = self.model.lattice.column_row(b);
+                counts[bins.bin(i, j)] += 1;
+            }
+        }
     }
 }
 

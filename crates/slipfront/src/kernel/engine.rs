@@ -3,7 +3,7 @@
 use super::block::{Block, Field};
 use crate::checkpoint::{BlockColumn, MotionBounds};
 use crate::clock::Clock;
-use crate::device::DeviceLattice;
+use crate::device::{Device, DeviceError, DeviceLattice};
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
@@ -81,6 +81,16 @@ pub(crate) trait Engine: Send + Sync {
 
     /// The lattice that a device computes, if the kernel replays its steps.
     fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {
+        None
+    }
+
+    /// The device that computes the steps, or computed the first of them, if the kernel has one.
+    fn device(&self) -> Option<&dyn Device> {
+        None
+    }
+
+    /// The failure of the device that computed the first steps, if the CPU computes the others.
+    fn device_failure(&self) -> Option<&DeviceError> {
         None
     }
 }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use super::engine::Engine;
 use super::fused::Fused;
 use super::general::General;
+use super::replay::Replay;
 use crate::checkpoint::Checkpoint;
 use crate::communicator::{Alone, Communicator};
+use crate::device::Device;
 use crate::friction::Friction;
 use crate::model::Model;
 use crate::state::State;
@@ -50,6 +52,9 @@ pub struct Execution {
     /// Connection to the other ranks that share the lattice; [`Alone`] by default. Each rank has a model of
     /// its own rows.
     pub communicator: Arc<dyn Communicator>,
+    /// Device that computes the steps of the models that it [covers](crate::device::DeviceLattice::check), in place of the
+    /// kernel; none by default.
+    pub device: Option<Arc<dyn Device>>,
 }
 
 impl Kernel {
@@ -83,11 +88,16 @@ impl Execution {
             threads,
             skips: true,
             communicator: Arc::new(Alone),
+            device: None,
         }
     }
 
     /// A kernel that begins in a given state, or at rest.
-    pub(crate) fn begin(self, model: &Model, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
+    pub(crate) fn begin(self, model: &Arc<Model>, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
+        let of_device = |device| Replay::on_device(device, model, dt_star, state.as_ref());
+        if let Some(replay) = self.device.as_ref().and_then(of_device) {
+            return Box::new(replay);
+        }
         let (threads, skips, communicator) = (self.threads, self.skips, self.communicator);
         match self.kernel.for_model(model) {
             Kernel::Fused => {
@@ -102,7 +112,7 @@ impl Execution {
     /// kernel.
     pub(crate) fn resume<E>(
         self,
-        model: &Model,
+        model: &Arc<Model>,
         dt_star: f64,
         checkpoint: &Checkpoint,
         read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
@@ -111,7 +121,11 @@ impl Execution {
         match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
-                Ok(Some(Box::new(kernel)))
+                let of_device = |device| Replay::on_device(device, model, dt_star, None);
+                Ok(Some(match self.device.as_ref().and_then(of_device) {
+                    Some(replay) => Box::new(replay.resumed(&kernel, checkpoint)),
+                    None => Box::new(kernel),
+                }))
             }
             (Kernel::General, None) => {
                 let kernel = General::resume(model, dt_star, checkpoint, threads, communicator, read)?;

@@ -114,7 +114,7 @@ pub(crate) fn assert_same_with(slider: &Slider, change: &Change, from: Option<&S
                 own,
                 Execution {
                     communicator: Arc::new(rank.clone()),
-                    ..execution
+                    ..execution.clone()
                 },
             );
             watch(&mut simulation, 1..steps + 1, None)

@@ -1,8 +1,12 @@
 //! A run with steps that a device has recorded equals the run of the fused kernel, to the last bit.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use slipfront::communicator::Alone;
-use slipfront::device::{Device, DeviceLattice, EnergySteps};
-use slipfront::observe::{Curve, Field, Scheduled};
+use slipfront::device::{Device, DeviceError, DeviceLattice, EnergySteps};
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Curve, Field, Frames, Instants, KineticStart, Kymograph, Schedule, Scheduled};
 use slipfront::surface::{Load, Texture};
 use slipfront::testing::FusedDevice;
 use slipfront::{
@@ -14,7 +18,7 @@ use test_case::test_matrix;
 use crate::common::{Slider, cavity, thrown, varied};
 use crate::executions::{shown, state};
 use crate::fields::assert_fields_match_blocks;
-use crate::{bits, columns, fused, go};
+use crate::{bits, columns, fused, go, stopped_and_resumed};
 
 const EVERY: EnergySteps = EnergySteps { every: 1, last: 0 };
 
@@ -76,6 +80,101 @@ fn a_replay_has_the_same_bits(edges: Edges, texture: Option<Texture>, epsilon: f
             }
         }
     }
+}
+
+/// A device that fails from some call on, having changed the lattices.
+#[derive(Debug)]
+struct Failing {
+    calls: AtomicU32,
+    good: u32,
+}
+
+impl Device for Failing {
+    fn name(&self) -> String {
+        "failing".to_owned()
+    }
+
+    fn most_blocks(&self) -> usize {
+        usize::MAX
+    }
+
+    fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
+        FusedDevice.run(lattices, steps)?;
+        if self.calls.fetch_add(1, Ordering::Relaxed) < self.good {
+            return Ok(());
+        }
+        Err(DeviceError("broken".to_owned()))
+    }
+}
+
+/// A run passes between a device and the CPU, and its observers read fields and energies at any step: frames,
+/// instants, energies, the kymograph, and the state at a checkpoint.
+#[test_matrix(
+    [None, Some(cavity([17, 12], 10.0, 1, 0.3, true))],
+    [u32::MAX, 0, 5],
+    [1, 61, u64::MAX]
+)]
+fn a_run_on_a_device_has_the_same_bits(texture: Option<Texture>, good: u32, part: u64) {
+    let slider = Slider {
+        blocks: [17, 12],
+        textures: texture.into_iter().collect(),
+        degrees: 25.0,
+        v_star: 0.1,
+        dt_star: 0.2,
+        load: Load::Kept,
+        ..Slider::default()
+    };
+    let (model, dt_star, stop) = (slider.model(), slider.dt_star, Stop::at_step(slider.steps(4.0)));
+    let device = Arc::new(Failing {
+        calls: AtomicU32::new(0),
+        good,
+    });
+    let on_device = Execution {
+        device: Some(device),
+        ..fused()
+    };
+    for from in [None, Some(thrown(17 * 12, 0.1, 40))] {
+        let observed = |executions: [&Execution; 2]| {
+            let selection = Selection {
+                fields: vec![Field::DisplacementX, Field::ContactStress, Field::Sliding],
+                stride: 1,
+            };
+            let mut instants = Instants::new(selection.clone(), KineticStart::Auto, 1e9);
+            let (mut frames, mut kymograph) = (Frames::new(selection), Kymograph::default());
+            let (mut curve, mut energies) = (Curve::every(3), Curve::every(14));
+            let mut run = Simulation::new(model.clone(), dt_star, from.clone(), executions[0].clone());
+            for parts in 1.. {
+                let mut observers = [
+                    Scheduled::always(&mut instants),
+                    Scheduled::new(Schedule::Every(37), &mut frames),
+                    kymograph.scheduled(),
+                    Scheduled::always(&mut curve),
+                    Scheduled::always(&mut energies),
+                ];
+                if run.advance(stop, part, &mut observers).unwrap().is_some() {
+                    break;
+                }
+                if parts % 7 == 0 {
+                    let next = executions[parts / 7 % 2].clone();
+                    run = stopped_and_resumed(&run, &model, dt_star, next);
+                }
+            }
+            assert_fields_match_blocks(&run);
+            let found = (
+                shown(&run),
+                state(&run),
+                bits(&run.snapshot().first_slip_time_star()),
+            );
+            (found, instants, frames, kymograph, curve.rows, energies.rows)
+        };
+        let cpu = fused();
+        let expected = format!("{:?}", observed([&cpu, &cpu]));
+        assert!(expected == format!("{:?}", observed([&on_device, &on_device])));
+        assert!(expected == format!("{:?}", observed([&on_device, &cpu])));
+    }
+    let mut run = Simulation::new(model, dt_star, None, on_device);
+    run.step();
+    assert_eq!(run.device_failure().is_some(), good != u32::MAX);
 }
 
 /// Several lattices at once, of different shapes, up to their onsets, which come at different steps: the

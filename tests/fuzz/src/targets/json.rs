@@ -190,6 +190,7 @@ fn manifests() -> Vec<Vec<u8>> {
         kernel: "fused".to_owned(),
         simd_width: "avx2".to_owned(),
         threads: 2,
+        device: Some("GPU".to_owned()),
         host: "host".to_owned(),
         platform: "linux x86_64".to_owned(),
         started: "2026-01-01T00:00:00Z".to_owned(),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use slipfront_case::case::Case;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::manifest::Processors;
 use slipfront_run::names::{CASE, FIELDS, KYMOGRAPH, RunPicture, SERIES, STATE, SUMMARY};
 use slipfront_run::observers::tables;
 use slipfront_run::pictures;
@@ -30,11 +31,16 @@ pub(super) fn complete(
     options: RunOptions,
 ) -> Result<(), RankFailure> {
     let (case, ranks) = (Arc::clone(running.case()), options.ranks.clone());
-    let (threads, draws, is_verbose) = (options.threads, options.draws, options.is_verbose());
+    let (draws, is_verbose) = (options.draws, options.is_verbose());
+    let processors = Processors {
+        threads: options.threads,
+        ..running.processors()
+    };
     let (started, first_step) = (checkpoints.started(), running.snapshot().step);
     let out = checkpoints.folder().to_owned();
     let mut timer = CheckpointTimer::new(checkpoints, options.interval, options.signals, options.ranks);
     let mut progress = RunProgress::new(&running, options.quiet);
+    let mut has_failed = false;
     let reason = loop {
         match running.advance(case.steps_per_poll()) {
             Ok(Some(reason)) => break reason,
@@ -49,6 +55,10 @@ pub(super) fn complete(
             }
         }
         progress.show(&running.snapshot());
+        if let Some(failure) = running.device_failure().filter(|_| !has_failed) {
+            has_failed = true;
+            progress.note(&format!("warning: {failure}; the run continues on the CPU"));
+        }
         timer.save_if_due(&running, &progress)?;
     };
     progress.finish();
@@ -67,9 +77,9 @@ pub(super) fn complete(
             folder.place(name, file)?;
         }
         if draws {
-            pictures::complete(&case, folder, started, threads)
+            pictures::complete(&case, folder, started, processors)
         } else {
-            Ok(folder.complete(&case, started, threads)?)
+            Ok(folder.complete(&case, started, processors)?)
         }
     });
     ranks.agree(finished.transpose().map_err(failed))?;

@@ -24,6 +24,7 @@ use self::complete::complete;
 use self::options::RunOptions;
 use crate::case_args::CaseArgs;
 use crate::checkpoint_timer::Interval;
+use crate::device::DeviceArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::print_stderr::print_notes;
@@ -67,6 +68,8 @@ pub(crate) struct RunCommand {
     /// Maximum number of threads [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Do not print physics, progress and summary
     #[arg(short, long)]
     quiet: bool,
@@ -82,10 +85,14 @@ impl RunCommand {
         ranks.expect_same(|| self.shared_options())?;
         let options = ranks.agree(self.options(ranks))?;
         if let Some(folder) = &self.resume {
-            return resume::resume(folder, self.previous, options);
+            return resume::resume(folder, self.previous, self.device, options);
         }
         let case_path = self.case.path().map(Path::to_owned);
         let case = Arc::new(ranks.agree(self.case.load(ranks, &options.signals, options.quiet))?);
+        let device = ranks.agree(
+            self.device
+                .open_for(&case, ranks.size(), options.quiet || options.json),
+        )?;
         let (force, saves) = (self.force, options.interval.saves());
         let named = Path::new("results").join(&case.name);
         let (out, takes_next) = self.out.map_or((named, !force), |out| (out, false));
@@ -134,6 +141,7 @@ impl RunCommand {
         let checkpoints = Checkpoints::new(&out, &case, started);
         let execution = Execution {
             communicator: ranks.communicator(),
+            device,
             ..Execution::on_threads(options.threads)
         };
         let running = Running::start(&case, None, execution);
@@ -151,6 +159,7 @@ impl RunCommand {
             ("--checkpoint", self.checkpoint.to_string()),
             ("--no-pictures", flag(self.no_pictures)),
             ("--json", flag(self.json)),
+            ("--device", self.device.to_string()),
         ];
         options.map(|(name, value)| (name.to_owned(), value)).into()
     }

@@ -19,13 +19,19 @@ use slipfront_run::verify::{VerifyError, expect_as_written};
 
 use super::complete::complete;
 use super::options::RunOptions;
+use crate::device::DeviceArgs;
 use crate::failure::Failure;
 use crate::make_case::make_case;
 use crate::print::{print, print_message};
 use crate::ranks::CommandRanks;
 use crate::report;
 
-pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result<(), RankFailure> {
+pub(super) fn resume(
+    path: &Path,
+    previous: bool,
+    device: DeviceArgs,
+    options: RunOptions,
+) -> Result<(), RankFailure> {
     let ranks = options.ranks.clone();
     let folder = ranks.agree(open(path, ranks.is_first()))?;
     let run = &folder.inspection;
@@ -37,10 +43,15 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     // Ranks must agree before this: a rank without a case would leave the others waiting for it.
     let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
     let case = Arc::new(ranks.agree(case_to_resume(run, file, &options))?);
+    let device = ranks.agree(device.open_for(&case, ranks.size(), options.quiet || options.json))?;
     let loaded = ranks.agree(load(run, &case, previous, &ranks))?;
     ranks.first(|| check_disk(run, &case, &options))?;
-    let (running, checkpoints, from) =
-        ranks.agree(begin(run, &case, loaded, previous, options.threads, &ranks))?;
+    let execution = Execution {
+        communicator: ranks.communicator(),
+        device,
+        ..Execution::on_threads(options.threads)
+    };
+    let (running, checkpoints, from) = ranks.agree(begin(run, &case, loaded, previous, execution, &ranks))?;
     let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
     expect_shared(checkpoints.folder(), &*ranks.communicator())?;
     if options.is_verbose() {
@@ -73,13 +84,9 @@ fn begin(
     case: &Arc<Case>,
     loaded: Option<LoadedCheckpoint>,
     previous: bool,
-    threads: usize,
+    execution: Execution,
     ranks: &CommandRanks,
 ) -> Result<(Running, Checkpoints, String), Failure> {
-    let execution = Execution {
-        communicator: ranks.communicator(),
-        ..Execution::on_threads(threads)
-    };
     Ok(match loaded {
         None => {
             let checkpoints = Checkpoints::new(&run.path, case, clock::now());

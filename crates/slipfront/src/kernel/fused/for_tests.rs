@@ -2,7 +2,7 @@
 
 use super::layout::VECTORS;
 use super::*;
-use crate::device::{Device, DeviceError, DeviceLattice, StepRecord};
+use crate::device::{Device, DeviceError, DeviceLattice};
 
 /// The fused kernel on its own, on one thread of one rank. Tests choose the width of its vectors, and read
 /// its bounds and the steps up to which it rests.
@@ -108,90 +108,20 @@ impl FusedKernel {
 pub struct FusedDevice;
 
 impl Device for FusedDevice {
+    fn name(&self) -> String {
+        "fused kernel".to_owned()
+    }
+
     fn most_blocks(&self) -> usize {
         usize::MAX
     }
 
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
         for lattice in lattices {
-            run_on_fused(lattice, steps);
+            lattice.run_on_cpu(steps);
         }
         Ok(())
     }
-}
-
-/// Advances a lattice by some steps.
-fn run_on_fused(lattice: &mut DeviceLattice, steps: u32) {
-    let model = &*Arc::clone(&lattice.model);
-    let (dt_star, n) = (lattice.equations.dt_star, model.lattice.n_blocks());
-    let state = (lattice.steps_done == 0).then_some(&lattice.state);
-    let mut kernel = Fused::new(model, dt_star, state, 1, false, Arc::new(Alone));
-    if let Some(before) = lattice.steps_done.checked_sub(1) {
-        for (column, values) in columns(&lattice.state, &lattice.first_slips, dt_star) {
-            kernel.set_column(column, 0, &values);
-        }
-        kernel = kernel.resumed();
-        kernel.swept_step = Some(before);
-        kernel.motion_bounds = MotionBounds::of_numbers(lattice.motion.bounds);
-        kernel.totals.velocity_after = lattice.motion.velocity_after;
-        kernel.stress_square_max = lattice.motion.stress_square_max;
-    }
-    for _ in 0..steps {
-        let clock = Clock {
-            step: lattice.steps_done,
-            drive_steps: lattice.steps_done,
-            ..Clock::start(dt_star)
-        };
-        let energies = lattice.needs_energies(clock.step);
-        let totals = kernel.step(model, &clock, energies);
-        let stored = totals.stored_energy.unwrap_or_default();
-        lattice.records.push_back(StepRecord {
-            displacement: totals.displacement,
-            velocity_after: totals.velocity_after,
-            velocity_square: totals.velocity_square,
-            friction_power: totals.friction_power,
-            stress_square_max: kernel.stress_square_max(model, &clock),
-            n_sliding: [totals.n_sliding, totals.n_slipping].map(|count| count as u32),
-            stored: [stored.kinetic, stored.lattice, stored.drive_springs],
-        });
-        lattice.steps_done += 1;
-    }
-    lattice.motion.bounds = kernel.motion_bounds.to_numbers();
-    lattice.motion.velocity_after = kernel.totals.velocity_after;
-    lattice.motion.stress_square_max = kernel.stress_square_max;
-    lattice.state = kernel.state();
-    let mut times = vec![0.0; n];
-    kernel.read_column(BlockColumn::FirstSlip, 0, &mut times);
-    let step = |time: f64| {
-        if time.is_nan() {
-            NEVER
-        } else {
-            (time / dt_star).round() as u32
-        }
-    };
-    lattice.first_slips = times.into_iter().map(step).collect();
-}
-
-/// Columns of a checkpoint of this state.
-fn columns(state: &State, first_slips: &[u32], dt_star: f64) -> [(BlockColumn, Vec<f64>); 5] {
-    let State {
-        displacement: u,
-        velocity: v,
-    } = state;
-    let time = |&step: &u32| {
-        if step == NEVER {
-            f64::NAN
-        } else {
-            f64::from(step) * dt_star
-        }
-    };
-    [
-        (BlockColumn::DisplacementX, u.x.clone()),
-        (BlockColumn::DisplacementY, u.y.clone()),
-        (BlockColumn::VelocityX, v.x.clone()),
-        (BlockColumn::VelocityY, v.y.clone()),
-        (BlockColumn::FirstSlip, first_slips.iter().map(time).collect()),
-    ]
 }
 
 /// Every vector width that this processor supports, narrow ones first.

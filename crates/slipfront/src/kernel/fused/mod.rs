@@ -42,6 +42,7 @@ mod upright;
 mod variations;
 mod vector;
 
+use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
@@ -63,7 +64,7 @@ use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::clock::Clock;
 use crate::communicator::{Alone, Communicator};
-use crate::device::NEVER;
+use crate::device::{DeviceLattice, Motion, NEVER};
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::Integrator;
 use crate::kernel::bands::for_each_band;
@@ -208,6 +209,38 @@ impl Fused {
         let mut kernel = Self::new(model, dt_star, Some(state), 1, false, Arc::new(Alone));
         kernel.begin(model);
         (kernel.motion_bounds, kernel.totals.velocity_after)
+    }
+
+    /// Continues a lattice after the latest of its steps, or begins it.
+    pub(crate) fn of_device(lattice: &DeviceLattice) -> Self {
+        let (model, dt_star) = (&*lattice.model, lattice.equations.dt_star);
+        let Some(latest) = lattice.steps_done.checked_sub(1) else {
+            return Self::new(model, dt_star, Some(&lattice.state), 1, false, Arc::new(Alone));
+        };
+        let mut kernel = Self::new(model, dt_star, None, 1, false, Arc::new(Alone));
+        for column in BlockColumn::ALL {
+            BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
+                lattice.read_column(column, first, values);
+                kernel.set_column(column, first, values);
+                Ok::<_, Infallible>(())
+            })
+            .unwrap_or_else(|never| match never {});
+        }
+        let mut kernel = kernel.resumed();
+        kernel.swept_step = Some(latest);
+        kernel.motion_bounds = MotionBounds::of_numbers(lattice.motion.bounds);
+        kernel.totals.velocity_after = lattice.motion.velocity_after;
+        kernel.stress_square_max = lattice.motion.stress_square_max;
+        kernel
+    }
+
+    /// Numbers of the lattice after the latest step.
+    pub(crate) fn motion_of_device(&self) -> Motion {
+        Motion {
+            bounds: self.motion_bounds.to_numbers(),
+            velocity_after: self.totals.velocity_after,
+            stress_square_max: self.stress_square_max,
+        }
     }
 
     /// Number of sheets, the lowest included.
