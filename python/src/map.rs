@@ -16,8 +16,9 @@ use crate::device::{self, device_error};
 use crate::errors::{RunError, folder_error};
 use crate::process::{detached, watched};
 
-/// Runs cases, one on each thread at a time, or all on a device, and returns `summary.json` of each in their order. A signal ends
-/// all of them. A run that diverges ends those after it, so that the error is always that of the first.
+/// Runs cases, one on each thread at a time, or all on a device, and returns `summary.json` of each in their
+/// order. A signal ends all of them. A run that diverges ends those after it, so that the error is always
+/// that of the first.
 #[pyfunction]
 pub(crate) fn run_summaries(
     py: Python<'_>,

@@ -37,8 +37,9 @@ enum DeviceChoice {
 /// to be faster than a processor.
 const LEAST_BLOCKS: usize = 100_000;
 
-/// Bytes of the machine's memory that a block of a run on a device needs in addition: its state before and after
-/// the steps that are computed at once, and on the way to the device. Measured with the fused kernel as device.
+/// Bytes of the machine's memory that a block of a run on a device needs in addition: its state before and
+/// after the steps that are computed at once, and on the way to the device. Measured with the fused kernel as
+/// device.
 const MORE_BYTES_PER_BLOCK: f64 = 180.0;
 
 impl DeviceArgs {

@@ -5,10 +5,10 @@
 //! $ cargo run --release -p slipfront-gpu --features cuda --example gpu_ensembles
 //! ```
 //!
-//! The sliders are those of the paper's Fig. 3, with 25 x 25, 50 x 50 and 100 x 100 blocks and V* = 0.03. Each
-//! has its own surface, takes 1000 steps of 0.1 t*, and yields one number from all its steps: the largest
-//! mu*. The times of the GPU run from the models to these numbers. They exclude the generation of surfaces,
-//! and include the copies to and from the GPU and the replay of the records on all CPU cores.
+//! The sliders are those of the paper's Fig. 3, with 25 x 25, 50 x 50 and 100 x 100 blocks and V* = 0.03.
+//! Each has its own surface, takes 1000 steps of 0.1 t*, and yields one number from all its steps: the
+//! largest mu*. The times of the GPU run from the models to these numbers. They exclude the generation of
+//! surfaces, and include the copies to and from the GPU and the replay of the records on all CPU cores.
 
 use std::error::Error;
 use std::sync::Arc;

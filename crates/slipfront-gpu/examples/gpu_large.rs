@@ -5,9 +5,10 @@
 //! ```
 //!
 //! The sliders are those of the paper's Fig. 3 with more blocks, thrown so that every block slides, the most
-//! work that a step can have. The time of a step is the difference of two runs of different length, so that it
-//! excludes the copies to and from the GPU. The bandwidth is that of 82 bytes a block and step: displacement
-//! and velocity before and after, limit, impulse and flags. It is compared with a copy within the GPU's memory.
+//! work that a step can have. The time of a step is the difference of two runs of different length, so that
+//! it excludes the copies to and from the GPU. The bandwidth is that of 82 bytes a block and step:
+//! displacement and velocity before and after, limit, impulse and flags. It is compared with a copy within
+//! the GPU's memory.
 
 use std::error::Error;
 use std::sync::Arc;

@@ -35,8 +35,8 @@ const SOURCES: [&str; 9] = [
 /// Bytes of shared memory that a kernel needs per block of the lattice.
 const BYTES_PER_BLOCK: usize = 6 * size_of::<f64>() + size_of::<u32>();
 
-/// Thread-group sizes for which there are kernels for small lattices, and the largest number of blocks for each
-/// if memory allows.
+/// Thread-group sizes for which there are kernels for small lattices, and the largest number of blocks for
+/// each if memory allows.
 const GROUPS: [(u32, usize); 3] = [(128, 1024), (256, 2304), (512, usize::MAX)];
 
 /// Largest number of blocks of a lattice: kernels count them in 32 bits with a sign.

@@ -14,8 +14,8 @@ pub struct Emulated {
     /// Distance from a thread that waits to the thread that runs next: any odd number. Results do not depend
     /// on it.
     pub stride: u32,
-    /// Number of groups that share the tiles of each lattice, as on a GPU for lattices that are large; none for
-    /// one group with all blocks in its own memory, as for small ones.
+    /// Number of groups that share the tiles of each lattice, as on a GPU for lattices that are large; none
+    /// for one group with all blocks in its own memory, as for small ones.
     pub groups: Option<u32>,
 }
 
@@ -43,7 +43,8 @@ impl Device for Emulated {
         "emulated GPU".to_owned()
     }
 
-    /// Number of warps times the number of terms that the sum of a warp may have, if tiles were divided evenly.
+    /// Number of warps times the number of terms that the sum of a warp may have, if tiles were divided
+    /// evenly.
     fn most_blocks(&self) -> usize {
         (1 << 11) * (self.threads / 32 * self.groups.unwrap_or(1)) as usize
     }

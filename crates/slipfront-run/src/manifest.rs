@@ -134,7 +134,7 @@ pub enum ManifestError {
     Damaged { path: PathBuf, why: String },
 }
 
-/// What computed a run; results do not depend on it.
+/// Threads or device that computed a run; results do not depend on them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Processors {
     /// Number of threads that the run was allowed.

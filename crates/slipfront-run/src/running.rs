@@ -381,7 +381,7 @@ impl Running {
         self.threads
     }
 
-    /// What computes the run.
+    /// Threads or device that compute the run.
     pub fn processors(&self) -> Processors {
         Processors {
             threads: self.threads,

@@ -255,8 +255,8 @@ mod tests {
         }
     }
 
-    /// Ranks that share a lattice, and a device, save the same bytes as a single rank, at many instants of a run
-    /// with all kinds of frames, and within events of slip.
+    /// Ranks that share a lattice, and a device, save the same bytes as a single rank, at many instants of a
+    /// run with all kinds of frames, and within events of slip.
     #[test]
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [

@@ -52,8 +52,8 @@ pub struct Execution {
     /// Connection to the other ranks that share the lattice; [`Alone`] by default. Each rank has a model of
     /// its own rows.
     pub communicator: Arc<dyn Communicator>,
-    /// Device that computes the steps of the models that it [covers](crate::device::DeviceLattice::check), in place of the
-    /// kernel; none by default.
+    /// Device that computes the steps of the models that it [covers](crate::device::DeviceLattice::check), in
+    /// place of the kernel; none by default.
     pub device: Option<Arc<dyn Device>>,
 }
 

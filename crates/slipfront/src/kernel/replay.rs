@@ -3,8 +3,8 @@
 //! A device computes several steps at once, and values of single blocks are known at the last of them. The
 //! device computes a part of these steps again where such values are read before, or energies that were not
 //! recorded, so that parts are as long as the steps between two readings. The fused kernel, which gives the
-//! same bits, takes the state and reads the values. If the caller of the device records the steps, such values
-//! can be read only where it has stopped.
+//! same bits, takes the state and reads the values. If the caller of the device records the steps, such
+//! values can be read only where it has stopped.
 
 use std::sync::{Arc, OnceLock};
 
@@ -30,8 +30,8 @@ pub(crate) struct Replay {
     clock: Clock,
     present: StepRecord,
     totals: Totals,
-    /// Set when the state at the present step has been read: the lattice at this step, or none if `lattice` is
-    /// at this step.
+    /// Set when the state at the present step has been read: the lattice at this step, or none if `lattice`
+    /// is at this step.
     here: OnceLock<Option<Box<DeviceLattice>>>,
     /// The fused kernel at the present step, if it has read a value of single blocks there.
     blocks: OnceLock<Box<Fused>>,
