@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use slipfront::device::Device;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 
@@ -29,6 +30,8 @@ pub struct Design {
     pub(crate) limits: Limits,
     /// Seed of the random drafts of the search.
     start: u64,
+    /// Number of drafts that are tried at once; by default from the number of runs.
+    drafts_at_once: Option<usize>,
     /// Masks that the search also starts from, and their names.
     drawn: Vec<(String, Vec<bool>)>,
     /// Shapes with unknown numbers, if numbers are searched for in place of masks.
@@ -76,12 +79,26 @@ impl Design {
                 subjects,
                 grid,
                 is_worst,
+                device: None,
             },
             limits,
             start,
+            drafts_at_once: None,
             drawn: Vec::new(),
             shapes: None,
         })
+    }
+
+    /// Makes the runs on a device, with the same results. A wish for a curve is for the CPU alone.
+    #[must_use]
+    pub fn on_device(mut self, device: Option<Arc<dyn Device>>) -> Self {
+        self.evaluator.device = device.filter(|_| !matches!(self.evaluator.wish(), Wish::Curve(_)));
+        self
+    }
+
+    /// Tries this many drafts at once, which makes it another search.
+    pub(crate) fn try_at_once(&mut self, drafts: usize) {
+        self.drafts_at_once = Some(drafts);
     }
 
     /// Searches for numbers of shapes in place of masks. Named patterns and masks are only compared with the
@@ -141,7 +158,7 @@ impl Design {
         let groove = legal.iter().filter(|named| named.name == GROOVE);
         let drawn = legal.iter().filter(|named| self.is_drawn(&named.name));
         let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
-        let mut stages = Stages::new(&self.evaluator, self.search_from(starts));
+        let mut stages = Stages::new(&self.evaluator, self.search_from(starts), self.drafts_at_once);
         let (made, here) = (Cell::new(0), Cell::new(0.0));
         let mut kept = |runs: &[MadeRun]| {
             made.set(made.get() + runs.len());
@@ -216,7 +233,7 @@ impl Design {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         let starts = self.starts(&|| bounds.stop.load(Ordering::Relaxed)).0;
-        let mut stages = Stages::new(&self.evaluator, self.search_from(starts));
+        let mut stages = Stages::new(&self.evaluator, self.search_from(starts), self.drafts_at_once);
         let best = stages.run(bounds, &mut RunCache::new(), &mut |_| Ok(()), watch)?;
         if best.is_empty() {
             return Err(StudyError::NoDesign);

@@ -6,10 +6,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
+use slipfront::RunError;
+use slipfront::device::Device;
 use slipfront::parallel::*;
+use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
+use slipfront_run::device_summaries::device_summaries;
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::running::{RunData, run_unless};
+use slipfront_run::summary::Summary;
 
 use crate::search::hash;
 use crate::slider_blocks::SliderBlocks;
@@ -54,6 +59,12 @@ pub struct MadeRun {
     pub(crate) work: f64,
 }
 
+/// Numbers that a design needs of a run.
+fn measured(summary: Result<Summary, RunError>) -> RunOutcome {
+    let measured = summary.map(|summary| Measured::of(&summary));
+    measured.map_err(|error| error.to_string())
+}
+
 /// Callback that receives finished runs, in their order.
 pub type Keep<'a> = dyn FnMut(&[MadeRun]) -> Result<(), StudyError> + 'a;
 
@@ -66,6 +77,8 @@ pub(crate) struct Evaluator {
     pub(crate) grid: SliderBlocks,
     /// Whether the worst case counts, in place of the mean.
     pub(crate) is_worst: bool,
+    /// Device that makes the runs; none for the cores of this machine.
+    pub(crate) device: Option<Arc<dyn Device>>,
 }
 
 impl Evaluator {
@@ -94,6 +107,7 @@ impl Evaluator {
             subjects,
             grid,
             is_worst: self.is_worst,
+            device: self.device.clone(),
         }
     }
 
@@ -147,8 +161,8 @@ impl Evaluator {
         wanted
     }
 
-    /// Makes the runs that are not known yet, on the threads of rayon's pool, and passes them on in the order
-    /// of `wanted`. After a stop, it passes none on.
+    /// Makes the runs that are not known yet, on the device or on the threads of rayon's pool, and passes them
+    /// on in the order of `wanted`. After a stop, it passes none on.
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],
@@ -163,37 +177,58 @@ impl Evaluator {
             .map(|wanted| (self.id(wanted), wanted))
             .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
             .collect();
-        // Each run is its own task: some end early, and no thread may be left with several long runs.
-        let runs = missing.into_par_iter().with_max_len(1);
-        let made: Result<Vec<MadeRun>, StudyError> = runs
-            .map(|(id, wanted)| {
-                Ok(MadeRun {
-                    id,
-                    ended: self.measure(wanted, stop)?.ok_or(StudyError::Interrupted)?,
-                    work: self.subjects[wanted.subject].work(wanted.fidelity),
-                })
-            })
-            .collect();
+        let outcomes = match &self.device {
+            Some(device) => self.measure_on_device(&missing, &**device, stop)?,
+            // Each run is its own task: some end early, and no thread may be left with several long runs.
+            None => missing
+                .par_iter()
+                .with_max_len(1)
+                .map(|(_, wanted)| self.measure(wanted, stop))
+                .collect::<Result<_, _>>()?,
+        };
         // In the order of the request, whichever thread was first, so the journal is the same for any number
         // of threads.
-        let made = made?;
+        let made = missing.into_iter().zip(outcomes).map(|((id, wanted), ended)| {
+            Ok(MadeRun {
+                id,
+                ended: ended.ok_or(StudyError::Interrupted)?,
+                work: self.subjects[wanted.subject].work(wanted.fidelity),
+            })
+        });
+        let made: Vec<MadeRun> = made.collect::<Result<_, StudyError>>()?;
         keep(&made)?;
         known.extend(made.into_iter().map(|made| (made.id, made.ended)));
         Ok(())
     }
 
+    /// Makes runs on a device; none after a stop. A wish for a curve is for the CPU alone.
+    fn measure_on_device(
+        &self,
+        runs: &[(RunId, &Wanted)],
+        device: &dyn Device,
+        stop: &AtomicBool,
+    ) -> Result<Vec<Option<RunOutcome>>, StudyError> {
+        let case = |(_, wanted): &(RunId, &Wanted)| Ok(Arc::new(self.case(wanted)?));
+        let cases: Vec<_> = runs.par_iter().map(case).collect::<Result<_, CaseError>>()?;
+        let summaries = device_summaries(&cases, device, &|| stop.load(Ordering::Relaxed))?;
+        Ok(summaries
+            .into_iter()
+            .map(|summary| summary.map(measured))
+            .collect())
+    }
+
+    /// The case of a run.
+    fn case(&self, wanted: &Wanted) -> Result<Case, CaseError> {
+        let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
+        self.subjects[wanted.subject].case(texture, wanted.surface, wanted.fidelity)
+    }
+
     /// Makes one run; none after a stop.
     fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<RunOutcome>, CaseError> {
         let ends = || stop.load(Ordering::Relaxed);
-        let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
-        let subject = &self.subjects[wanted.subject];
-        let case = subject.case(texture, wanted.surface, wanted.fidelity)?;
-        let Wish::Curve(points) = &subject.wish else {
-            let summary = run_summary_unless(&case, &ends);
-            return Ok(summary.map(|summary| {
-                let measured = summary.map(|summary| Measured::of(&summary));
-                measured.map_err(|error| error.to_string())
-            }));
+        let case = self.case(wanted)?;
+        let Wish::Curve(points) = &self.subjects[wanted.subject].wish else {
+            return Ok(run_summary_unless(&case, &ends).map(measured));
         };
         let record = run_unless(&Arc::new(case), &ends);
         Ok(record.map(|record| {

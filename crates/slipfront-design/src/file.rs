@@ -57,6 +57,9 @@ pub(crate) static DESIGN: ProjectKind = ProjectKind {
 /// Largest number of runs of a search.
 const MAX_RUNS: u32 = 100_000_000;
 
+/// Largest number of drafts at once: the cases of all of them are in memory.
+const MAX_DRAFTS: u32 = 100_000;
+
 /// A design file.
 #[derive(Clone, Debug)]
 pub struct DesignFile {
@@ -111,6 +114,9 @@ key_rows! {
         pub runs: u32 = key("10000", whole(1, MAX_RUNS as u64)),
         /// Seed of the random drafts: another one is another search.
         start: u64 = key("1", KeyKind::Special("0 and more")),
+        /// Number of drafts that are tried at once, by default 8 to 32 from `runs`. More keep many cores or a GPU
+        /// busy; another number is another search.
+        drafts_at_once: Option<u32> = key("", KeyKind::Special("1 to 100 000")).without("from `runs`"),
         /// Numbers of the textures of the base that are searched for in place of a mask, each with its range:
         /// `{ "texture.0.lambda" = ["2 um", "6 um"] }`.
         unknowns: Table = key("{}", KeyKind::Special("keys of textures")).without("none")
@@ -299,6 +305,11 @@ impl DesignFile {
         Ok(textured_blocks(&case))
     }
 
+    /// Whether the wish is a curve.
+    pub fn has_curve(&self) -> bool {
+        self.keys.wish.curve.is_some()
+    }
+
     /// The design that the file asks for.
     ///
     /// # Errors
@@ -385,6 +396,9 @@ impl DesignFile {
         let wished: Vec<(&Case, Wish)> = wished.collect::<Result<_, StudyError>>()?;
         let is_worst = keys.judge_by == JudgeBy::Worst;
         let mut design = Design::new(&wished, is_worst, limits.clone(), keys.start)?;
+        if let Some(drafts) = keys.drafts_at_once {
+            design.try_at_once(drafts as usize);
+        }
         for (k, textures) in keys.starts.iter().enumerate() {
             let textured = self.textured("starts", textures)?;
             design.begin_with(format!("start {} of the file", k + 1), textured);
@@ -641,6 +655,13 @@ impl DesignKeys {
         if !(1..=MAX_RUNS).contains(&self.runs) {
             let sentence = format!("`runs` = {} must lie between 1 and {MAX_RUNS}", self.runs);
             return refuse("runs", sentence);
+        }
+        if let Some(drafts) = self
+            .drafts_at_once
+            .filter(|drafts| !(1..=MAX_DRAFTS).contains(drafts))
+        {
+            let sentence = format!("`drafts_at_once` = {drafts} must lie between 1 and {MAX_DRAFTS}");
+            return refuse("drafts_at_once", sentence);
         }
         if self.max_features == Some(0) {
             return refuse("max_features", "`max_features` must be at least 1".to_owned());

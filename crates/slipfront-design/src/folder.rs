@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Deserialize;
 
+use slipfront::device::Device;
 use slipfront_plot::PictureLook;
 
 use crate::design::{Design, Outcome};
@@ -34,6 +35,8 @@ pub struct DesignFolder {
     pub damaged: usize,
     /// The design in the folder, which reads copies of its files.
     pub file: DesignFile,
+    /// Device that makes the runs; none for the cores of this machine.
+    device: Option<Arc<dyn Device>>,
 }
 
 impl DesignFolder {
@@ -55,7 +58,15 @@ impl DesignFolder {
             known: kept.into_iter().map(|run: MadeRun| (run.id, run.ended)).collect(),
             damaged,
             file: DesignFile::parse(&given.text, &name, file.name(), path)?,
+            device: None,
         })
+    }
+
+    /// Makes the runs on a device, with the same results.
+    #[must_use]
+    pub fn on_device(mut self, device: Option<Arc<dyn Device>>) -> Self {
+        self.device = device;
+        self
     }
 
     /// Path of the folder.
@@ -96,7 +107,7 @@ impl DesignFolder {
         bounds: &Bounds,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<String, StudyError> {
-        let design = self.file.design()?;
+        let design = self.file.design()?.on_device(self.device.clone());
         let mut of_front = FrontCost::of(self.file.keys.front.len());
         let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
         let mut batch = self.files.begin();
@@ -109,6 +120,7 @@ impl DesignFolder {
         let mut front = Vec::new();
         for (percent, design) in designs {
             of_front.go_on();
+            let design = design.on_device(self.device.clone());
             match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
                 Ok(outcome) => front.push((percent, Some((design, outcome)))),
                 Err(StudyError::NoDesign) => front.push((percent, None)),

@@ -147,6 +147,8 @@ pub(crate) struct SearchLength {
 pub(crate) struct Stages<'a> {
     evaluator: &'a Evaluator,
     search: Search,
+    /// Number of drafts that are tried at once; by default from the number of runs.
+    drafts_at_once: Option<usize>,
     /// Runs of the search.
     runs: usize,
     /// Whether surfaces with different seeds differ.
@@ -161,10 +163,11 @@ pub(crate) struct Stages<'a> {
 
 impl<'a> Stages<'a> {
     /// The stages of a new search.
-    pub(crate) fn new(evaluator: &'a Evaluator, search: Search) -> Self {
+    pub(crate) fn new(evaluator: &'a Evaluator, search: Search, drafts_at_once: Option<usize>) -> Self {
         Self {
             evaluator,
             search,
+            drafts_at_once,
             runs: 0,
             explored: 0,
             scatters: evaluator.scatters(),
@@ -184,7 +187,7 @@ impl<'a> Stages<'a> {
         self.evaluator.check_reference(known, bounds.stop, keep)?;
         let explored = explored(bounds.runs);
         while self.runs < explored && self.has_time(bounds, false) {
-            let proposals = self.ask(batch(bounds), bounds)?;
+            let proposals = self.ask(self.batch(bounds), bounds)?;
             if !self.try_out(proposals, false, bounds, known, keep, watch)? {
                 break;
             }
@@ -195,7 +198,7 @@ impl<'a> Stages<'a> {
         let surfaces = self.stage(true).0.count();
         // Each draft takes as many runs as there are surfaces, so fewer drafts keep the number of
         // simultaneous runs about equal.
-        let refined_batch = (batch(bounds) / surfaces).max(GENERATION);
+        let refined_batch = (self.batch(bounds) / surfaces).max(GENERATION);
         let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
         while goes_on && self.runs < bounds.runs && self.has_time(bounds, true) {
             let proposals = self.ask(refined_batch, bounds)?;
@@ -320,6 +323,12 @@ impl<'a> Stages<'a> {
         most_work(self.evaluator, bounds.runs, self.runs)
     }
 
+    /// Number of drafts in a batch: a generation of every start, unless the design says otherwise.
+    fn batch(&self, bounds: &Bounds) -> usize {
+        let of_starts = GENERATION * (bounds.runs / RUNS_OF_START).clamp(1, MAX_STARTS);
+        self.drafts_at_once.unwrap_or(of_starts)
+    }
+
     /// Surfaces and step of a stage.
     fn stage(&self, is_refined: bool) -> (Range<u64>, Fidelity) {
         if is_refined {
@@ -334,11 +343,6 @@ impl<'a> Stages<'a> {
 
     /// The first surface that the search has not used.
     pub(crate) const UNSEEN: u64 = REFINED_SURFACES;
-}
-
-/// Number of drafts in a batch: a generation of every start.
-fn batch(bounds: &Bounds) -> usize {
-    GENERATION * (bounds.runs / RUNS_OF_START).clamp(1, MAX_STARTS)
 }
 
 /// Number of runs, out of `runs` of a search, after which drafts are tried on several surfaces.

@@ -10,6 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use slipfront::device::Device;
+use slipfront::testing::FusedDevice;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::texture_file::textured_blocks;
 use slipfront_design::{
@@ -202,6 +204,30 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
         "{stages:?}"
     );
     assert!(files(in_one_go) == files(stopped), "the folders differ");
+}
+
+/// A device that makes the runs leaves the bytes of the cores, and another number of drafts at once is another
+/// search.
+#[test]
+fn a_search_on_a_device_leaves_the_same_bytes() {
+    let searched = |keys: &str, device: Option<Arc<dyn Device>>| {
+        let folder = tempfile::tempdir().unwrap();
+        let opened = DesignFolder::open(folder.path(), &file(keys), false).unwrap();
+        let never = AtomicBool::new(false);
+        let mut opened = opened.on_device(device);
+        opened.find(&bounds(90, &never), &mut |_| {}).unwrap();
+        files(folder.path())
+    };
+    let device = || -> Option<Arc<dyn Device>> { Some(Arc::new(FusedDevice)) };
+    assert!(searched(LEAST, None) == searched(LEAST, device()));
+    let many = &format!("{LEAST}\ndrafts_at_once = 40");
+    let drafts = |files: &[(String, Vec<u8>)]| {
+        let table = files.iter().find(|(name, _)| name == "evaluations.csv");
+        table.map(|(_, bytes)| bytes.clone())
+    };
+    let on_device = searched(many, device());
+    assert!(searched(many, None) == on_device);
+    assert!(drafts(&on_device) != drafts(&searched(LEAST, None)));
 }
 
 /// The design is at least as good as every named pattern, and the gains come from paired runs.
@@ -939,6 +965,10 @@ fn what_cannot_be_is_told_with_its_place() {
             "at most 10, the largest `coverage`",
         ),
         (&format!("{wish}\ncoverage = [0, 10]\nruns = 0"), "`runs` = 0"),
+        (
+            &format!("{wish}\ncoverage = [0, 10]\ndrafts_at_once = 0"),
+            "`drafts_at_once` = 0 must lie between 1 and 100000",
+        ),
         (
             &format!("{wish}\ncoverage = [0, 10]\nmax_features = 0"),
             "at least 1",

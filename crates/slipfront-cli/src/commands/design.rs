@@ -8,6 +8,7 @@ use jiff::SignedDuration;
 use slipfront_design::{Bounds, DesignFile, DesignFolder};
 use slipfront_study::StudyError;
 
+use crate::device::DeviceArgs;
 use crate::failure::Failure;
 use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
@@ -48,6 +49,8 @@ pub(crate) struct DesignCommand {
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Print the target, the maximum number of runs and their estimated time, without running them
     #[arg(long)]
     dry_run: bool,
@@ -70,10 +73,15 @@ impl DesignCommand {
         if self.dry_run {
             return self.plan(&file, runs, threads);
         }
+        let refused = file
+            .has_curve()
+            .then_some("the runs of a target curve are computed on the CPU alone");
+        let device = self.device.open(refused, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let mut folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let mut folder = folder.on_device(device);
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
         let share_of_time = || Bounds::share_of(began.elapsed().as_secs_f64(), most);
