@@ -15,7 +15,7 @@ import sys
 import venv
 from pathlib import Path
 
-NVRTC = "nvidia-cuda-nvrtc-cu12==12.8.93"
+NVRTC = "nvidia-cuda-nvrtc-cu12==12.2.140"
 OPTIONS = ["--gpu-architecture=compute_70", "--std=c++17", "--fmad=false"]
 KERNELS = Path(__file__).resolve().parent / "kernels"
 

@@ -30,7 +30,7 @@ create_exception!(
 );
 
 /// Options of the command, and their counterparts in Python.
-const OPTIONS: [(&str, &str); 14] = [
+const OPTIONS: [(&str, &str); 13] = [
     ("another --set", "another override"),
     ("--set ", ""),
     ("with --out", "by `folder`"),
@@ -42,7 +42,6 @@ const OPTIONS: [(&str, &str); 14] = [
     ("--levels", "`levels`"),
     ("--replicates", "`replicates`"),
     ("--threads", "`threads`"),
-    ("`--device`", "`device`"),
     ("--author \"NAME\"", "`author`"),
     (
         "--licence, such as --licence CC-BY-4.0",

@@ -260,16 +260,16 @@ impl Simulation {
 
     /// Results of the run, once it has ended; the simulation cannot be used afterwards.
     fn record(&mut self, py: Python<'_>, reason: &str) -> PyResult<RunData> {
+        if let Some(failure) = self.running()?.device_failure() {
+            let sentence = CString::new(format!("{failure}; the CPU computed the other steps"))?;
+            PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &sentence, 1)?;
+        }
         let running = self.running.take().ok_or_else(ended)?;
         let reason = match reason {
             "onset" => StopReason::Onset,
             _ => StopReason::End,
         };
         let (case, processors) = (Arc::clone(running.case()), running.processors());
-        if let Some(failure) = running.device_failure() {
-            let sentence = CString::new(format!("{failure}; the CPU computed the rest of the run"))?;
-            PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &sentence, 1)?;
-        }
         let record = detached(py, || running.record(reason))?;
         Ok(RunData {
             case,

@@ -71,3 +71,17 @@ def test_other_threads_go_on(long: sf.Case) -> None:
         counted += 1
         time.sleep(0.001)
     assert counted > 3
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_a_device_that_is_missing_is_refused(small: sf.Case, many: bool) -> None:
+    """The module that tests build lacks the feature `gpu`; one with that feature finds no GPU on a machine without."""
+
+    def run(device: str) -> dict[str, Any]:
+        return sf.map([small], device=device)[0] if many else sf.run(small, device=device, progress=False).summary
+
+    assert run("cpu") == sf.run(small, progress=False).summary
+    with pytest.raises(ValueError, match="the device is `cpu` or `gpu`, not `tpu`"):
+        run("tpu")
+    with pytest.raises(RuntimeError, match='; `device="cpu"` gives the same results'):
+        run("gpu")

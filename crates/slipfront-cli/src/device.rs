@@ -29,12 +29,12 @@ enum DeviceChoice {
     Cpu,
     /// On the first NVIDIA GPU. Of many runs, those that it does not cover are computed on the cores
     Gpu,
-    /// On the GPU if there is one that covers the run, and one run has at least 100 000 blocks
+    /// On the GPU if there is one; a single run only if the GPU covers it and it has at least 100 000 blocks
     Auto,
 }
 
-/// Least number of blocks of one lattice for which `auto` takes a GPU: its kernels need thousands of threads
-/// to be faster than a processor.
+/// Least number of blocks of one lattice for which `auto` takes a GPU: an estimate, since its kernels need
+/// tens of thousands of threads to be faster than a processor.
 const LEAST_BLOCKS: usize = 100_000;
 
 /// Bytes of the machine's memory that a block of a run on a device needs in addition: its state before and
@@ -76,7 +76,7 @@ impl DeviceArgs {
             let device = open_gpu()?;
             let refusal = refusal_of_run(case, &*device).or_else(|| memory_refusal(case));
             match refusal {
-                Some(reason) => Err(DeviceError(format!("{reason}: leave `--device` out"))),
+                Some(reason) => Err(DeviceError(reason)),
                 None => Ok(device),
             }
         };
@@ -103,7 +103,9 @@ impl DeviceArgs {
                 note(quiet, format!("{on_cpu} computed on the CPU: {reason}"));
                 Ok(None)
             }
-            Err(reason) => Err(Failure::input(reason)),
+            Err(DeviceError(reason)) => Err(Failure::input(anyhow::anyhow!(
+                "{reason}; `--device cpu` gives the same results"
+            ))),
         }
     }
 }
@@ -141,7 +143,7 @@ pub fn open_gpu() -> Result<Arc<dyn Device>, DeviceError> {
     return Ok(Arc::new(slipfront_gpu::Gpu::open()?));
     #[cfg(not(feature = "gpu"))]
     {
-        let message = "this program was built without the feature `gpu`: leave `--device` out; the CPU gives the same results";
+        let message = "this program was built without the feature `gpu`";
         Err(DeviceError(message.to_owned()))
     }
 }

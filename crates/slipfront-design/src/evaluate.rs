@@ -161,8 +161,8 @@ impl Evaluator {
         wanted
     }
 
-    /// Makes the runs that are not known yet, on the device or on the threads of rayon's pool, and passes them
-    /// on in the order of `wanted`. After a stop, it passes none on.
+    /// Makes the runs that are not known yet, on the device or on the threads of rayon's pool, and passes
+    /// them on in the order of `wanted`. After a stop, it passes none on.
     pub(crate) fn run(
         &self,
         wanted: &[Wanted],

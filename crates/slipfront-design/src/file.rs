@@ -114,8 +114,8 @@ key_rows! {
         pub runs: u32 = key("10000", whole(1, MAX_RUNS as u64)),
         /// Seed of the random drafts: another one is another search.
         start: u64 = key("1", KeyKind::Special("0 and more")),
-        /// Number of drafts that are tried at once, by default 8 to 32 from `runs`. More keep many cores or a GPU
-        /// busy; another number is another search.
+        /// Number of drafts that are tried at once, by default 8 to 32 from `runs`. More keep many cores or a
+        /// GPU busy; another number is another search.
         drafts_at_once: Option<u32> = key("", KeyKind::Special("1 to 100 000")).without("from `runs`"),
         /// Numbers of the textures of the base that are searched for in place of a mask, each with its range:
         /// `{ "texture.0.lambda" = ["2 um", "6 um"] }`.

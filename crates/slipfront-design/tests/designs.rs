@@ -206,8 +206,8 @@ fn a_search_that_was_stopped_leaves_the_same_bytes() {
     assert!(files(in_one_go) == files(stopped), "the folders differ");
 }
 
-/// A device that makes the runs leaves the bytes of the cores, and another number of drafts at once is another
-/// search.
+/// A device that makes the runs leaves the bytes of the cores, and another number of drafts at once is
+/// another search.
 #[test]
 fn a_search_on_a_device_leaves_the_same_bytes() {
     let searched = |keys: &str, device: Option<Arc<dyn Device>>| {

@@ -19,9 +19,13 @@ struct LargeLattices {
     u32 groups, done;
 };
 
+static_assert(sizeof(LargeLattices) == 80, "the size that src/large.rs has");
+
 // What the threads of a group share.
 struct Tile {
     Lattice lattice;
+    int nx, ny;
+    u32 columns, tiles;
     Shared shared;
     double ux[CELLS], uy[CELLS];
 };
@@ -32,16 +36,23 @@ struct Corner {
 
 FN u32 tiles_of(u32 size, u32 tile) { return (size + tile - 1) / tile; }
 
-FN Corner corner_of(const Lattice& lattice, u32 tile) {
-    u32 columns = tiles_of(lattice.nx, TILE_X);
-    Corner corner = {(int)(tile % columns) * TILE_X, (int)(tile / columns) * TILE_Y};
+FN void set_lattice(Tile& t, const Lattice& lattice) {
+    t.lattice = lattice;
+    t.nx = lattice.nx;
+    t.ny = lattice.n / lattice.nx;
+    t.columns = tiles_of(t.nx, TILE_X);
+    t.tiles = t.columns * tiles_of(t.ny, TILE_Y);
+}
+
+FN Corner corner_of(const Tile& t, u32 tile) {
+    Corner corner = {(int)(tile % t.columns) * TILE_X, (int)(tile / t.columns) * TILE_Y};
     return corner;
 }
 
 // Displacements of the blocks of a tile and around it after dt (Eq. 8). What lies beyond an edge is found at the other
 // end of the lattice, as in small lattices.
 FN void load_tile(Tile& t, const double* state, Corner corner, double dt) {
-    const int nx = t.lattice.nx, ny = t.lattice.n / t.lattice.nx;
+    const int nx = t.nx, ny = t.ny;
     const size_t n = t.lattice.n;
     for (int cell = threadIdx.x; cell < CELLS; cell += blockDim.x) {
         int x = corner.x + cell % TILE_WIDTH - 1, y = corner.y + cell / TILE_WIDTH - 1;
@@ -61,11 +72,11 @@ struct Place {
     int cell;
 };
 
-FN Place place_of(const Lattice& lattice, Corner corner, int k) {
-    int column = k % TILE_X, row = k / TILE_X, x = corner.x + column, y = corner.y + row, nx = lattice.nx;
+FN Place place_of(const Tile& t, Corner corner, int k) {
+    int column = k % TILE_X, row = k / TILE_X, x = corner.x + column, y = corner.y + row;
     Place place;
-    place.is_inside = x < nx && y < (int)lattice.n / nx;
-    place.block = (size_t)y * nx + x;
+    place.is_inside = x < t.nx && y < t.ny;
+    place.block = (size_t)y * t.nx + x;
     place.cell = (row + 1) * TILE_WIDTH + column + 1;
     return place;
 }
@@ -78,21 +89,20 @@ FN Around around_cell(const Tile& t, int cell) {
 FN void measure_tile(const Tile& t, const u16* flags, Corner corner, Measured& m) {
 #pragma unroll 1
     for (int k = threadIdx.x; k < TILE_X * TILE_Y; k += blockDim.x) {
-        Place p = place_of(t.lattice, corner, k);
+        Place p = place_of(t, corner, k);
         if (p.is_inside && flags[p.block] & EXISTS) measure_block(flags[p.block], around_cell(t, p.cell), m);
     }
 }
 
 // Measures displacements before the first step, if that is a step at which they are measured.
 FN void measure_tiles(const LargeLattices& l, u32 k, u32 group, Tile& t) {
-    if (threadIdx.x == 0) t.lattice = l.arrays.lattices[k];
+    if (threadIdx.x == 0) set_lattice(t, l.arrays.lattices[k]);
     __syncthreads();
     if (t.lattice.first_step % MEASUREMENT_INTERVAL != 0) return;
     u64 first_block = t.lattice.first_block;
-    u32 tiles = tiles_of(t.lattice.nx, TILE_X) * tiles_of(t.lattice.n / t.lattice.nx, TILE_Y);
     Measured m = nothing_measured();
-    for (u32 tile = group; tile < tiles; tile += l.groups) {
-        Corner corner = corner_of(t.lattice, tile);
+    for (u32 tile = group; tile < t.tiles; tile += l.groups) {
+        Corner corner = corner_of(t, tile);
         load_tile(t, l.arrays.state + 4 * first_block, corner, 0.0);
         __syncthreads();
         measure_tile(t, l.arrays.flags + first_block, corner, m);
@@ -118,17 +128,16 @@ template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& 
     u32* first_slips = l.arrays.first_slips + first_block;
     // At the start displacements are those of t_0 already.
     double dt = step.number == 0 ? 0.0 : lattice.equations.dt;
-    u32 tiles = tiles_of(lattice.nx, TILE_X) * tiles_of(lattice.n / lattice.nx, TILE_Y);
     Sums sums = no_sums();
     Measured m = nothing_measured();
 #pragma unroll 1
-    for (u32 tile = group; tile < tiles; tile += l.groups) {
-        Corner corner = corner_of(lattice, tile);
+    for (u32 tile = group; tile < t.tiles; tile += l.groups) {
+        Corner corner = corner_of(t, tile);
         load_tile(t, state, corner, dt);
         __syncthreads();
 #pragma unroll 1
         for (int i = threadIdx.x; i < TILE_X * TILE_Y; i += blockDim.x) {
-            Place p = place_of(lattice, corner, i);
+            Place p = place_of(t, corner, i);
             if (!p.is_inside) continue;
             size_t b = p.block;
             Around around = around_cell(t, p.cell);
@@ -165,7 +174,7 @@ template <bool ENERGY> FN void step_tiles_with(const LargeLattices& l, u32 k, u3
 // Takes tiles number group, group + groups, ... of lattice number k through a step.
 FN void step_lattice(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     if (threadIdx.x == 0) {
-        t.lattice = l.arrays.lattices[k];
+        set_lattice(t, l.arrays.lattices[k]);
         t.shared.step = l.steps[k];
     }
     __syncthreads();

@@ -69,12 +69,13 @@ impl Batch {
     /// # Errors
     /// If the step count of a lattice would overflow.
     pub(crate) fn new(lattices: &[&mut DeviceLattice], steps: u32) -> Result<Self, DeviceError> {
+        let blocks = lattices.iter().map(|lattice| lattice.flags.len()).sum();
         let mut batch = Self {
             lattices: Vec::with_capacity(lattices.len()),
-            state: Vec::new(),
-            given: Vec::new(),
-            flags: Vec::new(),
-            first_slips: Vec::new(),
+            state: Vec::with_capacity(4 * blocks),
+            given: Vec::with_capacity(2 * (blocks + lattices.len() * steps as usize)),
+            flags: Vec::with_capacity(blocks),
+            first_slips: Vec::with_capacity(blocks),
             records: vec![0; lattices.len() * steps as usize * RECORD],
         };
         for lattice in lattices {

@@ -49,6 +49,9 @@ const MOST_LATTICES: usize = 65_535;
 /// first slip, and its part of the sums of a group.
 const BYTES_ON_GPU: usize = 10 * size_of::<f64>() + size_of::<u16>() + size_of::<u32>() + 1;
 
+/// Number of steps at once for which the largest lattice leaves memory.
+const STEPS_AT_ONCE: usize = 1024;
+
 /// Bytes of the GPU's memory that a step of a lattice needs.
 const BYTES_PER_STEP: usize = 8 * RECORD + 2 * size_of::<f64>();
 
@@ -94,16 +97,16 @@ impl Gpu {
         // SAFETY: the function only tries to load a library, and initialising that library is the driver's
         // own code.
         if !unsafe { sys::is_culib_present() } {
-            let message = "no NVIDIA driver was found (libcuda.so.1): the CPU gives the same results";
+            let message = "no NVIDIA driver was found (libcuda.so.1)";
             return Err(DeviceError(message.to_owned()));
         }
         let context = CudaContext::new(0).map_err(failed("no GPU can be opened"))?;
         let (major, minor) = context
             .compute_capability()
             .map_err(failed("the GPU does not say what it computes"))?;
-        let module = context
-            .load_module(ptx(major, minor)?)
-            .map_err(failed("the driver does not take the kernels"))?;
+        let module = context.load_module(ptx(major, minor)?).map_err(failed(
+            "the driver does not take the kernels, which need its version 535 or later",
+        ))?;
         let shared = context
             .attribute(CU_DEVICE_ATTRIBUTE_MAX_SHARED_MEMORY_PER_BLOCK_OPTIN)
             .map_err(failed("the GPU does not say how much memory threads share"))?;
@@ -157,7 +160,9 @@ impl Gpu {
 
     /// Half of the bytes that are free in the memory of the GPU.
     fn room(&self) -> Result<usize, DeviceError> {
-        let memory = self.context.mem_get_info();
+        // Memory is free again only when the copies that used it last have ended.
+        let ended = self.stream.synchronize();
+        let memory = ended.and_then(|()| self.context.mem_get_info());
         let (free, _) = memory.map_err(failed("the GPU does not say how much memory is free"))?;
         Ok(free / 2)
     }
@@ -169,7 +174,7 @@ impl Gpu {
         match room / bytes {
             0 => Err(DeviceError(format!(
                 "a lattice of {blocks} blocks needs {:.2} GB of the GPU's memory for {steps} steps, and half of \
-                 what is free there is {:.2} GB: the CPU gives the same results",
+                 what is free there is {:.2} GB",
                 bytes as f64 * 1e-9,
                 room as f64 * 1e-9
             ))),
@@ -211,13 +216,17 @@ impl Device for Gpu {
     }
 
     fn most_blocks(&self) -> usize {
-        let fit = self.room().map_or(0, |room| room / BYTES_ON_GPU);
+        let beside = size_of::<Lattice>() + STEPS_AT_ONCE * BYTES_PER_STEP;
+        // A driver that fails here fails in `run`, too, which returns its error.
+        let fit = self
+            .room()
+            .map_or(MOST_BLOCKS, |room| room.saturating_sub(beside) / BYTES_ON_GPU);
         fit.min(MOST_BLOCKS)
     }
 
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
         let blocks = |lattice: &&mut DeviceLattice| lattice.blocks[0] * lattice.blocks[1];
-        let Some(most) = lattices.iter().map(blocks).max() else {
+        let Some(most) = lattices.iter().map(blocks).max().filter(|_| steps > 0) else {
             return Ok(());
         };
         let count = self.lattices_at_once(most, steps)?;
@@ -238,8 +247,8 @@ fn ptx(major: i32, minor: i32) -> Result<Ptx, DeviceError> {
     // SAFETY: the function only tries to load a library that runs no code on initialisation.
     if !unsafe { nvrtc::sys::is_culib_present() } {
         let message = "this program has no kernels for a GPU, and NVRTC, which could compile them, was not found \
-                       (libnvrtc.so): run crates/slipfront-gpu/ptx.py before you build it, or install NVRTC, for \
-                       example with `pip install nvidia-cuda-nvrtc-cu12`";
+                       (libnvrtc.so): run crates/slipfront-gpu/ptx.py before you build it, or install the CUDA toolkit, or \
+                       `pip install nvidia-cuda-nvrtc-cu12` and name its folder `nvidia/cuda_nvrtc/lib` in LD_LIBRARY_PATH";
         return Err(DeviceError(message.to_owned()));
     }
     let options = CompileOptions {

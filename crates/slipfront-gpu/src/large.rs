@@ -51,6 +51,8 @@ struct LargeLattices {
     done: u32,
 }
 
+const _: () = assert!(size_of::<LargeLattices>() == 80);
+
 // SAFETY: the struct has no padding, and has the layout of the struct of the kernels, in which pointers have
 // 8 bytes.
 unsafe impl DeviceRepr for LargeLattices {}

@@ -383,9 +383,12 @@ impl Running {
 
     /// Threads or device that compute the run.
     pub fn processors(&self) -> Processors {
+        let device = self.simulation.device();
         Processors {
             threads: self.threads,
-            device: self.simulation.device().map(Device::name),
+            device: device
+                .filter(|_| self.device_failure().is_none())
+                .map(Device::name),
         }
     }
 
@@ -646,6 +649,9 @@ mod tests {
             "slider = { blocks = [14, 11], edges = ['periodic', 'free'] }\ndrive = { v_star = 0.1, direction = 30 }\n\
              output.snapshots = { every = 7.0 }\n",
             "slider = { blocks = [12, 12], outline = 'disc' }\ntime = { duration_star = 200, stop = 'after_onset' }\n",
+            // This run diverges.
+            "slider = { blocks = [20, 12], omega_star = 0 }\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
+             friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }\n",
             // Computed on the CPU alone.
             "slider.blocks = [9, 9]\nfriction.ageing = { law = 'logarithmic', beta = 0.07, time_star = 1 }\n",
         ] {
@@ -656,13 +662,14 @@ mod tests {
                     ..Execution::default()
                 };
                 let mut running = Running::start(&case, None, execution);
-                let processors = running.processors();
-                let reason = loop {
-                    if let Some(reason) = running.advance(61).unwrap() {
-                        break reason;
+                let device = running.processors().device;
+                loop {
+                    match running.advance(61) {
+                        Ok(None) => {}
+                        Ok(Some(reason)) => return (device, format!("{:?}", running.record(reason))),
+                        Err(error) => return (device, error.to_string()),
                     }
-                };
-                (processors.device, format!("{:?}", running.record(reason)))
+                }
             };
             let (none, on_cpu) = results(None);
             let (device, on_device) = results(Some(Arc::new(FusedDevice)));

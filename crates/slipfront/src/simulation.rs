@@ -83,7 +83,7 @@ impl Simulation {
         self.engine.device_lattice()
     }
 
-    /// The [device](Execution::device) that computes the steps, or computed the first of them.
+    /// The [device](Execution::device) that computes the steps, or computed them until it failed.
     pub fn device(&self) -> Option<&dyn Device> {
         self.engine.device()
     }

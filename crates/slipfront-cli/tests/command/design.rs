@@ -238,3 +238,27 @@ fn a_design_is_planned_and_read_by_programs() {
         "{said}"
     );
 }
+
+#[test]
+fn a_device_is_refused_for_a_target_curve_and_where_it_is_missing() {
+    let workspace = Workspace::new();
+    workspace.write("wish.toml", WISH);
+    workspace.write("wanted.csv", "X,mu\n0,0\n0.1,0.3\n0.2,0.2\n");
+    let curve = "{ curve = { file = 'wanted.csv', x = 'X', y = 'mu', x_unit = 'um', y_unit = '1' } }";
+    workspace.write("curve.toml", WISH.replace("{ least = 'static_friction' }", curve));
+    let cases = [
+        (
+            "wish",
+            "was built without the feature `gpu`; `--device cpu` gives",
+        ),
+        (
+            "curve",
+            "the runs of a target curve are computed on the CPU alone; `--device cpu` gives",
+        ),
+    ];
+    for (name, sentence) in cases {
+        let refused = workspace.fail(&format!("design {name}.toml -o {name} --device gpu"), 2);
+        assert!(refused.contains(sentence), "{refused}");
+        assert!(!workspace.exists(name));
+    }
+}

@@ -127,7 +127,10 @@ fn vectors_can_be_limited_without_effect_on_results() {
 fn a_device_that_is_missing_is_refused_or_replaced_by_the_cpu() {
     let workspace = Workspace::small();
     let refused = workspace.fail("run small.toml -o out --device gpu", 2);
-    assert!(refused.contains("the CPU gives the same results"), "{refused}");
+    assert!(
+        refused.contains("; `--device cpu` gives the same results"),
+        "{refused}"
+    );
     assert!(!workspace.exists("out"));
     let output = workspace.output("run small.toml -o out --device auto");
     let printed = stderr(&output);

@@ -105,13 +105,9 @@ impl DeviceLattice {
     /// Computes some steps with the fused kernel, which gives the same bits as any device.
     pub(crate) fn run_on_cpu(&mut self, steps: u32) {
         let model = Arc::clone(&self.model);
-        let mut kernel = Fused::of_device(self);
+        let mut kernel = Fused::of_device(self, 1);
         for _ in 0..steps {
-            let clock = Clock {
-                step: self.steps_done,
-                drive_steps: self.steps_done,
-                ..Clock::start(self.equations.dt_star)
-            };
+            let clock = self.clock_of(self.steps_done);
             let totals = kernel.step(&model, &clock, self.needs_energies(clock.step));
             let stored = totals.stored_energy.unwrap_or_default();
             self.records.push_back(StepRecord {
@@ -128,9 +124,19 @@ impl DeviceLattice {
         self.take_state(&kernel);
     }
 
+    /// The instant of a step.
+    fn clock_of(&self, step: u64) -> Clock {
+        Clock {
+            step,
+            drive_steps: step,
+            ..Clock::start(self.equations.dt_star)
+        }
+    }
+
     /// Takes the state of a kernel after the latest step.
     pub(crate) fn take_state(&mut self, kernel: &Fused) {
-        self.motion = kernel.motion_of_device();
+        let latest = self.clock_of(self.steps_done - 1);
+        self.motion = kernel.motion_of_device(&self.model, &latest);
         self.state = kernel.state();
         let mut times_star = vec![0.0; self.first_slips.len()];
         kernel.read_column(BlockColumn::FirstSlip, 0, &mut times_star);

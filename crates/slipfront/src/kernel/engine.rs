@@ -84,7 +84,7 @@ pub(crate) trait Engine: Send + Sync {
         None
     }
 
-    /// The device that computes the steps, or computed the first of them, if the kernel has one.
+    /// The device that computes the steps, or computed them until it failed, if the kernel has one.
     fn device(&self) -> Option<&dyn Device> {
         None
     }

@@ -94,7 +94,7 @@ impl Execution {
 
     /// A kernel that begins in a given state, or at rest.
     pub(crate) fn begin(self, model: &Arc<Model>, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
-        let of_device = |device| Replay::on_device(device, model, dt_star, state.as_ref());
+        let of_device = |device| Replay::on_device(device, self.threads, model, dt_star, state.as_ref());
         if let Some(replay) = self.device.as_ref().and_then(of_device) {
             return Box::new(replay);
         }
@@ -121,7 +121,7 @@ impl Execution {
         match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
-                let of_device = |device| Replay::on_device(device, model, dt_star, None);
+                let of_device = |device| Replay::on_device(device, threads, model, dt_star, None);
                 Ok(Some(match self.device.as_ref().and_then(of_device) {
                     Some(replay) => Box::new(replay.resumed(&kernel, checkpoint)),
                     None => Box::new(kernel),

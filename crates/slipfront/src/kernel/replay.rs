@@ -1,11 +1,12 @@
 //! The engine of runs with steps that a device computes: it returns the records of each step.
 //!
-//! A device computes several steps at once, and values of single blocks are known at the last of them. The
-//! device computes a part of these steps again where such values are read before, or energies that were not
-//! recorded, so that parts are as long as the steps between two readings. The fused kernel, which gives the
-//! same bits, takes the state and reads the values. If the caller of the device records the steps, such
-//! values can be read only where it has stopped.
+//! A device computes several steps at once, and values of single blocks are known at the last of them. Where
+//! such values are read before, or energies that were not recorded, the device computes a part of these steps
+//! again. It therefore computes as many steps at once as lie between two readings. Where readings are close
+//! together, and after a failure of the device, the fused kernel computes the steps, with the same bits. If
+//! the caller of the device records the steps, values of single blocks can be read only where it has stopped.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::block::{Block, Field};
@@ -30,49 +31,83 @@ pub(crate) struct Replay {
     clock: Clock,
     present: StepRecord,
     totals: Totals,
-    /// Set when the state at the present step has been read: the lattice at this step, or none if `lattice`
-    /// is at this step.
-    here: OnceLock<Option<Box<DeviceLattice>>>,
-    /// The fused kernel at the present step, if it has read a value of single blocks there.
-    blocks: OnceLock<Box<Fused>>,
+    /// Whether values of single blocks have been read at the present step.
+    was_read: AtomicBool,
+    /// The lattice at the present step, if it was read there and `lattice` is at a later step.
+    here: OnceLock<Box<DeviceLattice>>,
+    /// The fused kernel at the present step, if it has read values there or computes the steps.
+    kernel: OnceLock<Box<Fused>>,
 }
 
 /// A device that records further steps.
 #[derive(Debug)]
 struct Source {
     device: Arc<dyn Device>,
-    /// The lattice before the steps that were computed last.
+    /// Threads for steps that the fused kernel computes.
+    threads: usize,
+    /// The lattice before the steps that the device computed last.
     before: DeviceLattice,
-    /// Number of steps to compute at once.
-    steps: u32,
+    /// Number of steps that the device computes at once.
+    steps: u64,
+    /// The latest step before the present one at which values of single blocks were read.
+    last_read: Option<u64>,
+    /// Whether the fused kernel computes the steps.
+    is_on_cpu: bool,
     /// The first failure of the device. The fused kernel computes all steps after it.
     failure: OnceLock<DeviceError>,
 }
 
 /// Number of steps that a device computes at once at first, and at most.
-const STEPS: [u32; 2] = [16, 1024];
+const STEPS: [u64; 2] = [16, 1024];
+
+/// Number of steps between two readings below which the fused kernel computes the steps: it needs about as
+/// long for them as for reading the state of a device.
+const CLOSE: u64 = 16;
+
+/// Number of steps without a reading after which the device computes again.
+const APART: u64 = 4 * CLOSE;
 
 impl Source {
-    /// The lattice some steps later.
-    fn compute(&self, steps: u32) -> DeviceLattice {
-        if self.failure.get().is_none() {
-            let mut lattice = self.before.clone();
-            match self.device.run(&mut [&mut lattice], steps) {
-                Ok(()) => return lattice,
-                Err(failure) => {
-                    let _ = self.failure.set(failure);
-                }
-            }
+    /// The lattice some steps later; none if the device fails.
+    fn compute(&self, steps: u64) -> Option<DeviceLattice> {
+        if self.failure.get().is_some() {
+            return None;
         }
         let mut lattice = self.before.clone();
-        lattice.run_on_cpu(steps);
+        match self.device.run(&mut [&mut lattice], steps as u32) {
+            Ok(()) => Some(lattice),
+            Err(failure) => {
+                let _ = self.failure.set(failure);
+                None
+            }
+        }
+    }
+
+    /// The lattice before step `step`, computed with the fused kernel.
+    fn compute_on_cpu(&self, step: u64) -> DeviceLattice {
+        let mut lattice = self.before.clone();
+        let steps = (step - lattice.steps_done) as u32;
+        if steps > 0 {
+            lattice.run_on_cpu(steps);
+        }
         lattice
     }
 
-    /// Number of steps up to a step, that one included.
-    fn steps_to(&self, step: u64) -> u32 {
-        (step + 1 - self.before.steps_done) as u32
+    /// Adds a step to those at which energies are recorded: the multiples of the greatest common divisor of
+    /// all such steps.
+    fn add_energies(&mut self, step: u64) {
+        let every = &mut self.before.energies.every;
+        *every = if *every == u64::MAX {
+            step
+        } else {
+            gcd(*every, step)
+        };
     }
+}
+
+/// The greatest common divisor.
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 impl Replay {
@@ -87,14 +122,17 @@ impl Replay {
             },
             lattice,
             source: None,
+            was_read: AtomicBool::new(false),
             here: OnceLock::new(),
-            blocks: OnceLock::new(),
+            kernel: OnceLock::new(),
         }
     }
 
-    /// Begins a lattice whose steps a device computes; none if the model is computed on the CPU alone.
+    /// Begins a lattice whose steps a device computes, with `threads` threads for the fused kernel; none if
+    /// the model is computed on the CPU alone.
     pub(crate) fn on_device(
         device: &Arc<dyn Device>,
+        threads: usize,
         model: &Arc<Model>,
         dt_star: f64,
         state: Option<&State>,
@@ -102,7 +140,7 @@ impl Replay {
         if device.most_blocks() < model.lattice.n_blocks() || model.rows != (0..model.lattice.ny) {
             return None;
         }
-        // Others are added where they are needed.
+        // Energies at t = 0; `add_energies` adds other steps.
         let energies = EnergySteps {
             every: u64::MAX,
             last: 0,
@@ -110,8 +148,11 @@ impl Replay {
         let lattice = DeviceLattice::new(Arc::clone(model), dt_star, state, energies).ok()?;
         let source = Source {
             device: Arc::clone(device),
+            threads,
             before: lattice.clone(),
             steps: STEPS[0],
+            last_read: None,
+            is_on_cpu: false,
             failure: OnceLock::new(),
         };
         Some(Self {
@@ -135,10 +176,12 @@ impl Replay {
     /// # Panics
     /// If the caller records the steps, unless the device has stopped at the present step.
     fn here(&self) -> &DeviceLattice {
-        let here = self.here.get_or_init(|| {
-            if self.lattice.records.is_empty() {
-                return None;
-            }
+        self.was_read.store(true, Ordering::Relaxed);
+        if self.lattice.records.is_empty() {
+            return &self.lattice;
+        }
+        self.here.get_or_init(|| {
+            let next = self.clock.step + 1;
             let source = self.source.as_ref().unwrap_or_else(|| {
                 panic!(
                     "numbers of blocks are known at step {}, where the device has stopped, and not at step {}",
@@ -146,64 +189,136 @@ impl Replay {
                     self.clock.step
                 )
             });
-            let mut lattice = source.compute(source.steps_to(self.clock.step));
+            let lattice = source.compute(next - source.before.steps_done);
+            let mut lattice = lattice.unwrap_or_else(|| source.compute_on_cpu(next));
             lattice.records.clear();
-            Some(Box::new(lattice))
-        });
-        here.as_deref().unwrap_or(&self.lattice)
+            Box::new(lattice)
+        })
     }
 
     /// The fused kernel at the present step.
-    fn blocks(&self) -> &Fused {
-        self.blocks
-            .get_or_init(|| Box::new(Fused::of_device(self.here())))
+    fn kernel(&self) -> &Fused {
+        self.was_read.store(true, Ordering::Relaxed);
+        let threads = self.source.as_ref().map_or(1, |source| source.threads);
+        self.kernel
+            .get_or_init(|| Box::new(Fused::of_device(self.here(), threads)))
     }
 
-    /// Records further steps if there are none, and the energies of a step if they are needed.
-    fn record(&mut self, step: u64, energies: bool) {
-        let Some(source) = &mut self.source else { return };
-        self.blocks = OnceLock::new();
-        match self.here.take() {
-            // The steps after the present one are computed again from here on.
-            Some(Some(here)) => {
-                source.steps = source.steps_to(here.steps_done - 1);
+    /// The fused kernel, if it computes the steps.
+    fn on_cpu(&self) -> Option<&Fused> {
+        let kernel = self.kernel.get().map(|kernel| &**kernel);
+        kernel.filter(|_| self.source.as_ref().is_some_and(|source| source.is_on_cpu))
+    }
+
+    /// Lets the fused kernel compute the steps from the present one on.
+    fn continue_on_cpu(&mut self) {
+        self.kernel();
+        if let Some(source) = &mut self.source {
+            source.is_on_cpu = true;
+        }
+    }
+
+    /// Lets the device compute the steps after the latest step of the fused kernel.
+    fn continue_on_device(&mut self) {
+        if let Some(kernel) = self.kernel.take() {
+            self.lattice.steps_done = self.clock.step + 1;
+            self.lattice.take_state(&kernel);
+            self.lattice.records.clear();
+        }
+        if let Some(source) = &mut self.source {
+            (source.is_on_cpu, source.steps) = (false, STEPS[0]);
+        }
+    }
+
+    /// Decides whether the device or the fused kernel computes the next step, and records it if the device
+    /// does.
+    fn prepare(&mut self, step: u64, energies: bool) {
+        let was_read = std::mem::take(self.was_read.get_mut());
+        let Some(source) = &mut self.source else {
+            self.kernel = OnceLock::new();
+            return;
+        };
+        let apart = source.last_read.map_or(u64::MAX, |last| self.clock.step - last);
+        let has_failed = source.failure.get().is_some();
+        if was_read {
+            source.last_read = Some(self.clock.step);
+        }
+        if source.is_on_cpu {
+            if was_read || has_failed || apart < APART {
+                return;
+            }
+            self.continue_on_device();
+        } else if has_failed || (was_read && apart < CLOSE) {
+            self.continue_on_cpu();
+            self.here = OnceLock::new();
+            *self.was_read.get_mut() = false;
+            return;
+        } else if was_read {
+            source.steps = apart.clamp(1, STEPS[1]);
+            // The steps after the present one are computed again from there on.
+            if let Some(here) = self.here.take() {
                 self.lattice = *here;
             }
-            // The state was read exactly where the steps ended.
-            Some(None) => {}
-            None if self.lattice.records.is_empty() => source.steps = STEPS[1].min(2 * source.steps),
-            None => {}
+        } else if self.lattice.records.is_empty() && step > 0 {
+            source.steps = STEPS[1].min(2 * source.steps);
         }
-        if self.lattice.records.is_empty() {
-            std::mem::swap(&mut source.before, &mut self.lattice);
-            self.lattice = source.compute(source.steps);
-        }
-        if energies && !self.lattice.needs_energies(step) {
-            let every = &mut source.before.energies.every;
-            *every = if *every == u64::MAX {
-                step
-            } else {
-                gcd(*every, step)
-            };
-            let steps = self.lattice.steps_done - source.before.steps_done;
-            self.lattice = source.compute(steps as u32);
-            self.lattice
-                .records
-                .drain(..(step - source.before.steps_done) as usize);
+        self.kernel = OnceLock::new();
+        if !self.record(step, energies) {
+            self.continue_on_cpu();
+            *self.was_read.get_mut() = false;
         }
     }
-}
 
-/// The greatest common divisor.
-fn gcd(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { gcd(b, a % b) }
+    /// Lets the device record further steps if there are none, and the energies of a step if they are needed.
+    /// If it fails, returns false, and leaves the lattice before the step.
+    fn record(&mut self, step: u64, energies: bool) -> bool {
+        let Some(source) = &mut self.source else {
+            return true;
+        };
+        let mut steps = None;
+        if self.lattice.records.is_empty() {
+            std::mem::swap(&mut source.before, &mut self.lattice);
+            // `add_energies` has changed the lattice that was `before` until now.
+            source.before.energies = self.lattice.energies;
+            steps = Some(source.steps);
+        }
+        if energies && !source.before.needs_energies(step) {
+            source.add_energies(step);
+            steps = steps.or_else(|| Some(self.lattice.steps_done - source.before.steps_done));
+        }
+        let Some(steps) = steps else { return true };
+        let done = step - source.before.steps_done;
+        if let Some(lattice) = source.compute(steps) {
+            self.lattice = lattice;
+            self.lattice.records.drain(..done as usize);
+            return true;
+        }
+        self.lattice = source.compute_on_cpu(step);
+        self.lattice.records.clear();
+        false
+    }
+
+    /// A time if it is not after the present one, else NaN.
+    fn if_past(&self, time_star: f64) -> f64 {
+        if time_star > self.clock.time_star() {
+            f64::NAN
+        } else {
+            time_star
+        }
+    }
 }
 
 impl Engine for Replay {
     /// # Panics
     /// If the caller records the steps, and has not recorded this one, or not its energies.
-    fn step(&mut self, _: &Model, clock: &Clock, energies: bool) -> Totals {
-        self.record(clock.step, energies);
+    fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals {
+        self.prepare(clock.step, energies);
+        self.clock = *clock;
+        let is_on_cpu = self.source.as_ref().is_some_and(|source| source.is_on_cpu);
+        if let Some(kernel) = self.kernel.get_mut().filter(|_| is_on_cpu) {
+            self.totals = kernel.step(model, clock, energies);
+            return self.totals;
+        }
         let record = self.lattice.records.pop_front();
         self.present = record.unwrap_or_else(|| panic!("step {} was not recorded", clock.step));
         assert!(
@@ -211,14 +326,12 @@ impl Engine for Replay {
             "energies of step {} were not recorded",
             clock.step
         );
-        self.clock = *clock;
-        (self.here, self.blocks) = (OnceLock::new(), OnceLock::new());
         self.totals = self.present.totals(self.totals.velocity_after, energies);
         self.totals
     }
 
     fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block {
-        self.blocks().block(model, clock, b)
+        self.kernel().block(model, clock, b)
     }
 
     fn read_rows(
@@ -229,27 +342,38 @@ impl Engine for Replay {
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
     ) {
-        self.blocks().read_rows(model, clock, field, stride, write);
+        self.kernel().read_rows(model, clock, field, stride, write);
     }
 
-    fn count_in_contact(&self, _: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
-        self.here().count_in_contact(bins, sliding, counts);
+    fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
+        match self.on_cpu() {
+            Some(_) => self.kernel().count_in_contact(model, bins, sliding, counts),
+            None => self.here().count_in_contact(bins, sliding, counts),
+        }
     }
 
     fn read_sliding(&self, model: &Model, take: TakeSliding) {
-        self.blocks().read_sliding(model, take);
+        self.kernel().read_sliding(model, take);
     }
 
     fn motion(&self, b: usize) -> [[f64; 2]; 2] {
+        if self.on_cpu().is_some() {
+            return self.kernel().motion(b);
+        }
+        // Where the caller records the steps, a run that diverges reads them beyond the present step.
+        let lattice = match self.source {
+            Some(_) => self.here(),
+            None => &self.lattice,
+        };
         let State {
             displacement,
             velocity,
-        } = &self.here().state;
+        } = &lattice.state;
         [displacement.at(b), velocity.at(b)]
     }
 
     fn state(&self) -> State {
-        self.here().state.clone()
+        self.kernel().state()
     }
 
     fn sheets(&self) -> Vec<State> {
@@ -257,8 +381,8 @@ impl Engine for Replay {
     }
 
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
-        if column != BlockColumn::FirstSlip {
-            return self.here().read_column(column, first, values);
+        if column != BlockColumn::FirstSlip || self.on_cpu().is_some() {
+            return self.kernel().read_column(column, first, values);
         }
         self.lattice.read_column(column, first, values);
         for time_star in values {
@@ -266,19 +390,25 @@ impl Engine for Replay {
         }
     }
 
-    fn into_first_slips(self: Box<Self>) -> Vec<f64> {
+    fn into_first_slips(mut self: Box<Self>) -> Vec<f64> {
+        if self.on_cpu().is_some()
+            && let Some(kernel) = self.kernel.take()
+        {
+            return kernel.into_first_slips();
+        }
         let blocks = 0..self.lattice.first_slips.len();
         blocks
             .map(|b| self.if_past(self.lattice.first_slip_time_star(b)))
             .collect()
     }
 
-    fn stress_square_max(&self, _: &Model, _: &Clock) -> f64 {
-        self.present.stress_square_max
+    fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64 {
+        let square = self.on_cpu().map(|kernel| kernel.stress_square_max(model, clock));
+        square.unwrap_or(self.present.stress_square_max)
     }
 
     fn motion_bounds(&self) -> Option<MotionBounds> {
-        Some(MotionBounds::of_numbers(self.here().motion.bounds))
+        self.kernel().motion_bounds()
     }
 
     fn read_memory(&self, _: f64, column: usize, _: usize, _: &mut [f64]) {
@@ -295,16 +425,5 @@ impl Engine for Replay {
 
     fn device_failure(&self) -> Option<&DeviceError> {
         self.source.as_ref()?.failure.get()
-    }
-}
-
-impl Replay {
-    /// A time if it is not after the present one, else NaN.
-    fn if_past(&self, time_star: f64) -> f64 {
-        if time_star > self.clock.time_star() {
-            f64::NAN
-        } else {
-            time_star
-        }
     }
 }

@@ -177,6 +177,53 @@ fn a_run_on_a_device_has_the_same_bits(texture: Option<Texture>, good: u32, part
     assert_eq!(run.device_failure().is_some(), good != u32::MAX);
 }
 
+/// The device computes where readings are far apart, many steps at once, and the fused kernel where they are
+/// close together; after it the device goes on.
+#[test]
+fn a_device_is_called_where_readings_are_apart() {
+    let slider = Slider {
+        blocks: [17, 12],
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    let device = Arc::new(Failing {
+        calls: AtomicU32::new(0),
+        good: u32::MAX,
+    });
+    let on_device = Execution {
+        device: Some(Arc::clone(&device) as Arc<dyn Device>),
+        ..fused()
+    };
+    let close = (900..1000).step_by(5);
+    let read: Vec<u64> = (0..=800).step_by(40).chain(close).chain([1500, 1600]).collect();
+    let observed = |execution: Execution| {
+        let mut frames = Frames::new(Selection {
+            fields: vec![Field::ContactStress],
+            stride: 1,
+        });
+        let mut run = Simulation::new(slider.model(), 0.1, None, execution);
+        let mut calls = Vec::new();
+        for end in [800, 890, 990, 1050, 2000] {
+            let mut observers = [Scheduled::new(Schedule::At(read.clone()), &mut frames)];
+            run.run(Stop::at_step(end), &mut observers).unwrap();
+            calls.push(device.calls.swap(0, Ordering::Relaxed));
+        }
+        ((shown(&run), state(&run), frames), calls)
+    };
+    let (on_cpu, none) = observed(fused());
+    let (found, calls) = observed(on_device);
+    assert_eq!(none, [0; 5]);
+    assert!(format!("{found:?}") == format!("{on_cpu:?}"));
+    // One call from reading to reading; more where a reading was not foreseen, and at an end, which needs
+    // energies.
+    let [until_800, until_890, close, after, until_2000] = calls[..] else {
+        panic!()
+    };
+    assert!((20..=25).contains(&until_800), "{calls:?}");
+    assert!(until_890 <= 4 && close <= 4 && after == 0, "{calls:?}");
+    assert!((5..=25).contains(&until_2000), "{calls:?}");
+}
+
 /// Several lattices at once, of different shapes, up to their onsets, which come at different steps: the
 /// device goes beyond the onset of some of them.
 #[test]

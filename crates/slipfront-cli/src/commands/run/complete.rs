@@ -32,17 +32,19 @@ pub(super) fn complete(
 ) -> Result<(), RankFailure> {
     let (case, ranks) = (Arc::clone(running.case()), options.ranks.clone());
     let (draws, is_verbose) = (options.draws, options.is_verbose());
-    let processors = Processors {
-        threads: options.threads,
-        ..running.processors()
-    };
+    let allowed_threads = options.threads;
     let (started, first_step) = (checkpoints.started(), running.snapshot().step);
     let out = checkpoints.folder().to_owned();
     let mut timer = CheckpointTimer::new(checkpoints, options.interval, options.signals, options.ranks);
     let mut progress = RunProgress::new(&running, options.quiet);
     let mut has_failed = false;
     let reason = loop {
-        match running.advance(case.steps_per_poll()) {
+        let reached = running.advance(case.steps_per_poll());
+        if let Some(failure) = running.device_failure().filter(|_| !has_failed) {
+            has_failed = true;
+            progress.note(&format!("warning: {failure}; the CPU computes the other steps"));
+        }
+        match reached {
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
@@ -55,14 +57,14 @@ pub(super) fn complete(
             }
         }
         progress.show(&running.snapshot());
-        if let Some(failure) = running.device_failure().filter(|_| !has_failed) {
-            has_failed = true;
-            progress.note(&format!("warning: {failure}; the run continues on the CPU"));
-        }
         timer.save_if_due(&running, &progress)?;
     };
     progress.finish();
     let steps = running.snapshot().step - first_step;
+    let processors = Processors {
+        threads: allowed_threads,
+        ..running.processors()
+    };
     let mut record = running.record(reason);
     let failed = |error: RunPictureError| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy()));
     let mut folder = folder;

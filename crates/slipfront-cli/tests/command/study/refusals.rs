@@ -254,7 +254,10 @@ fn a_very_large_study_is_asked_for() {
 fn a_device_that_is_missing_is_refused_or_replaced_by_the_cpu() {
     let workspace = Workspace::with_study(SMALL);
     let refused = workspace.fail("study study.toml -o out --device gpu", 2);
-    assert!(refused.contains("the CPU gives the same results"), "{refused}");
+    assert!(
+        refused.contains("; `--device cpu` gives the same results"),
+        "{refused}"
+    );
     assert!(!workspace.exists("out"));
     let output = workspace.output("study study.toml -o out --device auto");
     let said = stderr(&output);

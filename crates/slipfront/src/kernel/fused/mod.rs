@@ -211,13 +211,20 @@ impl Fused {
         (kernel.motion_bounds, kernel.totals.velocity_after)
     }
 
-    /// Continues a lattice after the latest of its steps, or begins it.
-    pub(crate) fn of_device(lattice: &DeviceLattice) -> Self {
+    /// Continues a lattice after the latest of its steps, or begins it, on `threads` threads.
+    pub(crate) fn of_device(lattice: &DeviceLattice, threads: usize) -> Self {
         let (model, dt_star) = (&*lattice.model, lattice.equations.dt_star);
         let Some(latest) = lattice.steps_done.checked_sub(1) else {
-            return Self::new(model, dt_star, Some(&lattice.state), 1, false, Arc::new(Alone));
+            return Self::new(
+                model,
+                dt_star,
+                Some(&lattice.state),
+                threads,
+                true,
+                Arc::new(Alone),
+            );
         };
-        let mut kernel = Self::new(model, dt_star, None, 1, false, Arc::new(Alone));
+        let mut kernel = Self::new(model, dt_star, None, threads, true, Arc::new(Alone));
         for column in BlockColumn::ALL {
             BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
                 lattice.read_column(column, first, values);
@@ -234,12 +241,13 @@ impl Fused {
         kernel
     }
 
-    /// Numbers of the lattice after the latest step.
-    pub(crate) fn motion_of_device(&self) -> Motion {
+    /// Numbers of the lattice after the latest step, at the instant `clock`.
+    pub(crate) fn motion_of_device(&self, model: &Model, clock: &Clock) -> Motion {
         Motion {
             bounds: self.motion_bounds.to_numbers(),
             velocity_after: self.totals.velocity_after,
-            stress_square_max: self.stress_square_max,
+            // With the tiles that were skipped.
+            stress_square_max: self.stress_square_max(model, clock),
         }
     }
 
