@@ -11,6 +11,7 @@ use slipfront::device::Device;
 use slipfront::parallel::*;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
+#[cfg(not(target_family = "wasm"))]
 use slipfront_run::device_summaries::device_summaries;
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::running::{RunData, run_unless};
@@ -177,15 +178,7 @@ impl Evaluator {
             .map(|wanted| (self.id(wanted), wanted))
             .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
             .collect();
-        let outcomes = match &self.device {
-            Some(device) => self.measure_on_device(&missing, &**device, stop)?,
-            // Each run is its own task: some end early, and no thread may be left with several long runs.
-            None => missing
-                .par_iter()
-                .with_max_len(1)
-                .map(|(_, wanted)| self.measure(wanted, stop))
-                .collect::<Result<_, _>>()?,
-        };
+        let outcomes = self.outcomes(&missing, stop)?;
         // In the order of the request, whichever thread was first, so the journal is the same for any number
         // of threads.
         let made = missing.into_iter().zip(outcomes).map(|((id, wanted), ended)| {
@@ -201,7 +194,25 @@ impl Evaluator {
         Ok(())
     }
 
+    /// Makes runs on the device or on the threads of rayon's pool; none after a stop.
+    fn outcomes(
+        &self,
+        runs: &[(RunId, &Wanted)],
+        stop: &AtomicBool,
+    ) -> Result<Vec<Option<RunOutcome>>, StudyError> {
+        #[cfg(not(target_family = "wasm"))]
+        if let Some(device) = &self.device {
+            return self.measure_on_device(runs, &**device, stop);
+        }
+        // Each run is its own task: some end early, and no thread may be left with several long runs.
+        let runs = runs.par_iter().with_max_len(1);
+        let outcomes: Result<Vec<_>, CaseError> =
+            runs.map(|(_, wanted)| self.measure(wanted, stop)).collect();
+        Ok(outcomes?)
+    }
+
     /// Makes runs on a device; none after a stop. A wish for a curve is for the CPU alone.
+    #[cfg(not(target_family = "wasm"))]
     fn measure_on_device(
         &self,
         runs: &[(RunId, &Wanted)],

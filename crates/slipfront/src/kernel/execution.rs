@@ -92,10 +92,19 @@ impl Execution {
         }
     }
 
+    /// The engine with steps of the device; none without a device that covers the model. A page has none, and
+    /// no code for it.
+    fn on_device(&self, model: &Arc<Model>, dt_star: f64, state: Option<&State>) -> Option<Replay> {
+        let device = self.device.as_ref()?;
+        if cfg!(target_family = "wasm") {
+            return None;
+        }
+        Replay::on_device(device, self.threads, model, dt_star, state)
+    }
+
     /// A kernel that begins in a given state, or at rest.
     pub(crate) fn begin(self, model: &Arc<Model>, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
-        let of_device = |device| Replay::on_device(device, self.threads, model, dt_star, state.as_ref());
-        if let Some(replay) = self.device.as_ref().and_then(of_device) {
+        if let Some(replay) = self.on_device(model, dt_star, state.as_ref()) {
             return Box::new(replay);
         }
         let (threads, skips, communicator) = (self.threads, self.skips, self.communicator);
@@ -117,12 +126,12 @@ impl Execution {
         checkpoint: &Checkpoint,
         read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Box<dyn Engine>>, E> {
+        let replay = self.on_device(model, dt_star, None);
         let (threads, skips, communicator) = (self.threads, self.skips, self.communicator);
         match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
-                let of_device = |device| Replay::on_device(device, threads, model, dt_star, None);
-                Ok(Some(match self.device.as_ref().and_then(of_device) {
+                Ok(Some(match replay {
                     Some(replay) => Box::new(replay.resumed(&kernel, checkpoint)),
                     None => Box::new(kernel),
                 }))
