@@ -5,12 +5,13 @@
 #     release/build.sh STEP...      the steps that are named
 #
 # linux-x86_64, linux-aarch64    the command, static (musl), with the page's module, licences and cases
-# windows-x86_64                 the command lab                            the laboratory without a server,
-# as a folder and as one file source                         the sources of this commit, and the source
-# distribution for pip wheel-linux-x86_64, wheel-linux-aarch64, wheel-musl-x86_64, wheel-musl-aarch64,
-# wheel-windows-x86_64 check                          fails if a file in target/dist/ lacks a part, or a
-# program in it asks for a library that not every machine has reproducible                   linux-x86_64
-# again, in a clone elsewhere: fails if a byte differs
+# windows-x86_64                 the command
+# lab                            the laboratory without a server, as a folder and as one file
+# source                         the sources of this commit, and the source distribution for pip
+# wheel-linux-x86_64, wheel-linux-aarch64, wheel-musl-x86_64, wheel-musl-aarch64, wheel-windows-x86_64
+# check                          fails if a file in target/dist/ lacks a part, or a program in it asks for a
+#                                library that not every machine has
+# reproducible                   linux-x86_64 again, in a clone elsewhere: fails if a byte differs
 #
 # Needs Linux on x86-64, git, rustup, binutils, and python3 with venv. Installs Rust's targets, maturin, zig
 # and a checker of SBOMs in target/, and mingw-w64 by apt-get for Windows. Each build of the command takes 4
