@@ -69,6 +69,7 @@ class DesignKeys(TypedDict, total=False):
     judge_by: Literal["mean", "worst"]
     runs: int
     start: int
+    drafts_at_once: int
     unknowns: Mapping[str, Range]
     starts: Sequence[Sequence[Table]]
     front: Sequence[float] | npt.NDArray[Any]

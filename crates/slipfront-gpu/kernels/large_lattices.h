@@ -200,7 +200,7 @@ FN void join_lattice(const LargeLattices& l, u32 k, Totals (&of_warps)[MAX_WARPS
     Bounds& bounds = lattice.motion.bounds;
     if (done > 0) {
         StepRecord& record = l.arrays.records[first_record + done - 1];
-        finish_step(lattice.equations, lattice.motion, l.steps[k], totals, record);
+        finish_step(lattice, l.steps[k], totals, record);
     } else if (number % MEASUREMENT_INTERVAL == 0) {
         take_measured(bounds, totals.measured);
     }

@@ -120,7 +120,7 @@ FN void run_lattice(const Arrays& arrays, u32 k, double* memory, Shared& shared)
             // No lane reads numbers of this step once those of the next one are written.
             __syncwarp();
             if (is_first_thread) {
-                finish_step(lattice.equations, lattice.motion, step, totals, records[done]);
+                finish_step(lattice, step, totals, records[done]);
                 if (!is_last) begin_step(lattice, positions, lattice.motion.bounds, shared.step, step.number + 1);
             }
         }

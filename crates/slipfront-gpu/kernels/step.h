@@ -19,6 +19,7 @@ struct Bounds {
 struct Motion {
     Bounds bounds;
     double velocity_after[2], stress_square_max;
+    u64 drive_steps, drive_moves;
 };
 
 struct StepRecord {
@@ -33,17 +34,20 @@ struct Lattice {
     u64 first_step, energies_every, energies_last;
     // Number of blocks of all lattices before this one.
     u64 first_block;
-    u32 steps, nx, n, unused;
+    // Number of steps of the drive at the first step.
+    u64 first_drive_step;
+    u32 steps, nx, n, is_held;
 };
 
-static_assert(sizeof(Lattice) == 408 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
+static_assert(sizeof(Lattice) == 432 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
 
 // Numbers of all lattices, one lattice after the other.
 struct Arrays {
     Lattice* lattices;
     // Displacements along x and along y, velocities along x and along y of the blocks of a lattice.
     double* state;
-    // Squares of static thresholds, and kinetic impulses of the blocks; x and y of the driven ends at each step.
+    // Squares of static thresholds, and kinetic impulses of the blocks; x and y of the driven ends at each step of the
+    // drive.
     const double* given;
     const u16* flags;
     u32* first_slips;
@@ -104,14 +108,14 @@ FN double highest_speed(const Equations& e, const Bounds& b, const double* posit
 FN void begin_step(const Lattice& lattice, const double* positions, Bounds& b, Step& s, u64 number) {
     const Equations& e = lattice.equations;
     const double margin = 1.0 + 1e-6;
-    u64 k = number - lattice.first_step;
+    u64 k = number - lattice.first_step, moved = lattice.motion.drive_steps - lattice.first_drive_step;
     if (number % MEASUREMENT_INTERVAL == 0) b.growth = 0.0;
     b.growth += 2.0 * (number == 0 ? 0.0 : e.dt) * b.speed;
     s.number = number;
     s.springs = choose_springs(e, b);
     move_ranges(b);
     for (int axis = 0; axis < 2; axis++) {
-        s.position[axis] = positions[2 * k + axis];
+        s.position[axis] = positions[2 * moved + axis];
         s.centre[axis] = b.windows[axis].centre;
         s.displacement_base[axis] = shift_of(b.windows[axis].limit);
         s.displacement_shift[axis] = s.displacement_base[axis] - s.centre[axis];
@@ -165,8 +169,13 @@ FN void take_measured(Bounds& b, const Measured& m) {
 }
 
 // Records a step, and what the next one needs of it.
-FN void finish_step(const Equations& e, Motion& motion, const Step& s, const Totals& t, StepRecord& record) {
+FN void finish_step(Lattice& lattice, const Step& s, const Totals& t, StepRecord& record) {
+    const Equations& e = lattice.equations;
+    Motion& motion = lattice.motion;
     Bounds& b = motion.bounds;
+    // A held drive stands still while a block in contact slides.
+    motion.drive_moves = !lattice.is_held || t.slipping == 0;
+    motion.drive_steps += motion.drive_moves;
     if (t.stress_square > motion.stress_square_max) motion.stress_square_max = t.stress_square;
     b.speed = sqrt(t.speed_square);
     double differences[2];
@@ -180,7 +189,7 @@ FN void finish_step(const Equations& e, Motion& motion, const Step& s, const Tot
     record.stress_square_max = motion.stress_square_max;
     record.n_sliding[0] = t.sliding;
     record.n_sliding[1] = t.slipping;
-    double kinetic = 0.0, lattice = 0.0, drive_springs = 0.0;
+    double kinetic = 0.0, springs = 0.0, drive_springs = 0.0;
     if (s.has_energies) {
         double stretch_square = value_of(t.sums[DISPLACEMENT_SQUARE], s.stretch_limit);
         for (int axis = 0; axis < 2; axis++) {
@@ -189,11 +198,11 @@ FN void finish_step(const Equations& e, Motion& motion, const Step& s, const Tot
             stretch_square += e.n_blocks * position * (position - 2.0 * mean);
         }
         kinetic = 0.25 * value_of(t.sums[VELOCITY_SQUARES], s.motion_limit);
-        lattice = value_of(t.sums[LATTICE_ENERGY], s.lattice_limit) / (2.0 * e.stiffness[0]);
+        springs = value_of(t.sums[LATTICE_ENERGY], s.lattice_limit) / (2.0 * e.stiffness[0]);
         drive_springs = 0.5 * e.k_drive * larger(0.0, stretch_square);
     }
     record.stored[0] = kinetic;
-    record.stored[1] = lattice;
+    record.stored[1] = springs;
     record.stored[2] = drive_springs;
     if (s.measures) take_measured(b, t.measured);
 }

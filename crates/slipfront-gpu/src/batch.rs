@@ -14,10 +14,11 @@ pub(crate) struct Lattice {
     energies_every: u64,
     energies_last: u64,
     first_block: u64,
+    first_drive_step: u64,
     steps: u32,
     nx: u32,
     n: u32,
-    unused: u32,
+    is_held: u32,
 }
 
 #[cfg(feature = "cuda")]
@@ -43,7 +44,7 @@ pub(crate) const STEP: usize = 120 / 8;
 pub(crate) const TOTALS: usize = 216 / 8;
 
 // The sizes of these structs in `kernels/step.h`.
-const _: () = assert!(size_of::<Lattice>() == 408 && size_of::<StepRecord>() == 88);
+const _: () = assert!(size_of::<Lattice>() == 432 && size_of::<StepRecord>() == 88);
 
 /// Size of a record, in numbers of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
@@ -55,7 +56,7 @@ pub(crate) struct Batch {
     /// Displacements along x and y, then velocities along x and y, of the blocks of each lattice.
     pub(crate) state: Vec<f64>,
     /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, and the
-    /// positions of the driven ends at each step.
+    /// positions of the driven ends at each step of the drive.
     pub(crate) given: Vec<f64>,
     pub(crate) flags: Vec<u16>,
     pub(crate) first_slips: Vec<u32>,
@@ -99,10 +100,11 @@ impl Batch {
             energies_every: lattice.energies.every,
             energies_last: lattice.energies.last,
             first_block: self.flags.len() as u64,
+            first_drive_step: lattice.motion.drive_steps,
             steps,
             nx: nx as u32,
             n: n as u32,
-            unused: 0,
+            is_held: lattice.is_held().into(),
         });
         let (u, v) = (&lattice.state.displacement, &lattice.state.velocity);
         for field in [&u.x, &u.y, &v.x, &v.y] {

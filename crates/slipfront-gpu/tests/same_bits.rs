@@ -11,8 +11,8 @@ use slipfront::device::{Device, DeviceLattice, EnergySteps};
 use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load};
 use slipfront::testing::FusedDevice;
 use slipfront::{
-    DeadLoad, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Outline, Program, Simulation, Slider,
-    State, Stop, Surface, VectorField,
+    DeadLoad, Drive, Edges, Execution, FrictionLaw, Lattice, Loading, Model, Outline, Program, Simulation,
+    Slider, State, Stop, Surface, VectorField,
 };
 use slipfront_gpu::Emulated;
 
@@ -32,6 +32,7 @@ fn left(lattice: &DeviceLattice) -> (Vec<Vec<u64>>, Vec<u32>) {
     numbers.push(bits(&motion.bounds));
     numbers.push(bits(&motion.velocity_after));
     numbers.push(bits(&[motion.stress_square_max]));
+    numbers.push(vec![motion.drive_steps, motion.drive_moves]);
     (numbers, lattice.first_slips.clone())
 }
 
@@ -80,7 +81,7 @@ prop_compose! {
         (nx, ny) in (3_usize..40, 3_usize..20),
         edges in (edges(), edges()),
         (degrees, speed) in (prop_oneof![Just(0.0), -180.0..180.0], prop_oneof![Just(0.1), 0.01..2.0]),
-        goes_back in any::<bool>(),
+        (goes_back, is_held) in (any::<bool>(), any::<bool>()),
         // Strains for which the short series, the long series or the square root is needed.
         epsilon in prop_oneof![Just(0.0), Just(1e-6), 1e-5..1e-2, 1e-2..0.3],
         (damping, k_drive) in (0.0..2.0, 0.01..1.0),
@@ -107,7 +108,8 @@ prop_compose! {
         };
         let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone).unwrap();
         let program = goes_back.then(|| Arc::new(Program::new([(speed, 3.0), (-speed, 5.0), (speed, f64::INFINITY)])));
-        let drive = Drive { program, k_drive, ..Drive::at_angle(speed, degrees) };
+        let loading = if is_held { Loading::Held { onset_steps: 9 } } else { Loading::Constant };
+        let drive = Drive { program, k_drive, loading, ..Drive::at_angle(speed, degrees) };
         let model = Model::new(lattice, surface, drive, damping, epsilon, FrictionLaw::Projection)
             .with_sheets(Vec::new(), slipfront::lattice::SpringStiffness::with_ratio(ratio))
             .with_slider(slider.clone())

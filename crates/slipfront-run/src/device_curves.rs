@@ -78,7 +78,12 @@ impl DeviceRun for CurveRun<'_> {
     /// Returns the last step, at which every run finds its energies.
     fn energies(&self) -> EnergySteps {
         EnergySteps {
-            every: u64::MAX,
+            // The number of steps is not known where the drive waits.
+            every: if self.case().model.drive.is_held() {
+                1
+            } else {
+                u64::MAX
+            },
             last: self.steps,
         }
     }

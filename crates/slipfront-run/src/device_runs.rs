@@ -172,6 +172,8 @@ impl<R: DeviceRun> Replayed<R> {
         let stop = run.stop();
         let reached = simulation.advance(stop, recorded as u64, &mut run.observers());
         let outcome = match reached {
+            // The device has recorded steps with a drive that waits for exact rest.
+            _ if simulation.rests_by_force() => run.on_cpu(ends),
             Ok(None) => return Self::Going(Box::new((run, simulation))),
             Ok(Some(reason)) => Some(Ok(run.end(simulation, reason))),
             // The sentence names the block that went farthest at the step at which the run diverged, which

@@ -73,10 +73,11 @@ impl DeviceRun for SummaryRun<'_> {
         self.case.time_plan.last_step
     }
 
-    /// Returns the last step, which is not known before where a run stops at its onset.
+    /// Returns the last step, which is not known before where a run stops at its onset, or its drive waits.
     fn energies(&self) -> EnergySteps {
+        let is_unknown = self.stop().is_after_onset() || self.case.model.drive.is_held();
         EnergySteps {
-            every: if self.stop().is_after_onset() { 1 } else { u64::MAX },
+            every: if is_unknown { 1 } else { u64::MAX },
             last: self.last_step(),
         }
     }
@@ -119,6 +120,7 @@ mod tests {
             "time.stop = 'after_onset'\ndrive.direction = 40\nfriction.seed = 7",
             "drive.program = [{ v_star = 0.1, until_star = 40 }, { v_star = 0.2 }]\noutput.series = 7",
             "drive.loading = 'held'\ntime.stop = 'after_onset'",
+            "slider.omega_star = 5\ndrive.loading = 'held'\ndrive.v_star = 0.1\ntime.duration_star = 60",
             "drive.v_star = 0.1\ntime.duration_star = 20",
             "drive.v_star = 0.1\ntime.duration_star = 20\noutput.events = true",
             "drive.v_star = 0.1\noutput.snapshots = [10, 20]\nslider.edges = 'periodic'",
@@ -150,7 +152,6 @@ mod tests {
         for (text, reason) in [
             ("output.events = true", "`output.events`"),
             ("drive.attach = 'left'", "drive springs"),
-            ("drive.loading = 'held'", "a drive that is held"),
             (
                 "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }",
                 "constant coefficients",

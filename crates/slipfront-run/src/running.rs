@@ -649,6 +649,10 @@ mod tests {
             "slider = { blocks = [14, 11], edges = ['periodic', 'free'] }\ndrive = { v_star = 0.1, direction = 30 }\n\
              output.snapshots = { every = 7.0 }\n",
             "slider = { blocks = [12, 12], outline = 'disc' }\ntime = { duration_star = 200, stop = 'after_onset' }\n",
+            "slider.blocks = [12, 9]\ndrive.loading = 'held'\noutput.snapshots = { every = 20.0 }\ntime.duration_star = 150\n",
+            // The block of this slider creeps to its place of rest, and its drive waits until its force is
+            // negligible.
+            "slider = { blocks = [1, 1], omega_star = 5 }\ndrive = { loading = 'held', v_star = 0.1 }\ntime = { duration_star = 60, step = 0.1 }\n",
             // This run diverges.
             "slider = { blocks = [20, 12], omega_star = 0 }\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
              friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }\n",

@@ -86,6 +86,11 @@ pub struct Motion {
     pub velocity_after: [f64; 2],
     /// Largest square of a contact stress so far.
     pub stress_square_max: f64,
+    /// Number of steps in which the drive has moved by the next step: all of them, unless it is held.
+    pub drive_steps: u64,
+    /// Whether the drive moves up to the next step: 1, or 0 for a held drive that waits. A held drive moves
+    /// if no block in contact slides at the latest step.
+    pub drive_moves: u64,
 }
 
 /// Totals of a step, which a device records.
@@ -168,10 +173,16 @@ pub mod flag {
 }
 
 impl DeviceLattice {
-    /// Displacements of the driven ends of the drive springs at the next steps.
+    /// Displacements of the driven ends of the drive springs at the next steps in which the drive moves.
     pub fn drive_positions(&self, steps: u32) -> impl Iterator<Item = [f64; 2]> {
-        (self.steps_done..self.steps_done + u64::from(steps))
+        let first = self.motion.drive_steps;
+        (first..first + u64::from(steps))
             .map(|step| self.model.drive.position(step as f64 * self.equations.dt_star))
+    }
+
+    /// Whether the drive stands still while a block in contact slides.
+    pub fn is_held(&self) -> bool {
+        self.model.drive.is_held()
     }
 
     /// Whether energies are computed at a step.

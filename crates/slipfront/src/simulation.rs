@@ -88,6 +88,12 @@ impl Simulation {
         self.engine.device()
     }
 
+    /// Whether a held drive has waited for so long that [negligible forces](Self::force_of_motion) count as
+    /// rest. A device that records steps in advance does not know this.
+    pub fn rests_by_force(&self) -> bool {
+        self.clock.rest != Rest::Exact
+    }
+
     /// The failure of the [device](Execution::device) that computed the first steps, if the CPU computes the
     /// others: with the same bits, but more slowly.
     pub fn device_failure(&self) -> Option<&DeviceError> {

@@ -32,7 +32,6 @@ impl DeviceLattice {
             ),
             (model.slider.is_viscous(), "internal viscosity is"),
             (model.drive.rotation.is_some(), "a drive that rotates is"),
-            (model.drive.is_held(), "a drive that is held is"),
             (
                 blocks_differ(model, &LargestFactors::of(model, &Alone)),
                 "sliders whose blocks, drive springs or dead loads differ are",
@@ -93,6 +92,8 @@ impl DeviceLattice {
                 bounds: bounds.to_numbers(),
                 velocity_after,
                 stress_square_max: 0.0,
+                drive_steps: 0,
+                drive_moves: 1,
             },
             state: state.cloned().unwrap_or_else(|| State::at_rest(n)),
             first_slips: vec![NEVER; n],
@@ -102,12 +103,26 @@ impl DeviceLattice {
         })
     }
 
+    /// The instant of the next step.
+    fn next_clock(&self) -> Clock {
+        Clock {
+            step: self.steps_done,
+            drive_steps: self.motion.drive_steps,
+            standing: u64::from(self.motion.drive_moves == 0),
+            ..Clock::start(self.equations.dt_star)
+        }
+    }
+
     /// Computes some steps with the fused kernel, which gives the same bits as any device.
+    ///
+    /// # Panics
+    /// Without a step.
     pub(crate) fn run_on_cpu(&mut self, steps: u32) {
         let model = Arc::clone(&self.model);
         let mut kernel = Fused::of_device(self, 1);
+        let (mut latest, mut next) = (None, self.next_clock());
         for _ in 0..steps {
-            let clock = self.clock_of(self.steps_done);
+            let clock = next;
             let totals = kernel.step(&model, &clock, self.needs_energies(clock.step));
             let stored = totals.stored_energy.unwrap_or_default();
             self.records.push_back(StepRecord {
@@ -119,24 +134,16 @@ impl DeviceLattice {
                 n_sliding: [totals.n_sliding, totals.n_slipping].map(|count| count as u32),
                 stored: [stored.kinetic, stored.lattice, stored.drive_springs],
             });
-            self.steps_done += 1;
+            (latest, next) = (Some(clock), clock.next(totals.n_slipping == 0 || !self.is_held()));
         }
-        self.take_state(&kernel);
+        let latest = latest.expect("a device computes at least one step");
+        self.take_state(&kernel, &latest, &next);
     }
 
-    /// The instant of a step.
-    fn clock_of(&self, step: u64) -> Clock {
-        Clock {
-            step,
-            drive_steps: step,
-            ..Clock::start(self.equations.dt_star)
-        }
-    }
-
-    /// Takes the state of a kernel after the latest step.
-    pub(crate) fn take_state(&mut self, kernel: &Fused) {
-        let latest = self.clock_of(self.steps_done - 1);
-        self.motion = kernel.motion_of_device(&self.model, &latest);
+    /// Takes the state of a kernel after its latest step, at the instant `latest`, before the instant `next`.
+    pub(crate) fn take_state(&mut self, kernel: &Fused, latest: &Clock, next: &Clock) {
+        self.steps_done = next.step;
+        self.motion = kernel.motion_of_device(&self.model, latest, next);
         self.state = kernel.state();
         let mut times_star = vec![0.0; self.first_slips.len()];
         kernel.read_column(BlockColumn::FirstSlip, 0, &mut times_star);

@@ -13,7 +13,7 @@ use super::block::{Block, Field};
 use super::engine::{Engine, TakeSliding};
 use super::fused::Fused;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
-use crate::clock::Clock;
+use crate::clock::{Clock, Rest};
 use crate::device::{Device, DeviceError, DeviceLattice, EnergySteps, StepRecord};
 use crate::model::Model;
 use crate::position_bins::PositionBins;
@@ -166,8 +166,10 @@ impl Replay {
         self.clock = checkpoint.clock(self.lattice.equations.dt_star);
         self.totals = checkpoint.totals;
         self.present.stress_square_max = checkpoint.stress_square_max;
-        self.lattice.steps_done = checkpoint.step + 1;
-        self.lattice.take_state(kernel);
+        let next = self
+            .clock
+            .next(self.totals.n_slipping == 0 || !self.lattice.is_held());
+        self.lattice.take_state(kernel, &self.clock, &next);
         self
     }
 
@@ -219,10 +221,9 @@ impl Replay {
     }
 
     /// Lets the device compute the steps after the latest step of the fused kernel.
-    fn continue_on_device(&mut self) {
+    fn continue_on_device(&mut self, next: &Clock) {
         if let Some(kernel) = self.kernel.take() {
-            self.lattice.steps_done = self.clock.step + 1;
-            self.lattice.take_state(&kernel);
+            self.lattice.take_state(&kernel, &self.clock, next);
             self.lattice.records.clear();
         }
         if let Some(source) = &mut self.source {
@@ -232,23 +233,25 @@ impl Replay {
 
     /// Decides whether the device or the fused kernel computes the next step, and records it if the device
     /// does.
-    fn prepare(&mut self, step: u64, energies: bool) {
+    fn prepare(&mut self, next: &Clock, energies: bool) {
+        let step = next.step;
         let was_read = std::mem::take(self.was_read.get_mut());
         let Some(source) = &mut self.source else {
             self.kernel = OnceLock::new();
             return;
         };
         let apart = source.last_read.map_or(u64::MAX, |last| self.clock.step - last);
-        let has_failed = source.failure.get().is_some();
+        // A device knows only exact rest.
+        let is_for_cpu = source.failure.get().is_some() || next.rest != Rest::Exact;
         if was_read {
             source.last_read = Some(self.clock.step);
         }
         if source.is_on_cpu {
-            if was_read || has_failed || apart < APART {
+            if was_read || is_for_cpu || apart < APART {
                 return;
             }
-            self.continue_on_device();
-        } else if has_failed || (was_read && apart < CLOSE) {
+            self.continue_on_device(next);
+        } else if is_for_cpu || (was_read && apart < CLOSE) {
             self.continue_on_cpu();
             self.here = OnceLock::new();
             *self.was_read.get_mut() = false;
@@ -312,7 +315,7 @@ impl Engine for Replay {
     /// # Panics
     /// If the caller records the steps, and has not recorded this one, or not its energies.
     fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals {
-        self.prepare(clock.step, energies);
+        self.prepare(clock, energies);
         self.clock = *clock;
         let is_on_cpu = self.source.as_ref().is_some_and(|source| source.is_on_cpu);
         if let Some(kernel) = self.kernel.get_mut().filter(|_| is_on_cpu) {

@@ -111,11 +111,13 @@ impl Device for Failing {
 /// instants, energies, the kymograph, and the state at a checkpoint.
 #[test_matrix(
     [None, Some(cavity([17, 12], 10.0, 1, 0.3, true))],
+    [Loading::Constant, Loading::Held { onset_steps: 100 }],
     [u32::MAX, 0, 5],
     [1, 61, u64::MAX]
 )]
-fn a_run_on_a_device_has_the_same_bits(texture: Option<Texture>, good: u32, part: u64) {
+fn a_run_on_a_device_has_the_same_bits(texture: Option<Texture>, loading: Loading, good: u32, part: u64) {
     let slider = Slider {
+        loading,
         blocks: [17, 12],
         textures: texture.into_iter().collect(),
         degrees: 25.0,
@@ -331,14 +333,6 @@ fn models_that_are_not_plain_are_refused() {
         ),
         (aged, "friction other than Coulomb's"),
         (turning, "a drive that rotates is"),
-        (
-            Slider {
-                loading: Loading::Held { onset_steps: 9 },
-                ..plain()
-            }
-            .model(),
-            "a drive that is held is",
-        ),
         (
             Slider {
                 body: varied(n, false),

@@ -241,13 +241,15 @@ impl Fused {
         kernel
     }
 
-    /// Numbers of the lattice after the latest step, at the instant `clock`.
-    pub(crate) fn motion_of_device(&self, model: &Model, clock: &Clock) -> Motion {
+    /// Numbers of the lattice after the latest step, at the instant `clock`, before the instant `next`.
+    pub(crate) fn motion_of_device(&self, model: &Model, clock: &Clock, next: &Clock) -> Motion {
         Motion {
             bounds: self.motion_bounds.to_numbers(),
             velocity_after: self.totals.velocity_after,
             // With the tiles that were skipped.
             stress_square_max: self.stress_square_max(model, clock),
+            drive_steps: next.drive_steps,
+            drive_moves: next.drive_moved().into(),
         }
     }
 
