@@ -88,8 +88,8 @@ impl Simulation {
         self.engine.device()
     }
 
-    /// Whether a held drive has waited for so long that [negligible forces](Self::force_of_motion) count as
-    /// rest. A device that records steps in advance does not know this.
+    /// Whether a held drive has waited for so long that negligible forces count as rest.
+    /// A device that records steps in advance does not know this.
     pub fn rests_by_force(&self) -> bool {
         self.clock.rest != Rest::Exact
     }
