@@ -10,45 +10,19 @@
 //! largest mu*. The times of the GPU run from the models to these numbers. They exclude the generation of
 //! surfaces, and include the copies to and from the GPU and the replay of the records on all CPU cores.
 
-use std::error::Error;
+mod support;
+
 use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use slipfront::communicator::Alone;
-use slipfront::device::{Device, DeviceLattice, EnergySteps};
-use slipfront::surface::{Coefficients, Contact, Distribution, Load};
-use slipfront::{Drive, Execution, FrictionLaw, Lattice, Model, Simulation, Slider, Stop, Surface, scales};
+use slipfront::device::{Device, DeviceLattice};
+use slipfront::{Execution, Model, Simulation, Stop};
 use slipfront_gpu::Gpu;
 
-const DT_STAR: f64 = 0.1;
-const STEPS: u32 = 1000;
-/// Energies are computed only at the start.
-const ENERGIES: EnergySteps = EnergySteps {
-    every: u64::MAX,
-    last: 0,
-};
+use self::support::{DT_STAR, ENERGIES, Failure, model};
 
-fn model(size: usize, seed: u64) -> Result<Arc<Model>, Box<dyn Error + Send + Sync>> {
-    let lattice = Lattice::free(size, size);
-    let gauss = |mean: f64| Distribution {
-        mean,
-        deviation: 0.05 * mean,
-    };
-    let coefficients = Coefficients::draw_blocks(0..lattice.n_blocks(), gauss(1.0), gauss(0.5), seed);
-    let contact = Contact::new(Load::Redistributed, 1.0);
-    let textured = vec![false; lattice.n_blocks()];
-    let surface = Surface::of_ranks(coefficients, textured, contact, &Slider::default(), &Alone)?;
-    let damping = scales::damping(0.1);
-    Ok(Arc::new(Model::new(
-        lattice,
-        surface,
-        Drive::along_x(0.03),
-        damping,
-        1e-6,
-        FrictionLaw::Projection,
-    )))
-}
+const STEPS: u32 = 1000;
 
 /// The largest mu* of a run after the step at t = 0.
 fn largest(mut simulation: Simulation) -> f64 {
@@ -57,7 +31,7 @@ fn largest(mut simulation: Simulation) -> f64 {
     ended.map_or(f64::NAN, |_| simulation.peak().largest.mu_star)
 }
 
-fn on_gpu(gpu: &Gpu, models: &[Arc<Model>]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
+fn on_gpu(gpu: &Gpu, models: &[Arc<Model>]) -> Result<Vec<f64>, Failure> {
     let begun = models
         .par_iter()
         .map(|model| DeviceLattice::new(Arc::clone(model), DT_STAR, None, ENERGIES));
@@ -78,13 +52,13 @@ fn on_cpu(model: &Arc<Model>) -> f64 {
     ))
 }
 
-fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
+fn main() -> Result<(), Failure> {
     let gpu = Gpu::open()?;
     println!("{}, beside {} threads", gpu.name(), rayon::current_num_threads());
     println!("blocks   runs/s: one core   all cores   GPU   GPU over one core   same bits");
     for (size, n) in [(25, 8192), (50, 4096), (100, 1024)] {
         let models = (0..n)
-            .map(|seed| model(size, seed))
+            .map(|seed| model(size, 0.03, seed))
             .collect::<Result<Vec<_>, _>>()?;
         on_gpu(&gpu, &models[..64])?;
         let began = Instant::now();

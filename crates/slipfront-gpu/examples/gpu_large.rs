@@ -10,38 +10,23 @@
 //! displacement and velocity before and after, limit, impulse and flags. It is compared with a copy within
 //! the GPU's memory.
 
-use std::error::Error;
-use std::sync::Arc;
+mod support;
+
 use std::time::Instant;
 
 use cudarc::driver::{CudaContext, DriverError};
-use slipfront::communicator::Alone;
-use slipfront::device::{Device, DeviceLattice, EnergySteps};
-use slipfront::surface::{Coefficients, Contact, Distribution, Load};
+use slipfront::device::{Device, DeviceLattice};
 use slipfront::testing::FusedDevice;
-use slipfront::{Drive, FrictionLaw, Lattice, Model, Slider, State, Surface, VectorField, scales};
+use slipfront::{State, VectorField};
 use slipfront_gpu::Gpu;
 
-const ENERGIES: EnergySteps = EnergySteps {
-    every: u64::MAX,
-    last: 0,
-};
+use self::support::{DT_STAR, ENERGIES, Failure, model};
 
 /// Bytes that a step reads and writes for a block.
 const BYTES: f64 = 82.0;
 
-fn lattice(size: usize) -> Result<DeviceLattice, Box<dyn Error>> {
-    let lattice = Lattice::free(size, size);
-    let n = lattice.n_blocks();
-    let gauss = |mean: f64| Distribution {
-        mean,
-        deviation: 0.05 * mean,
-    };
-    let coefficients = Coefficients::draw_blocks(0..n, gauss(1.0), gauss(0.5), 1);
-    let contact = Contact::new(Load::Redistributed, 1.0);
-    let surface = Surface::of_ranks(coefficients, vec![false; n], contact, &Slider::default(), &Alone)?;
-    let (drive, damping) = (Drive::along_x(0.1), scales::damping(0.1));
-    let model = Model::new(lattice, surface, drive, damping, 1e-6, FrictionLaw::Projection);
+fn lattice(size: usize) -> Result<DeviceLattice, Failure> {
+    let (model, n) = (model(size, 0.1, 1)?, size * size);
     let thrown = |scale: f64| VectorField {
         x: (0..n)
             .map(|b| scale * (1.0 + 0.1 * (0.01 * b as f64).sin()))
@@ -52,11 +37,11 @@ fn lattice(size: usize) -> Result<DeviceLattice, Box<dyn Error>> {
         displacement: thrown(1.0),
         velocity: thrown(100.0),
     };
-    Ok(DeviceLattice::new(Arc::new(model), 0.1, Some(&state), ENERGIES)?)
+    Ok(DeviceLattice::new(model, DT_STAR, Some(&state), ENERGIES)?)
 }
 
 /// Seconds of some steps.
-fn seconds(gpu: &Gpu, lattice: &DeviceLattice, steps: u32) -> Result<f64, Box<dyn Error>> {
+fn seconds(gpu: &Gpu, lattice: &DeviceLattice, steps: u32) -> Result<f64, Failure> {
     let mut lattice = lattice.clone();
     let began = Instant::now();
     gpu.run(&mut [&mut lattice], steps)?;
@@ -79,7 +64,7 @@ fn copy_bandwidth() -> Result<f64, DriverError> {
     Ok(20.0 * 2.0 * SIZE as f64 / began.elapsed().as_secs_f64())
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Failure> {
     let gpu = Gpu::open()?;
     let bandwidth = copy_bandwidth()?;
     println!("{}, copies {:.0} GB/s", gpu.name(), bandwidth * 1e-9);

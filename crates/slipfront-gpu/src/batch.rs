@@ -15,7 +15,7 @@ pub(crate) struct Lattice {
     energies_last: u64,
     first_block: u64,
     first_drive_step: u64,
-    steps: u32,
+    pub(crate) steps: u32,
     nx: u32,
     n: u32,
     is_held: u32,
@@ -23,11 +23,6 @@ pub(crate) struct Lattice {
 
 #[cfg(feature = "cuda")]
 impl Lattice {
-    /// Number of steps that the lattice takes.
-    pub(crate) fn steps(&self) -> u32 {
-        self.steps
-    }
-
     /// Number of tiles of some blocks along x and y that cover the lattice.
     pub(crate) fn tiles(&self, [along_x, along_y]: [usize; 2]) -> usize {
         let [nx, ny] = [self.nx, self.n / self.nx].map(|size| size as usize);

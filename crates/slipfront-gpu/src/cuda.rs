@@ -1,18 +1,16 @@
 //! The kernels on an NVIDIA GPU.
 
-#![allow(unsafe_code)] // Kernels are launched, and structs are copied to the GPU.
+#![allow(unsafe_code)] // Libraries are looked for, and kernels are launched.
 
 use std::sync::Arc;
 
 use cudarc::driver::sys::CUdevice_attribute_enum::CU_DEVICE_ATTRIBUTE_MAX_SHARED_MEMORY_PER_BLOCK_OPTIN;
 use cudarc::driver::sys::CUfunction_attribute_enum::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
-use cudarc::driver::{
-    CudaContext, CudaFunction, CudaSlice, CudaStream, DeviceRepr, DriverError, LaunchConfig, PushKernelArg,
-    sys,
-};
+use cudarc::driver::{CudaContext, CudaFunction, CudaStream, DriverError, LaunchConfig, PushKernelArg, sys};
 use cudarc::nvrtc::{self, CompileOptions, Ptx};
 use slipfront::device::{Device, DeviceError, DeviceLattice};
 
+use crate::arrays::Arrays;
 use crate::batch::{Batch, Lattice, RECORD};
 use crate::large::LargeKernels;
 
@@ -63,30 +61,18 @@ struct Kernel {
     most_blocks: usize,
 }
 
-/// Numbers of lattices in the memory of the GPU, as in [`Batch`].
-#[derive(Debug)]
-pub(crate) struct Arrays {
-    pub(crate) lattices: CudaSlice<Lattice>,
-    pub(crate) state: CudaSlice<f64>,
-    pub(crate) given: CudaSlice<f64>,
-    pub(crate) flags: CudaSlice<u16>,
-    pub(crate) first_slips: CudaSlice<u32>,
-    pub(crate) records: CudaSlice<u64>,
-}
-
 /// An NVIDIA GPU.
 #[derive(Debug)]
 pub struct Gpu {
     name: String,
+    /// Largest number of blocks of a lattice for which memory was free when the GPU was opened.
+    most_blocks: usize,
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
     /// Kernels for [`GROUPS`], in their order.
     small: Vec<Kernel>,
     large: LargeKernels,
 }
-
-// SAFETY: the struct has no padding and no pointers, and has the layout of the struct of the kernels.
-unsafe impl DeviceRepr for Lattice {}
 
 impl Gpu {
     /// Opens the first GPU of this machine.
@@ -127,9 +113,13 @@ impl Gpu {
             Ok((small?, LargeKernels::load(&module)?))
         };
         let (small, large) = kernels().map_err(failed("the GPU does not take the kernels"))?;
+        let stream = context.default_stream();
+        let beside = size_of::<Lattice>() + STEPS_AT_ONCE * BYTES_PER_STEP;
+        let fit = room(&context, &stream)?.saturating_sub(beside) / BYTES_ON_GPU;
         Ok(Self {
             name: context.name().map_err(failed("the GPU has no name"))?,
-            stream: context.default_stream(),
+            most_blocks: fit.min(MOST_BLOCKS),
+            stream,
             small,
             large,
             context,
@@ -139,38 +129,18 @@ impl Gpu {
     /// Runs the steps of a batch of lattices with at most `most_blocks` blocks each.
     fn launch(&self, batch: &mut Batch, most_blocks: usize) -> Result<(), DriverError> {
         let stream = &self.stream;
-        let mut arrays = Arrays {
-            lattices: stream.clone_htod(&batch.lattices)?,
-            state: stream.clone_htod(&batch.state)?,
-            given: stream.clone_htod(&batch.given)?,
-            flags: stream.clone_htod(&batch.flags)?,
-            first_slips: stream.clone_htod(&batch.first_slips)?,
-            records: stream.alloc_zeros(batch.records.len())?,
-        };
+        let mut arrays = Arrays::of(batch, stream)?;
         match self.small.iter().find(|kernel| most_blocks <= kernel.most_blocks) {
             Some(kernel) => kernel.launch(stream, &mut arrays, most_blocks)?,
             None => self.large.launch(stream, &mut arrays, &batch.lattices)?,
         }
-        stream.memcpy_dtoh(&arrays.lattices, &mut batch.lattices)?;
-        stream.memcpy_dtoh(&arrays.state, &mut batch.state)?;
-        stream.memcpy_dtoh(&arrays.first_slips, &mut batch.first_slips)?;
-        stream.memcpy_dtoh(&arrays.records, &mut batch.records)?;
-        stream.synchronize()
-    }
-
-    /// Half of the bytes that are free in the memory of the GPU.
-    fn room(&self) -> Result<usize, DeviceError> {
-        // Memory is free again only when the copies that used it last have ended.
-        let ended = self.stream.synchronize();
-        let memory = ended.and_then(|()| self.context.mem_get_info());
-        let (free, _) = memory.map_err(failed("the GPU does not say how much memory is free"))?;
-        Ok(free / 2)
+        arrays.return_to(batch, stream)
     }
 
     /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps.
     fn lattices_at_once(&self, blocks: usize, steps: u32) -> Result<usize, DeviceError> {
         let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + steps as usize * BYTES_PER_STEP;
-        let room = self.room()?;
+        let room = room(&self.context, &self.stream)?;
         match room / bytes {
             0 => Err(DeviceError(format!(
                 "a lattice of {blocks} blocks needs {:.2} GB of the GPU's memory for {steps} steps, and half of \
@@ -216,12 +186,7 @@ impl Device for Gpu {
     }
 
     fn most_blocks(&self) -> usize {
-        let beside = size_of::<Lattice>() + STEPS_AT_ONCE * BYTES_PER_STEP;
-        // A driver that fails here fails in `run`, too, which returns its error.
-        let fit = self
-            .room()
-            .map_or(MOST_BLOCKS, |room| room.saturating_sub(beside) / BYTES_ON_GPU);
-        fit.min(MOST_BLOCKS)
+        self.most_blocks
     }
 
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
@@ -237,6 +202,15 @@ impl Device for Gpu {
         }
         Ok(())
     }
+}
+
+/// Half of the bytes that are free in the memory of the GPU.
+fn room(context: &CudaContext, stream: &CudaStream) -> Result<usize, DeviceError> {
+    // Memory is free again only when the copies that used it last have ended.
+    let ended = stream.synchronize();
+    let memory = ended.and_then(|()| context.mem_get_info());
+    let (free, _) = memory.map_err(failed("the GPU does not say how much memory is free"))?;
+    Ok(free / 2)
 }
 
 /// The kernels as PTX: compiled beforehand, or now by NVRTC.

@@ -11,8 +11,8 @@ use cudarc::driver::{
     PushKernelArg,
 };
 
+use crate::arrays::Arrays;
 use crate::batch::{Lattice, STEP, TOTALS};
-use crate::cuda::Arrays;
 
 /// Blocks of a tile along x and y in `kernels/large_lattices.h`.
 const TILE: [usize; 2] = [32, 16];
@@ -74,7 +74,10 @@ impl LargeKernels {
         arrays: &mut Arrays,
         lattices: &[Lattice],
     ) -> Result<(), DriverError> {
-        let (count, n_steps) = (lattices.len(), lattices.first().map_or(0, Lattice::steps));
+        let (count, n_steps) = (
+            lattices.len(),
+            lattices.first().map_or(0, |lattice| lattice.steps),
+        );
         let tiles = lattices.iter().map(|lattice| lattice.tiles(TILE)).max();
         let tiles = tiles.unwrap_or(1);
         let groups = tiles.div_ceil((tiles / MANY_GROUPS).clamp(1, MOST_TILES));

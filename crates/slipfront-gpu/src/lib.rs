@@ -9,6 +9,8 @@
 
 #![cfg(any(feature = "cuda", feature = "emulated"))]
 
+#[cfg(feature = "cuda")]
+mod arrays;
 mod batch;
 #[cfg(feature = "cuda")]
 mod cuda;

@@ -203,6 +203,11 @@ impl Drive {
         self.loading != Loading::Constant
     }
 
+    /// Whether the drive moves up to the next step after one in which `n_slipping` blocks in contact slide.
+    pub(crate) fn moves_after(&self, n_slipping: usize) -> bool {
+        n_slipping == 0 || !self.is_held()
+    }
+
     /// Speed of steady sliding: V*; 0 for a held drive, which stands still while blocks slide.
     pub(crate) fn steady_speed(&self) -> f64 {
         if self.is_held() { 0.0 } else { self.v_star }

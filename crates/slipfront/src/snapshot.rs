@@ -245,8 +245,9 @@ impl Snapshot<'_> {
 
     /// The next instant: whether a held drive moves until then is known now.
     pub(crate) fn next_clock(&self) -> Clock {
-        let is_at_rest = self.totals.n_slipping == 0 || self.clock.rest == Rest::ByForce { at_rest: true };
-        self.clock.next(is_at_rest || !self.model.drive.is_held())
+        let rests_by_force = self.clock.rest == Rest::ByForce { at_rest: true };
+        let moves = self.model.drive.moves_after(self.totals.n_slipping);
+        self.clock.next(rests_by_force || moves)
     }
 
     /// Time of the drive at the next step.

@@ -134,7 +134,10 @@ impl DeviceLattice {
                 n_sliding: [totals.n_sliding, totals.n_slipping].map(|count| count as u32),
                 stored: [stored.kinetic, stored.lattice, stored.drive_springs],
             });
-            (latest, next) = (Some(clock), clock.next(totals.n_slipping == 0 || !self.is_held()));
+            (latest, next) = (
+                Some(clock),
+                clock.next(model.drive.moves_after(totals.n_slipping)),
+            );
         }
         let latest = latest.expect("a device computes at least one step");
         self.take_state(&kernel, &latest, &next);

@@ -166,9 +166,8 @@ impl Replay {
         self.clock = checkpoint.clock(self.lattice.equations.dt_star);
         self.totals = checkpoint.totals;
         self.present.stress_square_max = checkpoint.stress_square_max;
-        let next = self
-            .clock
-            .next(self.totals.n_slipping == 0 || !self.lattice.is_held());
+        let moves = self.lattice.model.drive.moves_after(self.totals.n_slipping);
+        let next = self.clock.next(moves);
         self.lattice.take_state(kernel, &self.clock, &next);
         self
     }

@@ -225,14 +225,12 @@ impl Fused {
             );
         };
         let mut kernel = Self::new(model, dt_star, None, threads, true, Arc::new(Alone));
-        for column in BlockColumn::ALL {
-            BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
-                lattice.read_column(column, first, values);
-                kernel.set_column(column, first, values);
-                Ok::<_, Infallible>(())
-            })
-            .unwrap_or_else(|never| match never {});
-        }
+        BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
+            lattice.read_column(column, first, values);
+            kernel.set_column(column, first, values);
+            Ok::<_, Infallible>(())
+        })
+        .unwrap_or_else(|never| match never {});
         let mut kernel = kernel.resumed();
         kernel.swept_step = Some(latest);
         kernel.motion_bounds = MotionBounds::of_numbers(lattice.motion.bounds);
