@@ -14,24 +14,17 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=benches/common.sh
 source benches/common.sh
 
-page=docs/performance.md
 # Vector operations of eight numbers in a step of eight blocks, square root and division aside:
 # docs/kernels.md counts them.
 OPERATIONS=170
 cores=$(nproc)
-field() { awk -F ': *' -v key="$1" '$1 ~ "^" key "[ \t]*$" { print $2; exit }' /proc/cpuinfo; }
-has() { grep -qw "$1" /proc/cpuinfo; }
-if has avx512f; then width=AVX-512; elif has avx2; then width=AVX2; else width="no AVX2"; fi
-name=${1:-"$(field 'model name'), family $(field 'cpu family'), model $(field model), $width"}
+name=${1:-$(processor)}
 
 rounds=3
 work=$PWD/target/machine
 rm -rf "$work"
 mkdir -p "$work"
 section=$work/section.md
-say() { printf '%s\n' "$@" >> "$section"; }
-# A table in Markdown of lines whose columns a tab separates.
-table() { awk -F '\t' '{ gsub("\t", " | "); print "| " $0 " |" } NR == 1 { gsub("[^|]+", "---"); print "|" $0 "|" }' >> "$section"; }
 own() { awk '{ print $14 + $15 + $16 + $17 }' "/proc/$$/stat"; }
 # Least of the wall times of a command that is run some times, in seconds.
 best_of() {
@@ -148,19 +141,4 @@ fi
 
 say "$(awk -v hz="$(getconf CLK_TCK)" -v others="$(($(busy) - all - ($(own) - mine)))" -v seconds="$(($(date +%s) - began))" -v cores="$cores" \
   'BEGIN { printf "Others took %.0f %% of the processor time in these %.0f minutes.", 100 * others / hz / seconds / cores, seconds / 60 }')"
-
-# The section stands from its marker to the next.
-awk -v name="$name" -v file="$section" '
-  function write_section(  line) { while ((getline line < file) > 0) print line; written = 1 }
-  $0 == "<!-- machine: " name " -->" { print; print ""; print "### " name; print ""; write_section(); print ""; skipping = 1; next }
-  /^<!-- (machine: .*|end of machines) -->$/ {
-    skipping = 0
-    if ($0 ~ /end of machines/ && !written) {
-      print "<!-- machine: " name " -->"; print ""; print "### " name; print ""
-      write_section()
-      print ""
-    }
-  }
-  !skipping { print }' "$page" > "$work/page.md"
-cp "$work/page.md" "$page"
-echo "$page has the section \"$name\""
+write_section "$name"

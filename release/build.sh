@@ -94,7 +94,7 @@ wheel() {
     add_target "$target"
     venv
     module
-    cp target/slipfront{,-pictures}.wasm python/slipfront/
+    cp target/slipfront{,-work}.wasm python/slipfront/
     PATH=$tools/bin:$PATH "$tools/bin/maturin" build --profile dist --locked --target "$target" "$@" --manifest-path python/Cargo.toml --out "$out"
 }
 

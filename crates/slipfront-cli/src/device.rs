@@ -42,6 +42,9 @@ const LEAST_BLOCKS: usize = 100_000;
 /// device.
 const MORE_BYTES_PER_BLOCK: f64 = 180.0;
 
+/// Bytes for each number of a block that the law of friction remembers, measured in this way.
+const MORE_BYTES_PER_MEMORY: f64 = 30.0;
+
 impl DeviceArgs {
     /// Opens the device for many runs; returns none for the cores of this machine. `refused` says why the
     /// device cannot be used for this work, if it cannot.
@@ -119,7 +122,9 @@ impl fmt::Display for DeviceArgs {
 
 /// Reason for which a run on a device has not enough memory beside it; none if it has.
 fn memory_refusal(case: &Case) -> Option<String> {
-    let needed = case.budget.memory() + case.model.lattice.n_blocks() as f64 * MORE_BYTES_PER_BLOCK;
+    let model = &case.model;
+    let of_block = MORE_BYTES_PER_BLOCK + MORE_BYTES_PER_MEMORY * model.friction.n_columns() as f64;
+    let needed = case.budget.memory() + model.lattice.n_blocks() as f64 * of_block;
     let available = available_memory().filter(|available| needed > *available)?;
     Some(format!(
         "with a device the run needs {} of this machine's memory, and {} are available",
@@ -137,10 +142,16 @@ fn note(quiet: bool, sentence: String) {
 /// Opens the first GPU of this machine.
 ///
 /// # Errors
-/// A sentence with the remedy, if there is none, or this program was built without the feature `gpu`.
+/// A sentence with the remedy, if there is none, if it does not compute the bits of the CPU, or if this
+/// program was built without the feature `gpu`.
 pub fn open_gpu() -> Result<Arc<dyn Device>, DeviceError> {
     #[cfg(feature = "gpu")]
-    return Ok(Arc::new(slipfront_gpu::Gpu::open()?));
+    {
+        let gpu: Arc<dyn Device> = Arc::new(slipfront_gpu::Gpu::open()?);
+        // No number of a GPU or driver that computes otherwise is ever shown.
+        gpu.test_bits()?;
+        Ok(gpu)
+    }
     #[cfg(not(feature = "gpu"))]
     {
         let message = "this program was built without the feature `gpu`";

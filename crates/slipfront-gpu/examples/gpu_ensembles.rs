@@ -1,5 +1,5 @@
 //! Measures how many runs per second of small sliders a GPU, one CPU core and all cores compute, and checks
-//! that GPU and CPU give the same bits.
+//! that GPU and CPU give the same bits. Prints a table, with tabs between its columns.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-gpu --features cuda --example gpu_ensembles
@@ -54,8 +54,7 @@ fn on_cpu(model: &Arc<Model>) -> f64 {
 
 fn main() -> Result<(), Failure> {
     let gpu = Gpu::open()?;
-    println!("{}, beside {} threads", gpu.name(), rayon::current_num_threads());
-    println!("blocks   runs/s: one core   all cores   GPU   GPU over one core   same bits");
+    println!("blocks\tone core\tall cores\tGPU\tGPU over one core\tsame bits");
     for (size, n) in [(25, 8192), (50, 4096), (100, 1024)] {
         let models = (0..n)
             .map(|seed| model(size, 0.03, seed))
@@ -79,7 +78,7 @@ fn main() -> Result<(), Failure> {
             .zip(&by_cpu)
             .all(|(a, b)| a.to_bits() == b.to_bits());
         println!(
-            "{size}^2   {rate:.0}   {all_rate:.0}   {gpu_rate:.0}   {:.0}   {}",
+            "{size} x {size}\t{rate:.0}\t{all_rate:.0}\t{gpu_rate:.0}\t{:.0}\t{}",
             gpu_rate / rate,
             if is_same { "yes" } else { "NO" }
         );

@@ -1,4 +1,5 @@
 //! Measures what a step of one large lattice costs on a GPU, and checks that GPU and CPU give the same bits.
+//! Prints the GPU with its bandwidth, and a table with tabs between its columns.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-gpu --features cuda --example gpu_large
@@ -67,8 +68,8 @@ fn copy_bandwidth() -> Result<f64, DriverError> {
 fn main() -> Result<(), Failure> {
     let gpu = Gpu::open()?;
     let bandwidth = copy_bandwidth()?;
-    println!("{}, copies {:.0} GB/s", gpu.name(), bandwidth * 1e-9);
-    println!("blocks   ns per block and step: GPU   one core   share of the bandwidth of a copy   same bits");
+    println!("{} copies {:.0} GB/s", gpu.name(), bandwidth * 1e-9);
+    println!("blocks\tGPU, ns\tone core, ns\tshare of the bandwidth of a copy\tsame bits");
     for size in [512, 1024, 2048, 4096, 8192] {
         let lattice = lattice(size)?;
         let blocks = (size * size) as f64;
@@ -92,7 +93,7 @@ fn main() -> Result<(), Failure> {
         } else {
             ("-".to_owned(), "-")
         };
-        println!("{size}^2   {per_block:.4}   {on_cpu}   {share:.2}   {is_same}");
+        println!("{size} x {size}\t{per_block:.4}\t{on_cpu}\t{share:.2}\t{is_same}");
     }
     Ok(())
 }

@@ -19,7 +19,7 @@ struct LargeLattices {
     u32 groups, done;
 };
 
-static_assert(sizeof(LargeLattices) == 80, "the size that src/large.rs has");
+static_assert(sizeof(LargeLattices) == 88, "the size that src/large.rs has");
 
 // What the threads of a group share.
 struct Tile {
@@ -126,6 +126,8 @@ template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& 
     const double* given = l.arrays.given + 2 * (first_block + (u64)k * lattice.steps);
     const u16* flags = l.arrays.flags + first_block;
     u32* first_slips = l.arrays.first_slips + first_block;
+    double* memory = l.arrays.memory + lattice.first_memory;
+    const bool falls = lattice.equations.inverse_fall_length > 0.0;
     // At the start displacements are those of t_0 already.
     double dt = step.number == 0 ? 0.0 : lattice.equations.dt;
     Sums sums = no_sums();
@@ -143,8 +145,11 @@ template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& 
             Around around = around_cell(t, p.cell);
             Moved moved = {{state[2 * n + b], state[3 * n + b]}, false};
             if (flags[b] & EXISTS) {
+                double impulse = given[n + b];
+                if (falls)
+                    impulse = impulse_after_slip(lattice.equations, step.number, moved.velocity, impulse, memory, n, b);
                 moved = step_block<SPRINGS, ENERGY>(lattice.equations, step, around, flags[b], moved.velocity, given[b],
-                                                    given[n + b], sums);
+                                                    impulse, sums);
             }
             after[b] = around.here.x;
             after[n + b] = around.here.y;

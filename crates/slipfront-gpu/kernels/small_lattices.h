@@ -2,18 +2,19 @@
 #pragma once
 #include "group.h"
 
-// Numbers of the blocks of a lattice; all but first slips in shared memory.
+// Numbers of the blocks of a lattice; all but first slips and the memory of the law in shared memory.
 struct Blocks {
     double *ux, *uy, *vx, *vy, *limit_squares, *impulses;
     u32 *flags, *first_slips;
+    double* memory;
 };
 
 static const int BYTES_PER_BLOCK = 6 * 8 + 4;
 
-FN Blocks blocks_in(double* memory, u32 n, u32* first_slips) {
-    double* flags = memory + 6 * n;
-    Blocks a = {memory,         memory + n,     memory + 2 * n, memory + 3 * n,
-                memory + 4 * n, memory + 5 * n, (u32*)flags,    first_slips};
+FN Blocks blocks_in(double* shared, u32 n, u32* first_slips, double* memory) {
+    double* flags = shared + 6 * n;
+    Blocks a = {shared,         shared + n,  shared + 2 * n, shared + 3 * n, shared + 4 * n,
+                shared + 5 * n, (u32*)flags, first_slips,    memory};
     return a;
 }
 
@@ -56,8 +57,11 @@ template <Springs SPRINGS, bool ENERGY> FN void sweep(const Lattice& lattice, co
         u32 flags = a.flags[b];
         if (!(flags & EXISTS)) continue;
         Vec2 before = {a.vx[b], a.vy[b]};
+        double impulse = a.impulses[b];
+        if (lattice.equations.inverse_fall_length > 0.0)
+            impulse = impulse_after_slip(lattice.equations, step.number, before, impulse, a.memory, n, b);
         Moved moved = step_block<SPRINGS, ENERGY>(lattice.equations, step, around(a.ux, a.uy, b, neighbours_of(flags, nx, n)),
-                                                  flags, before, a.limit_squares[b], a.impulses[b], sums);
+                                                  flags, before, a.limit_squares[b], impulse, sums);
         a.vx[b] = moved.velocity.x;
         a.vy[b] = moved.velocity.y;
         if (moved.slips && a.first_slips[b] == NEVER) a.first_slips[b] = (u32)step.number;
@@ -71,8 +75,8 @@ template <bool ENERGY> FN void sweep_with(Springs springs, const Lattice& lattic
     else sweep<SQUARE_ROOT, ENERGY>(lattice, a, shared);
 }
 
-// Takes lattice number k through its steps. `memory` has room for BYTES_PER_BLOCK of each block.
-FN void run_lattice(const Arrays& arrays, u32 k, double* memory, Shared& shared) {
+// Takes lattice number k through its steps. `shared_blocks` has room for BYTES_PER_BLOCK of each block.
+FN void run_lattice(const Arrays& arrays, u32 k, double* shared_blocks, Shared& shared) {
     Lattice& lattice = arrays.lattices[k];
     u64 first_step = lattice.first_step, first_record = (u64)k * lattice.steps;
     int n = lattice.n;
@@ -81,7 +85,7 @@ FN void run_lattice(const Arrays& arrays, u32 k, double* memory, Shared& shared)
     const double* positions = given + 2 * n;
     const u16* flags = arrays.flags + lattice.first_block;
     StepRecord* records = arrays.records + first_record;
-    Blocks a = blocks_in(memory, n, arrays.first_slips + lattice.first_block);
+    Blocks a = blocks_in(shared_blocks, n, arrays.first_slips + lattice.first_block, arrays.memory + lattice.first_memory);
     bool is_first_warp = threadIdx.x < WARP, is_first_thread = threadIdx.x == 0;
     for (int b = threadIdx.x; b < n; b += blockDim.x) {
         a.ux[b] = state[b];

@@ -8,6 +8,7 @@ struct Equations {
     double dt, k_drive, dead_load[2], epsilon, velocity_decay, force_to_velocity, velocity_to_force;
     // Of straight and of diagonal springs.
     double stiffness[2], series[2][8], strain_limits[2], n_blocks;
+    double inverse_fall_length, healing_time;
 };
 
 struct Bounds {
@@ -32,14 +33,14 @@ struct Lattice {
     Equations equations;
     Motion motion;
     u64 first_step, energies_every, energies_last;
-    // Number of blocks of all lattices before this one.
-    u64 first_block;
+    // Number of blocks of all lattices before this one, and of numbers that their laws remember.
+    u64 first_block, first_memory;
     // Number of steps of the drive at the first step.
     u64 first_drive_step;
     u32 steps, nx, n, is_held;
 };
 
-static_assert(sizeof(Lattice) == 432 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
+static_assert(sizeof(Lattice) == 456 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
 
 // Numbers of all lattices, one lattice after the other.
 struct Arrays {
@@ -49,6 +50,9 @@ struct Arrays {
     // Squares of static thresholds, and kinetic impulses of the blocks; x and y of the driven ends at each step of the
     // drive.
     const double* given;
+    // Where strength falls with slip, for the blocks of a lattice: its falls as impulses, slips, and where blocks heal
+    // the times of their latest motion and the shares that they lost before they healed.
+    double* memory;
     const u16* flags;
     u32* first_slips;
     StepRecord* records;

@@ -14,6 +14,7 @@ pub(crate) struct Arrays {
     pub(crate) lattices: CudaSlice<Lattice>,
     pub(crate) state: CudaSlice<f64>,
     pub(crate) given: CudaSlice<f64>,
+    pub(crate) memory: CudaSlice<f64>,
     pub(crate) flags: CudaSlice<u16>,
     pub(crate) first_slips: CudaSlice<u32>,
     pub(crate) records: CudaSlice<u64>,
@@ -29,6 +30,7 @@ impl Arrays {
             lattices: stream.clone_htod(&batch.lattices)?,
             state: stream.clone_htod(&batch.state)?,
             given: stream.clone_htod(&batch.given)?,
+            memory: stream.clone_htod(&batch.memory)?,
             flags: stream.clone_htod(&batch.flags)?,
             first_slips: stream.clone_htod(&batch.first_slips)?,
             records: stream.alloc_zeros(batch.records.len())?,
@@ -39,6 +41,7 @@ impl Arrays {
     pub(crate) fn return_to(&self, batch: &mut Batch, stream: &Arc<CudaStream>) -> Result<(), DriverError> {
         stream.memcpy_dtoh(&self.lattices, &mut batch.lattices)?;
         stream.memcpy_dtoh(&self.state, &mut batch.state)?;
+        stream.memcpy_dtoh(&self.memory, &mut batch.memory)?;
         stream.memcpy_dtoh(&self.first_slips, &mut batch.first_slips)?;
         stream.memcpy_dtoh(&self.records, &mut batch.records)?;
         stream.synchronize()

@@ -14,6 +14,7 @@ pub(crate) struct Lattice {
     energies_every: u64,
     energies_last: u64,
     first_block: u64,
+    first_memory: u64,
     first_drive_step: u64,
     pub(crate) steps: u32,
     nx: u32,
@@ -39,7 +40,7 @@ pub(crate) const STEP: usize = 120 / 8;
 pub(crate) const TOTALS: usize = 216 / 8;
 
 // The sizes of these structs in `kernels/step.h`.
-const _: () = assert!(size_of::<Lattice>() == 432 && size_of::<StepRecord>() == 88);
+const _: () = assert!(size_of::<Lattice>() == 456 && size_of::<StepRecord>() == 88);
 
 /// Size of a record, in numbers of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
@@ -53,6 +54,9 @@ pub(crate) struct Batch {
     /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, and the
     /// positions of the driven ends at each step of the drive.
     pub(crate) given: Vec<f64>,
+    /// For each lattice whose strength falls with slip, after a number that is not used: the falls of its
+    /// blocks, and the columns that the law remembers.
+    pub(crate) memory: Vec<f64>,
     pub(crate) flags: Vec<u16>,
     pub(crate) first_slips: Vec<u32>,
     /// Records of the steps of each lattice, as numbers of 8 bytes.
@@ -70,6 +74,8 @@ impl Batch {
             lattices: Vec::with_capacity(lattices.len()),
             state: Vec::with_capacity(4 * blocks),
             given: Vec::with_capacity(2 * (blocks + lattices.len() * steps as usize)),
+            // A GPU has no arrays without a number.
+            memory: vec![0.0],
             flags: Vec::with_capacity(blocks),
             first_slips: Vec::with_capacity(blocks),
             records: vec![0; lattices.len() * steps as usize * RECORD],
@@ -95,6 +101,7 @@ impl Batch {
             energies_every: lattice.energies.every,
             energies_last: lattice.energies.last,
             first_block: self.flags.len() as u64,
+            first_memory: self.memory.len() as u64,
             first_drive_step: lattice.motion.drive_steps,
             steps,
             nx: nx as u32,
@@ -108,16 +115,21 @@ impl Batch {
         self.given.extend(&*lattice.static_limit_squares);
         self.given.extend(&*lattice.kinetic_impulses);
         self.given.extend(lattice.drive_positions(steps).flatten());
+        if let Some(strength) = &lattice.strength {
+            self.memory.extend(&*strength.drops);
+            self.memory.extend(strength.columns.iter().flatten());
+        }
         self.flags.extend(&*lattice.flags);
         self.first_slips.extend(&lattice.first_slips);
         // The kernels rely on these lengths.
-        let blocks = self.flags.len();
+        let (blocks, latest) = (self.flags.len(), &self.lattices[self.lattices.len() - 1]);
         let expected = 2 * (blocks + self.lattices.len() * steps as usize);
         assert!(
             self.state.len() == 4 * blocks
                 && self.first_slips.len() == blocks
-                && blocks as u64 == self.lattices[self.lattices.len() - 1].first_block + n as u64
-                && self.given.len() == expected,
+                && blocks as u64 == latest.first_block + n as u64
+                && self.given.len() == expected
+                && self.memory.len() == latest.first_memory as usize + memory_len(lattice),
             "the arrays of a lattice of {nx} x {ny} blocks have other lengths"
         );
         Ok(())
@@ -134,6 +146,13 @@ impl Batch {
             lattice
                 .first_slips
                 .copy_from_slice(&self.first_slips[first..first + n]);
+            if let Some(strength) = &mut lattice.strength {
+                let memory = self.memory[after.first_memory as usize..].chunks(n);
+                // After the falls.
+                for (column, values) in strength.columns.iter_mut().zip(memory.skip(1)) {
+                    column.copy_from_slice(values);
+                }
+            }
             lattice.motion = after.motion;
             lattice.steps_done += steps as u64;
             let records = &self.records[k * steps * RECORD..][..steps * RECORD];
@@ -141,6 +160,20 @@ impl Batch {
             first += n;
         }
     }
+}
+
+/// Number of doubles that the kernels expect as memory of the law of friction of a lattice.
+pub(crate) fn memory_len(lattice: &DeviceLattice) -> usize {
+    let equations = &lattice.equations;
+    let of_block = match (
+        equations.inverse_fall_length > 0.0,
+        equations.healing_time.is_finite(),
+    ) {
+        (false, _) => 0,
+        (true, false) => 2,
+        (true, true) => 4,
+    };
+    of_block * lattice.flags.len()
 }
 
 /// Converts the words of a record to a [`StepRecord`].

@@ -11,7 +11,7 @@ use cudarc::nvrtc::{self, CompileOptions, Ptx};
 use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::arrays::Arrays;
-use crate::batch::{Batch, Lattice, RECORD};
+use crate::batch::{Batch, Lattice, RECORD, memory_len};
 use crate::large::LargeKernels;
 
 /// The kernels as PTX, written by `ptx.py`; empty if that script was not run before this crate was compiled.
@@ -137,9 +137,11 @@ impl Gpu {
         arrays.return_to(batch, stream)
     }
 
-    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps.
-    fn lattices_at_once(&self, blocks: usize, steps: u32) -> Result<usize, DeviceError> {
-        let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + steps as usize * BYTES_PER_STEP;
+    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps
+    /// and `memory` numbers that the law of friction remembers.
+    fn lattices_at_once(&self, blocks: usize, memory: usize, steps: u32) -> Result<usize, DeviceError> {
+        let of_law = memory * size_of::<f64>();
+        let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + of_law + steps as usize * BYTES_PER_STEP;
         let room = room(&self.context, &self.stream)?;
         match room / bytes {
             0 => Err(DeviceError(format!(
@@ -170,6 +172,7 @@ impl Kernel {
             .arg(&mut arrays.lattices)
             .arg(&mut arrays.state)
             .arg(&arrays.given)
+            .arg(&mut arrays.memory)
             .arg(&arrays.flags)
             .arg(&mut arrays.first_slips)
             .arg(&mut arrays.records);
@@ -194,7 +197,8 @@ impl Device for Gpu {
         let Some(most) = lattices.iter().map(blocks).max().filter(|_| steps > 0) else {
             return Ok(());
         };
-        let count = self.lattices_at_once(most, steps)?;
+        let memory = lattices.iter().map(|lattice| memory_len(lattice)).max();
+        let count = self.lattices_at_once(most, memory.unwrap_or(0), steps)?;
         for some in lattices.chunks_mut(count) {
             let mut batch = Batch::new(some, steps)?;
             self.launch(&mut batch, most).map_err(failed("the GPU failed"))?;

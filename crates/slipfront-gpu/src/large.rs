@@ -41,6 +41,7 @@ struct LargeLattices {
     lattices: CUdeviceptr,
     state: CUdeviceptr,
     given: CUdeviceptr,
+    memory: CUdeviceptr,
     flags: CUdeviceptr,
     first_slips: CUdeviceptr,
     records: CUdeviceptr,
@@ -51,7 +52,7 @@ struct LargeLattices {
     done: u32,
 }
 
-const _: () = assert!(size_of::<LargeLattices>() == 80);
+const _: () = assert!(size_of::<LargeLattices>() == 88);
 
 // SAFETY: the struct has no padding, and has the layout of the struct of the kernels, in which pointers have
 // 8 bytes.
@@ -88,6 +89,7 @@ impl LargeKernels {
             let lattices = arrays.lattices.device_ptr_mut(stream);
             let state = arrays.state.device_ptr_mut(stream);
             let given = arrays.given.device_ptr(stream);
+            let memory = arrays.memory.device_ptr_mut(stream);
             let flags = arrays.flags.device_ptr(stream);
             let first_slips = arrays.first_slips.device_ptr_mut(stream);
             let records = arrays.records.device_ptr_mut(stream);
@@ -98,6 +100,7 @@ impl LargeKernels {
                 lattices: lattices.0,
                 state: state.0,
                 given: given.0,
+                memory: memory.0,
                 flags: flags.0,
                 first_slips: first_slips.0,
                 records: records.0,

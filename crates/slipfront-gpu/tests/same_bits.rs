@@ -11,8 +11,8 @@ use slipfront::device::{Device, DeviceLattice, EnergySteps};
 use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load};
 use slipfront::testing::FusedDevice;
 use slipfront::{
-    DeadLoad, Drive, Edges, Execution, FrictionLaw, Lattice, Loading, Model, Outline, Program, Simulation,
-    Slider, State, Stop, Surface, VectorField,
+    Coulomb, DeadLoad, Drive, Edges, Execution, Friction, FrictionLaw, Lattice, Loading, Model, Outline,
+    Program, Simulation, Slider, SlipWeakening, State, Stop, Surface, VectorField,
 };
 use slipfront_gpu::Emulated;
 
@@ -33,6 +33,8 @@ fn left(lattice: &DeviceLattice) -> (Vec<Vec<u64>>, Vec<u32>) {
     numbers.push(bits(&motion.velocity_after));
     numbers.push(bits(&[motion.stress_square_max]));
     numbers.push(vec![motion.drive_steps, motion.drive_moves]);
+    let of_law = lattice.strength.iter().flat_map(|strength| &strength.columns);
+    numbers.extend(of_law.map(|column| bits(column)));
     (numbers, lattice.first_slips.clone())
 }
 
@@ -89,6 +91,7 @@ prop_compose! {
         (texture, hole) in (prop::option::of(2_usize..7), prop::option::of(2_usize..5)),
         (load, adhesion) in (prop_oneof![Just(Load::Redistributed), Just(Load::Kept)], 0.0..0.5),
         dead_load in prop_oneof![Just([0.0; 2]), (-0.3..0.3, -0.3..0.3).prop_map(|(x, y)| [x, y])],
+        fall in prop::option::of((0.01..2.0, prop::option::of(0.2..3.0))),
         ratio in prop_oneof![Just(3.0), 1.5..6.0],
         thrown in prop::option::of(0.001..2.0),
         dt_star in 0.05..0.3,
@@ -110,7 +113,9 @@ prop_compose! {
         let program = goes_back.then(|| Arc::new(Program::new([(speed, 3.0), (-speed, 5.0), (speed, f64::INFINITY)])));
         let loading = if is_held { Loading::Held { onset_steps: 9 } } else { Loading::Constant };
         let drive = Drive { program, k_drive, loading, ..Drive::at_angle(speed, degrees) };
-        let model = Model::new(lattice, surface, drive, damping, epsilon, FrictionLaw::Projection)
+        let slip_weakening = fall.map(|(length, healing_time)| SlipWeakening { length, healing_time });
+        let friction = Friction::Coulomb(Coulomb { slip_weakening, ..FrictionLaw::Projection.into() });
+        let model = Model::new(lattice, surface, drive, damping, epsilon, friction)
             .with_sheets(Vec::new(), slipfront::lattice::SpringStiffness::with_ratio(ratio))
             .with_slider(slider.clone())
             .with_dead_load(DeadLoad::uniform(dead_load));
@@ -141,6 +146,19 @@ proptest! {
         let mut simulation = Simulation::new(model.clone(), dt_star, state.clone(), Execution::default());
         prop_assume!(simulation.run(Stop::at_step(u64::from(first + second)), &mut []).is_ok(), "diverges");
         compare(&model, dt_star, state.as_ref(), Emulated { threads, stride: 2 * half_stride + 1, groups }, [first, second, every]);
+    }
+}
+
+/// The test that every device must pass before it is used.
+#[test]
+fn the_test_of_a_device_is_passed() {
+    for groups in [None, Some(3)] {
+        let device = Emulated {
+            threads: 256,
+            stride: 1,
+            groups,
+        };
+        (&device as &dyn Device).test_bits().unwrap();
     }
 }
 

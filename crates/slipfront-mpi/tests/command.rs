@@ -16,10 +16,10 @@ use tempfile::TempDir;
 use crate::support::results::{Files, assert_same, results};
 use crate::support::{SECONDS_TO_END, mpirun, output, printed, run_plain, run_plain_command};
 
-/// Long enough to be stopped: `mpirun` waits a second before it passes a signal on to the ranks, and a fast
-/// machine needs less than half of the nine seconds measured here.
-const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n\
-    [time]\nduration_star = 12_000\n";
+/// Long enough to be stopped: `mpirun` waits a second before it passes a signal on to the ranks. With a
+/// checkpoint at every step, one rank takes some eight seconds.
+const SLOW: &str = "[slider]\nblocks = [240, 200]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.008\n\
+    [time]\nduration_star = 800\n";
 
 /// The command on `ranks` ranks, in a folder.
 fn on_ranks(ranks: usize, folder: &TempDir, line: &str) -> Command {

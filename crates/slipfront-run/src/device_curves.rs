@@ -126,6 +126,11 @@ mod tests {
             ),
             ("drive.attach = 'left'", Measure::Time, 30.0),
             (
+                "friction.slip_weakening = { length_star = 0.5 }\ndrive.v_star = 0.1",
+                Measure::Time,
+                50.0,
+            ),
+            (
                 "slider.omega_star = 0\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
                  friction = { r_star = 0, sigma_static_star = 1 }\ntime.step = 0.9",
                 Measure::Time,
@@ -152,7 +157,7 @@ mod tests {
         for (one, found) in cases.iter().zip(&found) {
             assert_eq!(*found, one.curve_unless(&|| false));
         }
-        assert!(found[2].as_ref().unwrap().is_ok() && found[4].as_ref().unwrap().is_err());
+        assert!(found[2].as_ref().unwrap().is_ok() && found[5].as_ref().unwrap().is_err());
         let given_up = device_curves(&cases.each_ref(), &FusedDevice, &|| true).unwrap();
         assert!(given_up.iter().all(Option::is_none));
     }

@@ -60,8 +60,11 @@ impl DeviceRun for SummaryRun<'_> {
         self.case
     }
 
-    /// Adds the catalogue of events, which is made of blocks, to what a device refuses.
+    /// Adds what is made of blocks to what a device refuses: events, and the weakening energy at the end.
     fn refusal(&self, device: &dyn Device) -> Option<String> {
+        if self.case.model.friction.needs().weakens_with_slip {
+            return Some("the weakening energy of many runs at once is computed on the CPU alone".to_owned());
+        }
         refusal_of_run(self.case, device)
     }
 
@@ -151,6 +154,10 @@ mod tests {
     fn cases_of_the_cpu_are_refused_with_the_reason() {
         for (text, reason) in [
             ("output.events = true", "`output.events`"),
+            (
+                "friction.slip_weakening = { length_star = 0.5 }",
+                "the weakening energy",
+            ),
             ("drive.attach = 'left'", "drive springs"),
             (
                 "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }",

@@ -72,6 +72,10 @@ pub struct Equations {
     pub strain_limits: [f64; 2],
     /// Number of blocks.
     pub n_blocks: f64,
+    /// Inverse of the slip `D_c` over which [strength falls](FallingStrength); 0 if it does not fall.
+    pub inverse_fall_length: f64,
+    /// Time t* after which a stuck block has its full strength again; infinite if no block heals.
+    pub healing_time: f64,
 }
 
 /// Values of a lattice that change from step to step, in addition to those of its blocks.
@@ -123,6 +127,17 @@ pub struct EnergySteps {
     pub last: u64,
 }
 
+/// Memory of a law by which the strength of a block falls with its slip.
+#[derive(Clone, Debug)]
+pub struct FallingStrength {
+    /// Change of velocity in a step by the part of friction that is lost with slip, `dt max(S - K, 0)/c+`,
+    /// with the static threshold S and kinetic friction K, of the blocks.
+    pub drops: Arc<[f64]>,
+    /// Columns of a checkpoint: the slip of the blocks, and where blocks heal the times t* of their latest
+    /// motion and the shares of strength that they lost before they healed.
+    pub columns: Vec<Vec<f64>>,
+}
+
 /// State of a lattice between steps, in the form that a device takes.
 #[derive(Clone, Debug)]
 pub struct DeviceLattice {
@@ -132,7 +147,8 @@ pub struct DeviceLattice {
     pub equations: Equations,
     /// Steps at which energies are computed.
     pub energies: EnergySteps,
-    /// Squares of the static thresholds `mu_s F_n` of the blocks, row by row.
+    /// Squares of the static thresholds `mu_s F_n` of the blocks, row by row; 0 where [strength
+    /// falls](FallingStrength) with slip and is the only threshold.
     pub static_limit_squares: Arc<[f64]>,
     /// Change of velocity by kinetic friction in a step, `q = dt mu_k F_n/c+`, of the blocks.
     pub kinetic_impulses: Arc<[f64]>,
@@ -146,6 +162,8 @@ pub struct DeviceLattice {
     pub state: State,
     /// Step at which each block first slipped in contact, or [`NEVER`].
     pub first_slips: Vec<u32>,
+    /// Memory of the law of friction, if strength falls with slip.
+    pub strength: Option<FallingStrength>,
     /// Records of the latest steps that have not been replayed yet.
     pub records: VecDeque<StepRecord>,
     /// Sum of velocities half a step before t = 0.

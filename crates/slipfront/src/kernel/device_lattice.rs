@@ -8,7 +8,9 @@ use super::fused::{Fused, LargestFactors, SeriesNumbers, blocks_differ};
 use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
 use crate::communicator::Alone;
-use crate::device::{CpuOnly, DeviceLattice, EnergySteps, Equations, Motion, NEVER, StepRecord, flag};
+use crate::device::{
+    CpuOnly, DeviceLattice, EnergySteps, Equations, FallingStrength, Motion, NEVER, StepRecord, flag,
+};
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -22,13 +24,14 @@ impl DeviceLattice {
     /// [`CpuOnly`] for a model that is not plain.
     pub fn check(model: &Model) -> Result<(), CpuOnly> {
         let needs = model.friction.needs();
-        let is_common_law = needs.is_fused && !needs.varies && needs.columns == 0;
+        let remembers_slip_alone = needs.columns == 0 || needs.weakens_with_slip;
+        let is_common_law = needs.is_fused && !needs.varies && remembers_slip_alone;
         let reasons = [
             (!model.sheets.is_empty(), "a stack of sheets is"),
             (model.friction.interface().is_some(), "an upright sheet is"),
             (
                 !is_common_law,
-                "friction other than Coulomb's with constant coefficients is",
+                "friction other than Coulomb's with constant coefficients or a strength that falls with slip is",
             ),
             (model.slider.is_viscous(), "internal viscosity is"),
             (model.drive.rotation.is_some(), "a drive that rotates is"),
@@ -63,8 +66,14 @@ impl DeviceLattice {
         let (surface, slider, n) = (&model.surface, &model.slider, lattice.n_blocks());
         let integrator = Integrator::new(model.damping, dt_star);
         let series = SeriesNumbers::new(model.epsilon, model.springs);
-        let static_limits = (0..n).map(|b| surface.static_limit(b));
-        let kinetic_forces = (0..n).map(|b| surface.kinetic_force(b));
+        let law = model.friction.strength_over_slip();
+        let drops = (0..n).map(|b| (surface.static_limit(b) - surface.kinetic_force(b)).max(0.0));
+        let impulse = |force: f64| integrator.force_to_velocity * force;
+        let limit_square = |b: usize| {
+            let limit = surface.static_limit(b);
+            let falls = law.is_some() && limit > surface.kinetic_force(b);
+            if falls { 0.0 } else { limit * limit }
+        };
         let (bounds, velocity_after) = Fused::begun(&model, dt_star, state);
         Ok(Self {
             blocks: [lattice.nx, lattice.ny],
@@ -80,12 +89,16 @@ impl DeviceLattice {
                 series: series.coefficients,
                 strain_limits: series.strain_limits,
                 n_blocks: slider.sum_of_drive_springs(lattice),
+                inverse_fall_length: law.map_or(0.0, |law| 1.0 / law.length),
+                healing_time: law.and_then(|law| law.healing_time).unwrap_or(f64::INFINITY),
             },
             energies,
-            static_limit_squares: static_limits.map(|limit| limit * limit).collect(),
-            kinetic_impulses: kinetic_forces
-                .map(|force| integrator.force_to_velocity * force)
-                .collect(),
+            static_limit_squares: (0..n).map(limit_square).collect(),
+            kinetic_impulses: (0..n).map(|b| impulse(surface.kinetic_force(b))).collect(),
+            strength: law.map(|_| FallingStrength {
+                drops: drops.map(impulse).collect(),
+                columns: vec![vec![0.0; n]; model.friction.n_columns()],
+            }),
             flags: (0..n).map(|b| flags(&model, b)).collect(),
             steps_done: 0,
             motion: Motion {
@@ -148,6 +161,13 @@ impl DeviceLattice {
         self.steps_done = next.step;
         self.motion = kernel.motion_of_device(&self.model, latest, next);
         self.state = kernel.state();
+        let of_law = self
+            .strength
+            .iter_mut()
+            .flat_map(|strength| &mut strength.columns);
+        for (column, values) in of_law.enumerate() {
+            kernel.read_memory(latest.time_star(), column, 0, values);
+        }
         let mut times_star = vec![0.0; self.first_slips.len()];
         kernel.read_column(BlockColumn::FirstSlip, 0, &mut times_star);
         for (step, time_star) in self.first_slips.iter_mut().zip(times_star) {
@@ -186,6 +206,13 @@ impl DeviceLattice {
             }
         };
         values.copy_from_slice(&from[first..first + values.len()]);
+    }
+
+    /// Reads a column of the memory of the law of friction for the blocks from `first` on.
+    pub(crate) fn read_memory(&self, column: usize, first: usize, values: &mut [f64]) {
+        if let Some(strength) = &self.strength {
+            values.copy_from_slice(&strength.columns[column][first..first + values.len()]);
+        }
     }
 
     /// Adds the blocks in contact to `counts`, each in its bin: those that slide if `sliding` is true, else

@@ -8,6 +8,7 @@
 mod bands;
 pub(crate) mod block;
 mod device_lattice;
+mod device_test;
 pub(crate) mod engine;
 pub(crate) mod execution;
 pub(crate) mod fused;

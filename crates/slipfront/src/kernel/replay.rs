@@ -413,8 +413,11 @@ impl Engine for Replay {
         self.kernel().motion_bounds()
     }
 
-    fn read_memory(&self, _: f64, column: usize, _: usize, _: &mut [f64]) {
-        unreachable!("the law of a plain lattice has no column {column}");
+    fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
+        match self.on_cpu() {
+            Some(kernel) => kernel.read_memory(time_star, column, first, values),
+            None => self.here().read_memory(column, first, values),
+        }
     }
 
     fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use slipfront::checkpoint::BlockColumn;
 use slipfront::communicator::Alone;
 use slipfront::device::{Device, DeviceError, DeviceLattice, EnergySteps};
 use slipfront::observe::frames::Selection;
@@ -11,7 +12,7 @@ use slipfront::surface::{Load, Texture};
 use slipfront::testing::FusedDevice;
 use slipfront::{
     Ageing, Coulomb, Edges, Execution, Friction, Interface, Loading, Model, Rotation, Sheet, Simulation,
-    State, Stop,
+    SlipWeakening, State, Stop,
 };
 use test_case::test_matrix;
 
@@ -82,6 +83,39 @@ fn a_replay_has_the_same_bits(edges: Edges, texture: Option<Texture>, epsilon: f
     }
 }
 
+/// A device whose last bit is wrong in one number of one block.
+#[derive(Debug)]
+struct Wrong;
+
+impl Device for Wrong {
+    fn name(&self) -> String {
+        "a wrong device".to_owned()
+    }
+
+    fn most_blocks(&self) -> usize {
+        usize::MAX
+    }
+
+    fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
+        FusedDevice.run(lattices, steps)?;
+        if let [lattice] = lattices
+            && lattice.blocks == [60, 60]
+        {
+            let one = &mut lattice.state.velocity.x[1800];
+            *one = f64::from_bits(one.to_bits() ^ 1);
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn a_device_with_other_bits_is_not_used() {
+    (&FusedDevice as &dyn Device).test_bits().unwrap();
+    let refused = (&Wrong as &dyn Device).test_bits().unwrap_err().to_string();
+    let sentence = "a wrong device must not be used, since a test with 60 x 60 blocks differs from the CPU";
+    assert_eq!(refused, sentence);
+}
+
 /// A device that fails from some call on, having changed the lattices.
 #[derive(Debug)]
 struct Failing {
@@ -118,14 +152,50 @@ impl Device for Failing {
 fn a_run_on_a_device_has_the_same_bits(texture: Option<Texture>, loading: Loading, good: u32, part: u64) {
     let slider = Slider {
         loading,
-        blocks: [17, 12],
         textures: texture.into_iter().collect(),
+        ..observed_slider()
+    };
+    assert_same_on_device(&slider, good, part);
+}
+
+/// Strength that falls with slip, with blocks that heal and without: the memory of the law, which checkpoints
+/// keep and energies read, passes between a device and the CPU.
+#[test_matrix([None, Some(2.0)], [Loading::Constant, Loading::Held { onset_steps: 100 }], [u32::MAX, 5])]
+fn a_run_in_which_strength_falls_has_the_same_bits(healing_time: Option<f64>, loading: Loading, good: u32) {
+    let slider = Slider {
+        loading,
+        textures: vec![cavity([17, 12], 10.0, 1, 0.3, true)],
+        slip_weakening: Some(SlipWeakening {
+            length: 0.4,
+            healing_time,
+        }),
+        ..observed_slider()
+    };
+    assert_same_on_device(&slider, good, 61);
+    let mut run = Simulation::new(slider.model(), slider.dt_star, None, fused());
+    run.run(Stop::at_step(slider.steps(4.0)), &mut []).unwrap();
+    assert!(run.snapshot().weakening_energy() > 0.0, "strength falls");
+    let of_law = &columns(&run)[BlockColumn::ALL.len()..];
+    let has_healed = of_law
+        .get(2)
+        .is_some_and(|lost| lost.iter().any(|share| *share > 0.0));
+    assert_eq!(has_healed, healing_time.is_some());
+}
+
+fn observed_slider() -> Slider {
+    Slider {
+        blocks: [17, 12],
         degrees: 25.0,
         v_star: 0.1,
         dt_star: 0.2,
         load: Load::Kept,
         ..Slider::default()
-    };
+    }
+}
+
+/// Compares runs on a device that fails at call `good`, on the CPU and on both in turn. They are taken up at
+/// checkpoints between parts of `part` steps.
+fn assert_same_on_device(slider: &Slider, good: u32, part: u64) {
     let (model, dt_star, stop) = (slider.model(), slider.dt_star, Stop::at_step(slider.steps(4.0)));
     let device = Arc::new(Failing {
         calls: AtomicU32::new(0),

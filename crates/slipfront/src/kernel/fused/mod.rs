@@ -231,6 +231,10 @@ impl Fused {
             Ok::<_, Infallible>(())
         })
         .unwrap_or_else(|never| match never {});
+        let of_law = lattice.strength.iter().flat_map(|strength| &strength.columns);
+        for (column, values) in of_law.enumerate() {
+            kernel.set_memory(column, 0, values);
+        }
         let mut kernel = kernel.resumed();
         kernel.swept_step = Some(latest);
         kernel.motion_bounds = MotionBounds::of_numbers(lattice.motion.bounds);
@@ -277,12 +281,7 @@ impl Fused {
         for column in 0..model.n_memory_columns() {
             BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
                 read(BlockColumn::ALL.len() + column, first, values)?;
-                for band in &mut kernel.bands {
-                    match column.checked_sub(kernel.columns_of_law) {
-                        None => band.set_memory(&kernel.layout, column, first, values),
-                        Some(column) => band.set_upper_column(&kernel.layout, column, first, values),
-                    }
-                }
+                kernel.set_memory(column, first, values);
                 Ok(())
             })?;
         }
@@ -299,6 +298,17 @@ impl Fused {
     pub(crate) fn set_column(&mut self, column: BlockColumn, first: usize, values: &[f64]) {
         for band in &mut self.bands {
             band.set_column(&self.layout, self.dt_star, column, first, values);
+        }
+    }
+
+    /// Sets a column of the memory of the law of friction, or of the sheets above, of the blocks from `first`
+    /// on.
+    fn set_memory(&mut self, column: usize, first: usize, values: &[f64]) {
+        for band in &mut self.bands {
+            match column.checked_sub(self.columns_of_law) {
+                None => band.set_memory(&self.layout, column, first, values),
+                Some(column) => band.set_upper_column(&self.layout, column, first, values),
+            }
         }
     }
 
