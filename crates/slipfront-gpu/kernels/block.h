@@ -71,25 +71,26 @@ FN Sums no_sums() {
     return s;
 }
 
-// Kinetic impulse of block b of n at its present slip, from that at rest, with the velocity of the step that ends now:
+FN bool falls(const Equations& q) { return q.inverse_fall_length > 0.0; }
+
+// Kinetic impulse of block b of n at its present slip, with the velocity of the step that ends now:
 // kernel/fused/thresholds.rs in crates/slipfront/src.
-FN double impulse_after_slip(const Equations& q, u64 step, Vec2 velocity, double at_rest, double* memory, size_t n,
-                             size_t b) {
-    double slip = memory[n + b] + (step == 0 ? 0.0 : q.dt) * sqrt(square(velocity));
+FN double impulse_after_slip(const Equations& q, u64 step, Vec2 velocity, double* memory, size_t n, size_t b) {
+    double slip = memory[2 * n + b] + (step == 0 ? 0.0 : q.dt) * sqrt(square(velocity));
     double left = larger(1.0 - slip * q.inverse_fall_length, 0.0);
     if (q.healing_time < of_bits(0x7ff0000000000000LL)) {
         bool is_stuck = velocity.x == 0.0 && velocity.y == 0.0;
         double now = (double)step * q.dt;
         if (!is_stuck) {
-            memory[2 * n + b] = now;
-        } else if (now - memory[2 * n + b] >= q.healing_time) {
-            memory[3 * n + b] += 1.0 - left * left;
+            memory[3 * n + b] = now;
+        } else if (now - memory[3 * n + b] >= q.healing_time) {
+            memory[4 * n + b] += 1.0 - left * left;
             slip = 0.0;
             left = 1.0;
         }
     }
-    memory[n + b] = slip;
-    return at_rest + memory[b] * left;
+    memory[2 * n + b] = slip;
+    return memory[b] + memory[n + b] * left;
 }
 
 struct Moved {

@@ -6,7 +6,7 @@
 // 128 threads on a multiprocessor of 228 KiB, 64 x 64 for one of 512.
 #define SMALL_LATTICES(NAME, THREADS, GROUPS)                                                    \
     extern "C" __global__ void __launch_bounds__(THREADS, GROUPS) NAME(                          \
-        Lattice* lattices, double* state, const double* given, double* memory, const u16* flags, \
+        Lattice* lattices, double* state, double* given, double* memory, const u16* flags,       \
         u32* first_slips, StepRecord* records) {                                                 \
         extern __shared__ double shared_blocks[];                                                \
         __shared__ Shared shared;                                                                \

@@ -116,6 +116,28 @@ FN void measure_tiles(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     }
 }
 
+// Impulses after the slip of the step that ends now, of the blocks in the tiles of a group. It is a loop by itself, so
+// that other models need no registers for it.
+FN void weaken_tiles(const LargeLattices& l, u32 k, u32 group, const Tile& t) {
+    const Lattice& lattice = t.lattice;
+    const size_t n = lattice.n;
+    const double* velocity = l.arrays.state + 4 * lattice.first_block + 2 * n;
+    double* impulses = l.arrays.given + 2 * (lattice.first_block + (u64)k * lattice.steps) + n;
+    double* memory = l.arrays.memory + lattice.first_memory;
+#pragma unroll 1
+    for (u32 tile = group; tile < t.tiles; tile += l.groups) {
+        Corner corner = corner_of(t, tile);
+#pragma unroll 1
+        for (int i = threadIdx.x; i < TILE_X * TILE_Y; i += blockDim.x) {
+            Place p = place_of(t, corner, i);
+            if (!p.is_inside) continue;
+            size_t b = p.block;
+            Vec2 v = {velocity[b], velocity[n + b]};
+            impulses[b] = impulse_after_slip(lattice.equations, t.shared.step.number, v, memory, n, b);
+        }
+    }
+}
+
 template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     const Lattice& lattice = t.lattice;
     const Step& step = t.shared.step;
@@ -126,8 +148,6 @@ template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& 
     const double* given = l.arrays.given + 2 * (first_block + (u64)k * lattice.steps);
     const u16* flags = l.arrays.flags + first_block;
     u32* first_slips = l.arrays.first_slips + first_block;
-    double* memory = l.arrays.memory + lattice.first_memory;
-    const bool falls = lattice.equations.inverse_fall_length > 0.0;
     // At the start displacements are those of t_0 already.
     double dt = step.number == 0 ? 0.0 : lattice.equations.dt;
     Sums sums = no_sums();
@@ -145,11 +165,8 @@ template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& 
             Around around = around_cell(t, p.cell);
             Moved moved = {{state[2 * n + b], state[3 * n + b]}, false};
             if (flags[b] & EXISTS) {
-                double impulse = given[n + b];
-                if (falls)
-                    impulse = impulse_after_slip(lattice.equations, step.number, moved.velocity, impulse, memory, n, b);
                 moved = step_block<SPRINGS, ENERGY>(lattice.equations, step, around, flags[b], moved.velocity, given[b],
-                                                    impulse, sums);
+                                                    given[n + b], sums);
             }
             after[b] = around.here.x;
             after[n + b] = around.here.y;
@@ -183,6 +200,7 @@ FN void step_lattice(const LargeLattices& l, u32 k, u32 group, Tile& t) {
         t.shared.step = l.steps[k];
     }
     __syncthreads();
+    if (falls(t.lattice.equations)) weaken_tiles(l, k, group, t);
     if (t.shared.step.has_energies) step_tiles_with<true>(l, k, group, t);
     else step_tiles_with<false>(l, k, group, t);
 }

@@ -2,19 +2,18 @@
 #pragma once
 #include "group.h"
 
-// Numbers of the blocks of a lattice; all but first slips and the memory of the law in shared memory.
+// Numbers of the blocks of a lattice; all but first slips in shared memory.
 struct Blocks {
     double *ux, *uy, *vx, *vy, *limit_squares, *impulses;
     u32 *flags, *first_slips;
-    double* memory;
 };
 
 static const int BYTES_PER_BLOCK = 6 * 8 + 4;
 
-FN Blocks blocks_in(double* shared, u32 n, u32* first_slips, double* memory) {
-    double* flags = shared + 6 * n;
-    Blocks a = {shared,         shared + n,  shared + 2 * n, shared + 3 * n, shared + 4 * n,
-                shared + 5 * n, (u32*)flags, first_slips,    memory};
+FN Blocks blocks_in(double* memory, u32 n, u32* first_slips) {
+    double* flags = memory + 6 * n;
+    Blocks a = {memory,         memory + n,     memory + 2 * n, memory + 3 * n,
+                memory + 4 * n, memory + 5 * n, (u32*)flags,    first_slips};
     return a;
 }
 
@@ -34,6 +33,16 @@ FN void move_blocks(const Blocks& a, int n, double dt) {
     for (int b = threadIdx.x; b < n; b += blockDim.x) {
         a.ux[b] = a.ux[b] + dt * a.vx[b];
         a.uy[b] = a.uy[b] + dt * a.vy[b];
+    }
+}
+
+// Impulses after the slip of the step that ends now. It is a loop by itself, so that other models need no registers for
+// it.
+FN void weaken_blocks(const Lattice& lattice, const Blocks& a, double* memory, u64 step) {
+#pragma unroll 1
+    for (int b = threadIdx.x; b < (int)lattice.n; b += blockDim.x) {
+        Vec2 velocity = {a.vx[b], a.vy[b]};
+        a.impulses[b] = impulse_after_slip(lattice.equations, step, velocity, memory, lattice.n, b);
     }
 }
 
@@ -57,11 +66,8 @@ template <Springs SPRINGS, bool ENERGY> FN void sweep(const Lattice& lattice, co
         u32 flags = a.flags[b];
         if (!(flags & EXISTS)) continue;
         Vec2 before = {a.vx[b], a.vy[b]};
-        double impulse = a.impulses[b];
-        if (lattice.equations.inverse_fall_length > 0.0)
-            impulse = impulse_after_slip(lattice.equations, step.number, before, impulse, a.memory, n, b);
         Moved moved = step_block<SPRINGS, ENERGY>(lattice.equations, step, around(a.ux, a.uy, b, neighbours_of(flags, nx, n)),
-                                                  flags, before, a.limit_squares[b], impulse, sums);
+                                                  flags, before, a.limit_squares[b], a.impulses[b], sums);
         a.vx[b] = moved.velocity.x;
         a.vy[b] = moved.velocity.y;
         if (moved.slips && a.first_slips[b] == NEVER) a.first_slips[b] = (u32)step.number;
@@ -85,7 +91,7 @@ FN void run_lattice(const Arrays& arrays, u32 k, double* shared_blocks, Shared& 
     const double* positions = given + 2 * n;
     const u16* flags = arrays.flags + lattice.first_block;
     StepRecord* records = arrays.records + first_record;
-    Blocks a = blocks_in(shared_blocks, n, arrays.first_slips + lattice.first_block, arrays.memory + lattice.first_memory);
+    Blocks a = blocks_in(shared_blocks, n, arrays.first_slips + lattice.first_block);
     bool is_first_warp = threadIdx.x < WARP, is_first_thread = threadIdx.x == 0;
     for (int b = threadIdx.x; b < n; b += blockDim.x) {
         a.ux[b] = state[b];
@@ -113,6 +119,7 @@ FN void run_lattice(const Arrays& arrays, u32 k, double* shared_blocks, Shared& 
     __syncthreads();
     for (u32 done = 0; done < lattice.steps; done++) {
         const Step& step = shared.step;
+        if (falls(lattice.equations)) weaken_blocks(lattice, a, arrays.memory + lattice.first_memory, step.number);
         if (step.has_energies) sweep_with<true>(step.springs, lattice, a, shared);
         else sweep_with<false>(step.springs, lattice, a, shared);
         if (step.measures) measure_blocks(lattice, a, shared);

@@ -47,11 +47,11 @@ struct Arrays {
     Lattice* lattices;
     // Displacements along x and along y, velocities along x and along y of the blocks of a lattice.
     double* state;
-    // Squares of static thresholds, and kinetic impulses of the blocks; x and y of the driven ends at each step of the
-    // drive.
-    const double* given;
-    // Where strength falls with slip, for the blocks of a lattice: its falls as impulses, slips, and where blocks heal
-    // the times of their latest motion and the shares that they lost before they healed.
+    // Squares of static thresholds, and kinetic impulses of the blocks, which change where strength falls with slip; x
+    // and y of the driven ends at each step of the drive.
+    double* given;
+    // Where strength falls with slip, for the blocks of a lattice: kinetic impulses without slip, their falls, slips,
+    // and where blocks heal the times of their latest motion and the shares lost before they healed.
     double* memory;
     const u16* flags;
     u32* first_slips;

@@ -51,11 +51,11 @@ pub(crate) struct Batch {
     pub(crate) lattices: Vec<Lattice>,
     /// Displacements along x and y, then velocities along x and y, of the blocks of each lattice.
     pub(crate) state: Vec<f64>,
-    /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, and the
-    /// positions of the driven ends at each step of the drive.
+    /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, which kernels
+    /// change where strength falls with slip, and the positions of the driven ends at each step of the drive.
     pub(crate) given: Vec<f64>,
-    /// For each lattice whose strength falls with slip, after a number that is not used: the falls of its
-    /// blocks, and the columns that the law remembers.
+    /// For each lattice whose strength falls with slip, after a number that is not used: the impulses of its
+    /// blocks without slip, their falls, and the columns that the law remembers.
     pub(crate) memory: Vec<f64>,
     pub(crate) flags: Vec<u16>,
     pub(crate) first_slips: Vec<u32>,
@@ -116,6 +116,7 @@ impl Batch {
         self.given.extend(&*lattice.kinetic_impulses);
         self.given.extend(lattice.drive_positions(steps).flatten());
         if let Some(strength) = &lattice.strength {
+            self.memory.extend(&*lattice.kinetic_impulses);
             self.memory.extend(&*strength.drops);
             self.memory.extend(strength.columns.iter().flatten());
         }
@@ -148,8 +149,8 @@ impl Batch {
                 .copy_from_slice(&self.first_slips[first..first + n]);
             if let Some(strength) = &mut lattice.strength {
                 let memory = self.memory[after.first_memory as usize..].chunks(n);
-                // After the falls.
-                for (column, values) in strength.columns.iter_mut().zip(memory.skip(1)) {
+                // After the impulses and the falls.
+                for (column, values) in strength.columns.iter_mut().zip(memory.skip(2)) {
                     column.copy_from_slice(values);
                 }
             }
@@ -170,8 +171,8 @@ pub(crate) fn memory_len(lattice: &DeviceLattice) -> usize {
         equations.healing_time.is_finite(),
     ) {
         (false, _) => 0,
-        (true, false) => 2,
-        (true, true) => 4,
+        (true, false) => 3,
+        (true, true) => 5,
     };
     of_block * lattice.flags.len()
 }

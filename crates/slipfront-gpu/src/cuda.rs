@@ -171,7 +171,7 @@ impl Kernel {
         launch
             .arg(&mut arrays.lattices)
             .arg(&mut arrays.state)
-            .arg(&arrays.given)
+            .arg(&mut arrays.given)
             .arg(&mut arrays.memory)
             .arg(&arrays.flags)
             .arg(&mut arrays.first_slips)

@@ -24,7 +24,7 @@ pub struct Emulated {
 struct Arrays {
     lattices: *mut Lattice,
     state: *mut f64,
-    given: *const f64,
+    given: *mut f64,
     memory: *mut f64,
     flags: *const u16,
     first_slips: *mut u32,
@@ -64,7 +64,7 @@ impl Device for Emulated {
         let arrays = Arrays {
             lattices: batch.lattices.as_mut_ptr(),
             state: batch.state.as_mut_ptr(),
-            given: batch.given.as_ptr(),
+            given: batch.given.as_mut_ptr(),
             memory: batch.memory.as_mut_ptr(),
             flags: batch.flags.as_ptr(),
             first_slips: batch.first_slips.as_mut_ptr(),

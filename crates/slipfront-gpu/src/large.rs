@@ -88,7 +88,7 @@ impl LargeKernels {
         {
             let lattices = arrays.lattices.device_ptr_mut(stream);
             let state = arrays.state.device_ptr_mut(stream);
-            let given = arrays.given.device_ptr(stream);
+            let given = arrays.given.device_ptr_mut(stream);
             let memory = arrays.memory.device_ptr_mut(stream);
             let flags = arrays.flags.device_ptr(stream);
             let first_slips = arrays.first_slips.device_ptr_mut(stream);
