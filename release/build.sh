@@ -58,14 +58,22 @@ module() {
     module_made=yes
 }
 
-# An archive with the command for a platform: NAME TARGET PROGRAM ARCHIVE.
+# The kernels for a GPU, as PTX, which programs and wheels carry where the driver of a GPU can be loaded: on
+# Windows, and on Linux with glibc.
+with_kernels() {
+    crates/slipfront-gpu/ptx.py
+    "$@" --features gpu
+}
+
+# An archive with the command for a platform: NAME TARGET PROGRAM ARCHIVE, and options of cargo.
 command_for() {
     local name=slipfront-$version-$1 target=$2 program=$3 archive=$4
+    shift 4
     add_target "$target"
     module
     # The linker of Rust's own toolchain is the same on every machine, and knows every architecture.
     CARGO_TARGET_X86_64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld \
-        cargo build --profile dist --locked --package slipfront-cli --target "$target"
+        cargo build --profile dist --locked --package slipfront-cli --target "$target" "$@"
     rm -rf "${stage:?}/$name"
     mkdir -p "$stage/$name"
     cp "$CARGO_TARGET_DIR/$target/dist/$program" target/slipfront.wasm target/slipfront-work.wasm LICENSE-APACHE LICENSE-MIT "$stage/$name"
@@ -112,21 +120,21 @@ step() {
     elif [ "$1" = linux-aarch64 ]; then
         command_for linux-aarch64 aarch64-unknown-linux-musl slipfront tar.gz
     elif [ "$1" = windows-x86_64 ]; then
-        (mingw && command_for windows-x86_64 x86_64-pc-windows-gnu slipfront.exe zip)
+        (mingw && with_kernels command_for windows-x86_64 x86_64-pc-windows-gnu slipfront.exe zip)
     elif [ "$1" = lab ]; then
         lab
     elif [ "$1" = source ]; then
         source_distributions
     elif [ "$1" = wheel-linux-x86_64 ]; then
-        wheel x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
+        with_kernels wheel x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
     elif [ "$1" = wheel-linux-aarch64 ]; then
-        wheel aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
+        with_kernels wheel aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
     elif [ "$1" = wheel-musl-x86_64 ]; then
         wheel x86_64-unknown-linux-musl --zig --compatibility musllinux_1_2
     elif [ "$1" = wheel-musl-aarch64 ]; then
         wheel aarch64-unknown-linux-musl --zig --compatibility musllinux_1_2
     elif [ "$1" = wheel-windows-x86_64 ]; then
-        (mingw && wheel x86_64-pc-windows-gnu)
+        (mingw && with_kernels wheel x86_64-pc-windows-gnu)
     elif [ "$1" = check ]; then
         python3 -B release/check.py "$out"
     elif [ "$1" = reproducible ]; then

@@ -18,7 +18,7 @@ from cyclonedx.validation.json import JsonStrictValidator
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests/licences"))
 from crates import REPOSITORY, cargo, fail, packages, run
-from notices import MUSL, PARTS, linked
+from notices import MUSL, PARTS, features, linked
 
 
 def checksums():
@@ -46,10 +46,11 @@ def component(package, checksum):
 def sbom(folder, target, seconds):
     """The list of the crates that are compiled into the program of a folder."""
     manifest = f"{folder}/Cargo.toml"
-    known = {(package["name"], package["version"]): package for package in packages(manifest)}
+    options = features(folder, [target])
+    known = {(package["name"], package["version"]): package for package in packages(manifest, *options)}
     sums = checksums()
     inside = {crate: component(known[crate], sums.get(crate)) for crate in sorted(linked(folder, [target]))}
-    metadata = json.loads(cargo("metadata", manifest, "--format-version=1", f"--filter-platform={target}"))
+    metadata = json.loads(cargo("metadata", manifest, "--format-version=1", f"--filter-platform={target}", *options))
     by_id = {package["id"]: (package["name"], package["version"]) for package in metadata["packages"]}
     dependencies = []
     for node in metadata["resolve"]["nodes"]:

@@ -50,10 +50,21 @@ platforms, of which one alone may contain less:
 WIDTH = 100
 
 
+def features(folder, targets):
+    """The features that a release has: the driver of a GPU can be loaded on Windows, and on Linux with glibc.
+
+    >>> features("python", ["x86_64-unknown-linux-gnu"]), features("python", ["x86_64-unknown-linux-musl"])
+    (['--features=gpu'], [])
+    """
+    can_load = any("windows" in target or "linux-gnu" in target for target in targets)
+    return ["--features=gpu"] if can_load and folder != "crates/slipfront-mpi" else []
+
+
 def linked(folder, targets):
     """Name and version of each crate that is compiled into a program: not what only builds it, tests it, or is a macro."""
     platforms = [f"--target={target}" for target in targets]
-    tree = cargo("tree", f"{folder}/Cargo.toml", "--edges=normal,no-proc-macro", "--prefix=none", "--format={p}", *platforms)
+    options = ["--edges=normal,no-proc-macro", "--prefix=none", "--format={p}", *features(folder, targets)]
+    tree = cargo("tree", f"{folder}/Cargo.toml", *options, *platforms)
     return {(line.split()[0], line.split()[1].removeprefix("v")) for line in tree.splitlines() if line}
 
 
@@ -61,7 +72,7 @@ def contained(folders, targets):
     """The packages that slipfront's programs in these folders contain, without its own, sorted by name and version."""
     found = {}
     for folder in folders:
-        known = {(package["name"], package["version"]): package for package in packages(f"{folder}/Cargo.toml")}
+        known = {(package["name"], package["version"]): package for package in packages(f"{folder}/Cargo.toml", *features(folder, targets))}
         found.update({crate: known[crate] for crate in linked(folder, targets)})
     others = []
     for (name, version), package in sorted(found.items()):
