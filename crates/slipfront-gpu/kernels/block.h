@@ -98,6 +98,17 @@ struct Moved {
     bool slips;
 };
 
+FN bool counts_at(const Lattice& l, u64 step) { return l.counted_every > 0 && step % l.counted_every == 0; }
+
+// Counts block b if it slides in contact, at a step at which blocks are counted, with its velocity half a step later.
+// Counts are integers, so that their order does not matter.
+FN void count_block(const Arrays& arrays, const Lattice& l, u64 step, u32 flags, Vec2 velocity, size_t b) {
+    if (!(flags & IN_CONTACT) || (velocity.x == 0.0 && velocity.y == 0.0)) return;
+    u64 before = (l.first_step + l.counted_every - 1) / l.counted_every;
+    u64 row = step / l.counted_every - before;
+    atomicAdd(&arrays.counts[l.first_count + row * l.bins + arrays.bins[l.first_bin + b]], 1u);
+}
+
 FN double or_zero_below(double least, double x) { return fabs(x) < least ? 0.0 * x : x; }
 
 // limit_square: square of the static threshold; impulse: change of velocity by kinetic friction.

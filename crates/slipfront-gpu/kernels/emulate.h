@@ -122,6 +122,9 @@ template <class T> T __shfl_xor_sync(unsigned, T x, int distance) {
     return other;
 }
 
+// Threads take turns only where they wait for each other.
+inline void atomicAdd(unsigned* sum, unsigned term) { *sum += term; }
+
 inline int __clzll(long long x) { return std::countl_zero((unsigned long long)x); }
 inline long long __double_as_longlong(double x) { return std::bit_cast<long long>(x); }
 inline double __longlong_as_double(long long x) { return std::bit_cast<double>(x); }

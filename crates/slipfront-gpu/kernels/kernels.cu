@@ -4,14 +4,11 @@
 
 // A group of threads takes one lattice, with its blocks in shared memory: 25 x 25 blocks leave room for six groups of
 // 128 threads on a multiprocessor of 228 KiB, 64 x 64 for one of 512.
-#define SMALL_LATTICES(NAME, THREADS, GROUPS)                                                    \
-    extern "C" __global__ void __launch_bounds__(THREADS, GROUPS) NAME(                          \
-        Lattice* lattices, double* state, double* given, double* memory, const u16* flags,       \
-        u32* first_slips, StepRecord* records) {                                                 \
-        extern __shared__ double shared_blocks[];                                                \
-        __shared__ Shared shared;                                                                \
-        Arrays arrays = {lattices, state, given, memory, flags, first_slips, records};           \
-        run_lattice(arrays, blockIdx.x, shared_blocks, shared);                                  \
+#define SMALL_LATTICES(NAME, THREADS, GROUPS)                                                          \
+    extern "C" __global__ void __launch_bounds__(THREADS, GROUPS) NAME(Arrays arrays) {                \
+        extern __shared__ double shared_blocks[];                                                      \
+        __shared__ Shared shared;                                                                      \
+        run_lattice(arrays, blockIdx.x, shared_blocks, shared);                                        \
     }
 
 SMALL_LATTICES(small_lattices_128, 128, 6)

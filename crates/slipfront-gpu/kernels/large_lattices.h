@@ -19,7 +19,7 @@ struct LargeLattices {
     u32 groups, done;
 };
 
-static_assert(sizeof(LargeLattices) == 88, "the size that src/large.rs has");
+static_assert(sizeof(LargeLattices) == 104, "the size that src/large.rs has");
 
 // What the threads of a group share.
 struct Tile {
@@ -138,6 +138,25 @@ FN void weaken_tiles(const LargeLattices& l, u32 k, u32 group, const Tile& t) {
     }
 }
 
+// Counts the sliding blocks in the tiles of a group, whose velocities after the step are known.
+FN void count_tiles(const LargeLattices& l, u32 group, const Tile& t) {
+    const Lattice& lattice = t.lattice;
+    const size_t n = lattice.n;
+    const double* velocity = l.state_after + 4 * lattice.first_block + 2 * n;
+    const u16* flags = l.arrays.flags + lattice.first_block;
+#pragma unroll 1
+    for (u32 tile = group; tile < t.tiles; tile += l.groups) {
+        Corner corner = corner_of(t, tile);
+#pragma unroll 1
+        for (int i = threadIdx.x; i < TILE_X * TILE_Y; i += blockDim.x) {
+            Place p = place_of(t, corner, i);
+            if (!p.is_inside) continue;
+            Vec2 v = {velocity[p.block], velocity[n + p.block]};
+            count_block(l.arrays, lattice, t.shared.step.number, flags[p.block], v, p.block);
+        }
+    }
+}
+
 template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     const Lattice& lattice = t.lattice;
     const Step& step = t.shared.step;
@@ -203,6 +222,7 @@ FN void step_lattice(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     if (falls(t.lattice.equations)) weaken_tiles(l, k, group, t);
     if (t.shared.step.has_energies) step_tiles_with<true>(l, k, group, t);
     else step_tiles_with<false>(l, k, group, t);
+    if (counts_at(t.lattice, t.shared.step.number)) count_tiles(l, group, t);
 }
 
 // Finishes the latest step of lattice number k and begins the next one; with none done, begins the first.

@@ -46,6 +46,14 @@ FN void weaken_blocks(const Lattice& lattice, const Blocks& a, double* memory, u
     }
 }
 
+FN void count_blocks(const Arrays& arrays, const Lattice& lattice, const Blocks& a, u64 step) {
+#pragma unroll 1
+    for (int b = threadIdx.x; b < (int)lattice.n; b += blockDim.x) {
+        Vec2 velocity = {a.vx[b], a.vy[b]};
+        count_block(arrays, lattice, step, a.flags[b], velocity, b);
+    }
+}
+
 FN void measure_blocks(const Lattice& lattice, const Blocks& a, Shared& shared) {
     Measured m = nothing_measured();
 #pragma unroll 1
@@ -122,6 +130,7 @@ FN void run_lattice(const Arrays& arrays, u32 k, double* shared_blocks, Shared& 
         if (falls(lattice.equations)) weaken_blocks(lattice, a, arrays.memory + lattice.first_memory, step.number);
         if (step.has_energies) sweep_with<true>(step.springs, lattice, a, shared);
         else sweep_with<false>(step.springs, lattice, a, shared);
+        if (counts_at(lattice, step.number)) count_blocks(arrays, lattice, a, step.number);
         if (step.measures) measure_blocks(lattice, a, shared);
         __syncthreads();
         bool is_last = done + 1 == lattice.steps;

@@ -37,10 +37,13 @@ struct Lattice {
     u64 first_block, first_memory;
     // Number of steps of the drive at the first step.
     u64 first_drive_step;
-    u32 steps, nx, n, is_held;
+    // Sliding blocks are counted at multiples of this number of a step, if it is not 0; first of the bins of blocks, and
+    // of the counts.
+    u64 counted_every, first_bin, first_count;
+    u32 steps, nx, n, is_held, bins, unused;
 };
 
-static_assert(sizeof(Lattice) == 456 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
+static_assert(sizeof(Lattice) == 488 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
 
 // Numbers of all lattices, one lattice after the other.
 struct Arrays {
@@ -54,6 +57,9 @@ struct Arrays {
     // and where blocks heal the times of their latest motion and the shares lost before they healed.
     double* memory;
     const u16* flags;
+    // Bins of the blocks, and counts of each bin at each of the steps at which sliding blocks are counted.
+    const u16* bins;
+    u32* counts;
     u32* first_slips;
     StepRecord* records;
 };

@@ -16,10 +16,15 @@ pub(crate) struct Lattice {
     first_block: u64,
     first_memory: u64,
     first_drive_step: u64,
+    counted_every: u64,
+    first_bin: u64,
+    first_count: u64,
     pub(crate) steps: u32,
     nx: u32,
     n: u32,
     is_held: u32,
+    bins: u32,
+    unused: u32,
 }
 
 #[cfg(feature = "cuda")]
@@ -40,7 +45,7 @@ pub(crate) const STEP: usize = 120 / 8;
 pub(crate) const TOTALS: usize = 216 / 8;
 
 // The sizes of these structs in `kernels/step.h`.
-const _: () = assert!(size_of::<Lattice>() == 456 && size_of::<StepRecord>() == 88);
+const _: () = assert!(size_of::<Lattice>() == 488 && size_of::<StepRecord>() == 88);
 
 /// Size of a record, in numbers of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
@@ -58,6 +63,10 @@ pub(crate) struct Batch {
     /// blocks without slip, their falls, and the columns that the law remembers.
     pub(crate) memory: Vec<f64>,
     pub(crate) flags: Vec<u16>,
+    /// For each lattice whose sliding blocks are counted, after a number that is not used: bins of its blocks.
+    pub(crate) bins: Vec<u16>,
+    /// For each such lattice, after a number that is not used: counts of each bin at each counted step.
+    pub(crate) counts: Vec<u32>,
     pub(crate) first_slips: Vec<u32>,
     /// Records of the steps of each lattice, as numbers of 8 bytes.
     pub(crate) records: Vec<u64>,
@@ -76,6 +85,8 @@ impl Batch {
             given: Vec::with_capacity(2 * (blocks + lattices.len() * steps as usize)),
             // A GPU has no arrays without a number.
             memory: vec![0.0],
+            bins: vec![0],
+            counts: vec![0],
             flags: Vec::with_capacity(blocks),
             first_slips: Vec::with_capacity(blocks),
             records: vec![0; lattices.len() * steps as usize * RECORD],
@@ -103,10 +114,18 @@ impl Batch {
             first_block: self.flags.len() as u64,
             first_memory: self.memory.len() as u64,
             first_drive_step: lattice.motion.drive_steps,
+            counted_every: lattice.counts.as_ref().map_or(0, |counts| counts.every),
+            first_bin: self.bins.len() as u64,
+            first_count: self.counts.len() as u64,
             steps,
             nx: nx as u32,
             n: n as u32,
             is_held: lattice.is_held().into(),
+            bins: lattice
+                .counts
+                .as_ref()
+                .map_or(0, |counts| counts.bins.count as u32),
+            unused: 0,
         });
         let (u, v) = (&lattice.state.displacement, &lattice.state.velocity);
         for field in [&u.x, &u.y, &v.x, &v.y] {
@@ -120,6 +139,11 @@ impl Batch {
             self.memory.extend(&*strength.drops);
             self.memory.extend(strength.columns.iter().flatten());
         }
+        if let Some(counts) = &lattice.counts {
+            self.bins.extend(&*counts.bin_of);
+            self.counts
+                .resize(self.counts.len() + count_len(lattice, steps), 0);
+        }
         self.flags.extend(&*lattice.flags);
         self.first_slips.extend(&lattice.first_slips);
         // The kernels rely on these lengths.
@@ -130,7 +154,8 @@ impl Batch {
                 && self.first_slips.len() == blocks
                 && blocks as u64 == latest.first_block + n as u64
                 && self.given.len() == expected
-                && self.memory.len() == latest.first_memory as usize + memory_len(lattice),
+                && self.memory.len() == latest.first_memory as usize + memory_len(lattice)
+                && bins_are_few(lattice),
             "the arrays of a lattice of {nx} x {ny} blocks have other lengths"
         );
         Ok(())
@@ -154,6 +179,11 @@ impl Batch {
                     column.copy_from_slice(values);
                 }
             }
+            let counted = lattice.counted_steps(after.steps);
+            if let Some(counts) = &mut lattice.counts {
+                let rows = self.counts[after.first_count as usize..].chunks(counts.bins.count);
+                counts.recorded.extend(counted.zip(rows.map(<[u32]>::to_vec)));
+            }
             lattice.motion = after.motion;
             lattice.steps_done += steps as u64;
             let records = &self.records[k * steps * RECORD..][..steps * RECORD];
@@ -163,8 +193,30 @@ impl Batch {
     }
 }
 
+/// Bytes of the arrays that not every lattice has.
+#[cfg(feature = "cuda")]
+pub(crate) fn more_bytes(lattice: &DeviceLattice, steps: u32) -> usize {
+    let bins = lattice.counts.as_ref().map_or(0, |counts| counts.bin_of.len());
+    let counts = count_len(lattice, steps);
+    memory_len(lattice) * size_of::<f64>() + bins * size_of::<u16>() + counts * size_of::<u32>()
+}
+
+/// Number of counts of sliding blocks in some steps.
+fn count_len(lattice: &DeviceLattice, steps: u32) -> usize {
+    let bins = lattice.counts.as_ref().map_or(0, |counts| counts.bins.count);
+    bins * lattice.counted_steps(steps).count()
+}
+
+/// Whether each block of a lattice whose sliding blocks are counted has a bin that exists.
+fn bins_are_few(lattice: &DeviceLattice) -> bool {
+    lattice.counts.as_ref().is_none_or(|counts| {
+        let most = counts.bin_of.iter().max().map_or(0, |bin| usize::from(*bin));
+        counts.bin_of.len() == lattice.flags.len() && most < counts.bins.count
+    })
+}
+
 /// Number of doubles that the kernels expect as memory of the law of friction of a lattice.
-pub(crate) fn memory_len(lattice: &DeviceLattice) -> usize {
+fn memory_len(lattice: &DeviceLattice) -> usize {
     let equations = &lattice.equations;
     let of_block = match (
         equations.inverse_fall_length > 0.0,

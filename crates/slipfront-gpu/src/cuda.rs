@@ -11,7 +11,7 @@ use cudarc::nvrtc::{self, CompileOptions, Ptx};
 use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::arrays::Arrays;
-use crate::batch::{Batch, Lattice, RECORD, memory_len};
+use crate::batch::{Batch, Lattice, RECORD, more_bytes};
 use crate::large::LargeKernels;
 
 /// The kernels as PTX, written by `ptx.py`; empty if that script was not run before this crate was compiled.
@@ -137,11 +137,10 @@ impl Gpu {
         arrays.return_to(batch, stream)
     }
 
-    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps
-    /// and `memory` numbers that the law of friction remembers.
-    fn lattices_at_once(&self, blocks: usize, memory: usize, steps: u32) -> Result<usize, DeviceError> {
-        let of_law = memory * size_of::<f64>();
-        let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + of_law + steps as usize * BYTES_PER_STEP;
+    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps and
+    /// some more bytes.
+    fn lattices_at_once(&self, blocks: usize, more: usize, steps: u32) -> Result<usize, DeviceError> {
+        let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + more + steps as usize * BYTES_PER_STEP;
         let room = room(&self.context, &self.stream)?;
         match room / bytes {
             0 => Err(DeviceError(format!(
@@ -167,19 +166,15 @@ impl Kernel {
             block_dim: (self.threads, 1, 1),
             shared_mem_bytes: (most_blocks * BYTES_PER_BLOCK) as u32,
         };
-        let mut launch = stream.launch_builder(&self.function);
-        launch
-            .arg(&mut arrays.lattices)
-            .arg(&mut arrays.state)
-            .arg(&mut arrays.given)
-            .arg(&mut arrays.memory)
-            .arg(&arrays.flags)
-            .arg(&mut arrays.first_slips)
-            .arg(&mut arrays.records);
-        // SAFETY: the arguments have the types of the kernel's parameters, and the batch has checked the
-        // lengths of the arrays.
-        unsafe { launch.launch(config) }?;
-        Ok(())
+        // SAFETY: the argument has the type of the kernel's parameter, and the batch has checked the lengths
+        // of the arrays.
+        arrays.launch(stream, |arrays| unsafe {
+            stream
+                .launch_builder(&self.function)
+                .arg(&arrays)
+                .launch(config)
+                .map(|_| ())
+        })
     }
 }
 
@@ -197,8 +192,8 @@ impl Device for Gpu {
         let Some(most) = lattices.iter().map(blocks).max().filter(|_| steps > 0) else {
             return Ok(());
         };
-        let memory = lattices.iter().map(|lattice| memory_len(lattice)).max();
-        let count = self.lattices_at_once(most, memory.unwrap_or(0), steps)?;
+        let more = lattices.iter().map(|lattice| more_bytes(lattice, steps)).max();
+        let count = self.lattices_at_once(most, more.unwrap_or(0), steps)?;
         for some in lattices.chunks_mut(count) {
             let mut batch = Batch::new(some, steps)?;
             self.launch(&mut batch, most).map_err(failed("the GPU failed"))?;

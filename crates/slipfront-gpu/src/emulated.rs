@@ -27,6 +27,8 @@ struct Arrays {
     given: *mut f64,
     memory: *mut f64,
     flags: *const u16,
+    bins: *const u16,
+    counts: *mut u32,
     first_slips: *mut u32,
     records: *mut u64,
 }
@@ -67,6 +69,8 @@ impl Device for Emulated {
             given: batch.given.as_mut_ptr(),
             memory: batch.memory.as_mut_ptr(),
             flags: batch.flags.as_ptr(),
+            bins: batch.bins.as_ptr(),
+            counts: batch.counts.as_mut_ptr(),
             first_slips: batch.first_slips.as_mut_ptr(),
             records: batch.records.as_mut_ptr(),
         };

@@ -7,11 +7,10 @@ use std::sync::Arc;
 
 use cudarc::driver::sys::CUdeviceptr;
 use cudarc::driver::{
-    CudaFunction, CudaModule, CudaStream, DevicePtr, DevicePtrMut, DeviceRepr, DriverError, LaunchConfig,
-    PushKernelArg,
+    CudaFunction, CudaModule, CudaStream, DevicePtrMut, DeviceRepr, DriverError, LaunchConfig, PushKernelArg,
 };
 
-use crate::arrays::Arrays;
+use crate::arrays::{Arrays, Pointers};
 use crate::batch::{Lattice, STEP, TOTALS};
 
 /// Blocks of a tile along x and y in `kernels/large_lattices.h`.
@@ -38,13 +37,7 @@ pub(crate) struct LargeKernels {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct LargeLattices {
-    lattices: CUdeviceptr,
-    state: CUdeviceptr,
-    given: CUdeviceptr,
-    memory: CUdeviceptr,
-    flags: CUdeviceptr,
-    first_slips: CUdeviceptr,
-    records: CUdeviceptr,
+    arrays: Pointers,
     state_after: CUdeviceptr,
     steps: CUdeviceptr,
     totals: CUdeviceptr,
@@ -52,7 +45,7 @@ struct LargeLattices {
     done: u32,
 }
 
-const _: () = assert!(size_of::<LargeLattices>() == 88);
+const _: () = assert!(size_of::<LargeLattices>() == 104);
 
 // SAFETY: the struct has no padding, and has the layout of the struct of the kernels, in which pointers have
 // 8 bytes.
@@ -86,31 +79,20 @@ impl LargeKernels {
         let mut steps = stream.alloc_zeros::<u64>(count * STEP)?;
         let mut totals = stream.alloc_zeros::<u64>(count * groups * TOTALS)?;
         {
-            let lattices = arrays.lattices.device_ptr_mut(stream);
-            let state = arrays.state.device_ptr_mut(stream);
-            let given = arrays.given.device_ptr_mut(stream);
-            let memory = arrays.memory.device_ptr_mut(stream);
-            let flags = arrays.flags.device_ptr(stream);
-            let first_slips = arrays.first_slips.device_ptr_mut(stream);
-            let records = arrays.records.device_ptr_mut(stream);
             let after = after.device_ptr_mut(stream);
             let steps = steps.device_ptr_mut(stream);
             let totals = totals.device_ptr_mut(stream);
-            let pointers = LargeLattices {
-                lattices: lattices.0,
-                state: state.0,
-                given: given.0,
-                memory: memory.0,
-                flags: flags.0,
-                first_slips: first_slips.0,
-                records: records.0,
-                state_after: after.0,
-                steps: steps.0,
-                totals: totals.0,
-                groups: groups as u32,
-                done: 0,
-            };
-            self.launch_steps(stream, pointers, count as u32, n_steps)?;
+            arrays.launch(stream, |arrays| {
+                let lattices = LargeLattices {
+                    arrays,
+                    state_after: after.0,
+                    steps: steps.0,
+                    totals: totals.0,
+                    groups: groups as u32,
+                    done: 0,
+                };
+                self.launch_steps(stream, lattices, count as u32, n_steps)
+            })?;
         }
         if n_steps % 2 == 1 {
             mem::swap(&mut arrays.state, &mut after);
@@ -142,7 +124,7 @@ impl LargeKernels {
             launch(&self.step, &lattices, lattices.groups)?;
             lattices.done = done;
             launch(&self.join, &lattices, 1)?;
-            mem::swap(&mut lattices.state, &mut lattices.state_after);
+            mem::swap(&mut lattices.arrays.state, &mut lattices.state_after);
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load};
 use slipfront::testing::FusedDevice;
 use slipfront::{
     Coulomb, DeadLoad, Drive, Edges, Execution, Friction, FrictionLaw, Lattice, Loading, Model, Outline,
-    Program, Simulation, Slider, SlipWeakening, State, Stop, Surface, VectorField,
+    PositionBins, Program, Simulation, Slider, SlipWeakening, State, Stop, Surface, VectorField,
 };
 use slipfront_gpu::Emulated;
 
@@ -49,6 +49,8 @@ fn assert_same(emulated: &mut DeviceLattice, fused: &mut DeviceLattice) {
         assert_eq!(bits(&one.stored), bits(&other.stored), "record {k}");
     }
     assert_eq!(left(emulated), left(fused));
+    let counts = |lattice: &DeviceLattice| format!("{:?}", lattice.counts);
+    assert_eq!(counts(emulated), counts(fused));
 }
 
 /// Runs a model on both devices in two batches of steps, and compares the results.
@@ -64,6 +66,9 @@ fn compare(
         last: u64::from(first + second - 1),
     };
     let mut fused = DeviceLattice::new(model.clone(), dt_star, from, energies).unwrap();
+    if every % 2 == 1 {
+        fused.add_counts(u64::from(every), &PositionBins::of(&model.lattice, &model.drive));
+    }
     let mut emulated = fused.clone();
     for steps in [first, second] {
         FusedDevice.run(&mut [&mut fused], steps).unwrap();

@@ -13,6 +13,7 @@ use thiserror::Error;
 
 use crate::checkpoint::MotionBounds;
 use crate::model::Model;
+use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 
@@ -138,6 +139,21 @@ pub struct FallingStrength {
     pub columns: Vec<Vec<f64>>,
 }
 
+/// Counts of the sliding blocks in contact by their position, which a device records.
+#[derive(Clone, Debug)]
+pub struct SlidingCounts {
+    /// The blocks are counted at all multiples of this number of a step.
+    pub every: u64,
+    /// The bins.
+    pub bins: PositionBins,
+    /// Bin of each block.
+    pub bin_of: Arc<[u16]>,
+    /// Number of blocks in contact in each bin.
+    pub in_contact: Arc<[u32]>,
+    /// Counts of the latest steps that have not been replayed yet, each with the number of its step.
+    pub recorded: VecDeque<(u64, Vec<u32>)>,
+}
+
 /// State of a lattice between steps, in the form that a device takes.
 #[derive(Clone, Debug)]
 pub struct DeviceLattice {
@@ -166,6 +182,8 @@ pub struct DeviceLattice {
     pub strength: Option<FallingStrength>,
     /// Records of the latest steps that have not been replayed yet.
     pub records: VecDeque<StepRecord>,
+    /// Counts of sliding blocks, if an observer needs them.
+    pub counts: Option<SlidingCounts>,
     /// Sum of velocities half a step before t = 0.
     pub(crate) velocity_at_start: [f64; 2],
     pub(crate) model: Arc<Model>,
@@ -201,6 +219,17 @@ impl DeviceLattice {
     /// Whether the drive stands still while a block in contact slides.
     pub fn is_held(&self) -> bool {
         self.model.drive.is_held()
+    }
+
+    /// Steps at which sliding blocks are counted, among the next `steps` steps.
+    pub fn counted_steps(&self, steps: u32) -> impl Iterator<Item = u64> + use<> {
+        let (first, every) = (self.steps_done, self.counts.as_ref().map(|counts| counts.every));
+        let end = first + u64::from(steps);
+        every.into_iter().flat_map(move |every| {
+            (first.div_ceil(every)..)
+                .map(move |k| k * every)
+                .take_while(move |step| *step < end)
+        })
     }
 
     /// Whether energies are computed at a step.

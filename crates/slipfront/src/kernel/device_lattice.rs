@@ -9,7 +9,8 @@ use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
 use crate::communicator::Alone;
 use crate::device::{
-    CpuOnly, DeviceLattice, EnergySteps, Equations, FallingStrength, Motion, NEVER, StepRecord, flag,
+    CpuOnly, DeviceLattice, EnergySteps, Equations, FallingStrength, Motion, NEVER, SlidingCounts,
+    StepRecord, flag,
 };
 use crate::friction::Integrator;
 use crate::lattice::Bond;
@@ -111,6 +112,7 @@ impl DeviceLattice {
             state: state.cloned().unwrap_or_else(|| State::at_rest(n)),
             first_slips: vec![NEVER; n],
             records: VecDeque::new(),
+            counts: None,
             velocity_at_start: velocity_after,
             model,
         })
@@ -133,6 +135,7 @@ impl DeviceLattice {
     pub(crate) fn run_on_cpu(&mut self, steps: u32) {
         let model = Arc::clone(&self.model);
         let mut kernel = Fused::of_device(self, 1);
+        let mut counted = self.counted_steps(steps).peekable();
         let (mut latest, mut next) = (None, self.next_clock());
         for _ in 0..steps {
             let clock = next;
@@ -147,6 +150,14 @@ impl DeviceLattice {
                 n_sliding: [totals.n_sliding, totals.n_slipping].map(|count| count as u32),
                 stored: [stored.kinetic, stored.lattice, stored.drive_springs],
             });
+            if let Some(counts) = &mut self.counts
+                && counted.next_if_eq(&clock.step).is_some()
+            {
+                let mut sliding = vec![0; counts.bins.count];
+                kernel.count_in_contact(&model, &counts.bins, true, &mut sliding);
+                let sliding = sliding.into_iter().map(|count| count as u32).collect();
+                counts.recorded.push_back((clock.step, sliding));
+            }
             (latest, next) = (
                 Some(clock),
                 clock.next(model.drive.moves_after(totals.n_slipping)),
@@ -215,6 +226,52 @@ impl DeviceLattice {
         }
     }
 
+    /// Lets a device count the sliding blocks at a step and at others as far apart: at the multiples of the
+    /// greatest common divisor of all such steps.
+    pub fn add_counts(&mut self, step: u64, bins: &PositionBins) {
+        match &mut self.counts {
+            Some(counts) if counts.bins == *bins => counts.every = gcd(counts.every, step),
+            counts => *counts = Some(sliding_counts(&self.model, &self.flags, step, bins)),
+        }
+    }
+
+    /// Adds the blocks in contact to `counts`, each in its bin, if the device has counted them at a step:
+    /// those that slide if `sliding` is true, else those that do not. Returns whether it has.
+    pub(crate) fn recorded_in_contact(
+        &self,
+        step: u64,
+        bins: &PositionBins,
+        sliding: bool,
+        counts: &mut [i64],
+    ) -> bool {
+        let of_bins = self.counts.as_ref().filter(|recorded| recorded.bins == *bins);
+        let Some(of_bins) = of_bins else { return false };
+        let Some((_, slide)) = of_bins.recorded.iter().find(|(counted, _)| *counted == step) else {
+            return false;
+        };
+        for ((count, slide), in_contact) in counts.iter_mut().zip(slide).zip(&*of_bins.in_contact) {
+            *count += i64::from(if sliding { *slide } else { in_contact - slide });
+        }
+        true
+    }
+
+    /// Forgets the records of all steps.
+    pub(crate) fn clear_records(&mut self) {
+        self.forget_records(self.records.len());
+        if let Some(counts) = &mut self.counts {
+            counts.recorded.clear();
+        }
+    }
+
+    /// Forgets the records of some steps, the earliest of those that are recorded.
+    pub(crate) fn forget_records(&mut self, steps: usize) {
+        self.records.drain(..steps);
+        let first = self.steps_done - self.records.len() as u64;
+        if let Some(counts) = &mut self.counts {
+            counts.recorded.retain(|(step, _)| *step >= first);
+        }
+    }
+
     /// Adds the blocks in contact to `counts`, each in its bin: those that slide if `sliding` is true, else
     /// those that do not. A block slides in the present step if it moves after it.
     pub(crate) fn count_in_contact(&self, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
@@ -226,6 +283,31 @@ impl DeviceLattice {
                 counts[bins.bin(i, j)] += 1;
             }
         }
+    }
+}
+
+/// The greatest common divisor.
+pub(crate) fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+/// Counts of blocks at the multiples of a step, of which none are recorded yet.
+fn sliding_counts(model: &Model, flags: &[u16], every: u64, bins: &PositionBins) -> SlidingCounts {
+    let bin = |b: usize| {
+        let (i, j) = model.lattice.column_row(b);
+        bins.bin(i, j) as u16
+    };
+    let bin_of: Arc<[u16]> = (0..flags.len()).map(bin).collect();
+    let mut in_contact = vec![0; bins.count];
+    for (bin, flags) in bin_of.iter().zip(flags) {
+        in_contact[usize::from(*bin)] += u32::from(flags & flag::IN_CONTACT != 0);
+    }
+    SlidingCounts {
+        every,
+        bins: *bins,
+        bin_of,
+        in_contact: in_contact.into(),
+        recorded: VecDeque::new(),
     }
 }
 

@@ -5,6 +5,7 @@ use crate::drive::Drive;
 use crate::friction::FrictionLaw;
 use crate::lattice::{Edges, Lattice};
 use crate::model::Model;
+use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::surface::{Coefficients, Distribution, Load, Surface};
 
@@ -56,9 +57,13 @@ fn begun(size: usize, epsilon: f64) -> DeviceLattice {
     let surface = Surface::new(coefficients, textured, Load::Redistributed, 1.0);
     let surface = surface.expect("most blocks are in contact");
     let drive = Drive::at_angle(0.5, 20.0);
+    let bins = PositionBins::of(&lattice, &drive);
     let model = Model::new(lattice, surface, drive, 0.1, epsilon, FrictionLaw::Projection);
     let energies = EnergySteps { every: 5, last: 0 };
-    DeviceLattice::new(model, DT_STAR, None, energies).expect("a device computes plain models")
+    let begun = DeviceLattice::new(model, DT_STAR, None, energies);
+    let mut begun = begun.expect("a device computes plain models");
+    begun.add_counts(8, &bins);
+    begun
 }
 
 /// Bits of all numbers of a lattice that a device changes.
@@ -82,8 +87,13 @@ fn numbers(lattice: &DeviceLattice) -> Vec<u64> {
         [ux, uy, vx, vy, kinetic, springs, drive].into_iter().chain(sums)
     });
     let of_motion = motion.bounds.iter().chain(&motion.velocity_after);
-    let counts = lattice.records.iter().flat_map(|record| record.n_sliding);
-    let slips = counts.chain(lattice.first_slips.iter().copied()).map(u64::from);
+    let sliding = lattice.records.iter().flat_map(|record| record.n_sliding);
+    let in_bins = lattice.counts.iter().flat_map(|counts| &counts.recorded);
+    let in_bins = in_bins.flat_map(|(_, counts)| counts.iter().copied());
+    let slips = sliding
+        .chain(in_bins)
+        .chain(lattice.first_slips.iter().copied())
+        .map(u64::from);
     let bits = of_blocks
         .chain(of_motion)
         .copied()

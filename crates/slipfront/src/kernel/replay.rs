@@ -5,11 +5,14 @@
 //! again. It therefore computes as many steps at once as lie between two readings. Where readings are close
 //! together, and after a failure of the device, the fused kernel computes the steps, with the same bits. If
 //! the caller of the device records the steps, values of single blocks can be read only where it has stopped.
+//!
+//! The first counts of blocks by their position are readings. Then the device counts, and records the counts.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::block::{Block, Field};
+use super::device_lattice::gcd;
 use super::engine::{Engine, TakeSliding};
 use super::fused::Fused;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
@@ -33,6 +36,8 @@ pub(crate) struct Replay {
     totals: Totals,
     /// Whether values of single blocks have been read at the present step.
     was_read: AtomicBool,
+    /// Bins in which blocks were counted at the present step, unless the device has counted them.
+    counted: OnceLock<PositionBins>,
     /// The lattice at the present step, if it was read there and `lattice` is at a later step.
     here: OnceLock<Box<DeviceLattice>>,
     /// The fused kernel at the present step, if it has read values there or computes the steps.
@@ -105,11 +110,6 @@ impl Source {
     }
 }
 
-/// The greatest common divisor.
-fn gcd(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
-
 impl Replay {
     /// Replays the recorded steps of a lattice from t = 0 on.
     pub(crate) fn new(lattice: DeviceLattice) -> Self {
@@ -123,6 +123,7 @@ impl Replay {
             lattice,
             source: None,
             was_read: AtomicBool::new(false),
+            counted: OnceLock::new(),
             here: OnceLock::new(),
             kernel: OnceLock::new(),
         }
@@ -192,7 +193,7 @@ impl Replay {
             });
             let lattice = source.compute(next - source.before.steps_done);
             let mut lattice = lattice.unwrap_or_else(|| source.compute_on_cpu(next));
-            lattice.records.clear();
+            lattice.clear_records();
             Box::new(lattice)
         })
     }
@@ -223,7 +224,7 @@ impl Replay {
     fn continue_on_device(&mut self, next: &Clock) {
         if let Some(kernel) = self.kernel.take() {
             self.lattice.take_state(&kernel, &self.clock, next);
-            self.lattice.records.clear();
+            self.lattice.clear_records();
         }
         if let Some(source) = &mut self.source {
             (source.is_on_cpu, source.steps) = (false, STEPS[0]);
@@ -235,10 +236,16 @@ impl Replay {
     fn prepare(&mut self, next: &Clock, energies: bool) {
         let step = next.step;
         let was_read = std::mem::take(self.was_read.get_mut());
+        let counted = self.counted.take().filter(|_| self.clock.step > 0);
         let Some(source) = &mut self.source else {
             self.kernel = OnceLock::new();
             return;
         };
+        if let Some(bins) = counted {
+            self.lattice.add_counts(self.clock.step, &bins);
+            source.before.counts = self.lattice.counts.clone();
+            source.before.clear_records();
+        }
         let apart = source.last_read.map_or(u64::MAX, |last| self.clock.step - last);
         // A device knows only exact rest.
         let is_for_cpu = source.failure.get().is_some() || next.rest != Rest::Exact;
@@ -259,7 +266,9 @@ impl Replay {
             source.steps = apart.clamp(1, STEPS[1]);
             // The steps after the present one are computed again from there on.
             if let Some(here) = self.here.take() {
-                self.lattice = *here;
+                let counts = self.lattice.counts.take();
+                self.lattice = DeviceLattice { counts, ..*here };
+                self.lattice.clear_records();
             }
         } else if self.lattice.records.is_empty() && step > 0 {
             source.steps = STEPS[1].min(2 * source.steps);
@@ -282,6 +291,7 @@ impl Replay {
             std::mem::swap(&mut source.before, &mut self.lattice);
             // `add_energies` has changed the lattice that was `before` until now.
             source.before.energies = self.lattice.energies;
+            source.before.clear_records();
             steps = Some(source.steps);
         }
         if energies && !source.before.needs_energies(step) {
@@ -292,11 +302,11 @@ impl Replay {
         let done = step - source.before.steps_done;
         if let Some(lattice) = source.compute(steps) {
             self.lattice = lattice;
-            self.lattice.records.drain(..done as usize);
+            self.lattice.forget_records(done as usize);
             return true;
         }
         self.lattice = source.compute_on_cpu(step);
-        self.lattice.records.clear();
+        self.lattice.clear_records();
         false
     }
 
@@ -348,8 +358,18 @@ impl Engine for Replay {
     }
 
     fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
-        match self.on_cpu() {
-            Some(_) => self.kernel().count_in_contact(model, bins, sliding, counts),
+        let on_cpu = self.on_cpu();
+        if on_cpu.is_none()
+            && self
+                .lattice
+                .recorded_in_contact(self.clock.step, bins, sliding, counts)
+        {
+            return;
+        }
+        self.counted.get_or_init(|| *bins);
+        match on_cpu {
+            // Not a reading, since the device counts where it computes.
+            Some(kernel) => kernel.count_in_contact(model, bins, sliding, counts),
             None => self.here().count_in_contact(bins, sliding, counts),
         }
     }

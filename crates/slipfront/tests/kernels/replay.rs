@@ -296,6 +296,41 @@ fn a_device_is_called_where_readings_are_apart() {
     assert!((5..=25).contains(&until_2000), "{calls:?}");
 }
 
+/// The device counts blocks by their position, after the fused kernel has found that they are counted: it
+/// computes the steps of a transition.
+#[test]
+fn a_kymograph_is_counted_on_the_device() {
+    let slider = Slider {
+        blocks: [30, 20],
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    let device = Arc::new(Failing {
+        calls: AtomicU32::new(0),
+        good: u32::MAX,
+    });
+    let observed = |execution: Execution| {
+        let mut kymograph = Kymograph::default();
+        let mut run = Simulation::new(slider.model(), 0.1, None, execution);
+        let mut calls = Vec::new();
+        for end in [500, 900] {
+            run.run(Stop::at_step(end), &mut [kymograph.scheduled()]).unwrap();
+            let sliding = run.snapshot().totals.n_slipping;
+            assert!(0 < sliding && sliding < 600, "{sliding} blocks slide");
+            calls.push(device.calls.swap(0, Ordering::Relaxed));
+        }
+        ((kymograph, shown(&run), state(&run)), calls)
+    };
+    let (expected, _) = observed(fused());
+    let (found, calls) = observed(Execution {
+        device: Some(Arc::clone(&device) as Arc<dyn Device>),
+        ..fused()
+    });
+    assert!(format!("{found:?}") == format!("{expected:?}"));
+    // Readings at every eighth step would leave all of these steps to the fused kernel.
+    assert!((1..10).contains(&calls[1]), "{calls:?}");
+}
+
 /// Several lattices at once, of different shapes, up to their onsets, which come at different steps: the
 /// device goes beyond the onset of some of them.
 #[test]
