@@ -325,6 +325,7 @@ fn every_unsafe_has_its_reason_and_stands_in_the_book() {
         "ten places",
         "eleven places",
         "twelve places",
+        "thirteen places",
     ];
     assert!(
         number.starts_with(words[found.len()]),
