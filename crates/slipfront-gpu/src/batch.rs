@@ -56,14 +56,16 @@ pub(crate) struct Batch {
     pub(crate) lattices: Vec<Lattice>,
     /// Displacements along x and y, then velocities along x and y, of the blocks of each lattice.
     pub(crate) state: Vec<f64>,
-    /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, which kernels
-    /// change where strength falls with slip, and the positions of the driven ends at each step of the drive.
+    /// For each lattice: squares of the static thresholds of its blocks, their kinetic impulses, which
+    /// kernels change where strength falls with slip, and the positions of the driven ends at each step of
+    /// the drive.
     pub(crate) given: Vec<f64>,
     /// For each lattice whose strength falls with slip, after a number that is not used: the impulses of its
     /// blocks without slip, their falls, and the columns that the law remembers.
     pub(crate) memory: Vec<f64>,
     pub(crate) flags: Vec<u16>,
-    /// For each lattice whose sliding blocks are counted, after a number that is not used: bins of its blocks.
+    /// For each lattice whose sliding blocks are counted, after a number that is not used: bins of its
+    /// blocks.
     pub(crate) bins: Vec<u16>,
     /// For each such lattice, after a number that is not used: counts of each bin at each counted step.
     pub(crate) counts: Vec<u32>,

@@ -137,8 +137,8 @@ impl Gpu {
         arrays.return_to(batch, stream)
     }
 
-    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps and
-    /// some more bytes.
+    /// Number of lattices with `blocks` blocks that fit into the memory, with the numbers of `steps` steps
+    /// and some more bytes.
     fn lattices_at_once(&self, blocks: usize, more: usize, steps: u32) -> Result<usize, DeviceError> {
         let bytes = size_of::<Lattice>() + blocks * BYTES_ON_GPU + more + steps as usize * BYTES_PER_STEP;
         let room = room(&self.context, &self.stream)?;
