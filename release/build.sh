@@ -13,8 +13,8 @@
 #                                library that not every machine has
 # reproducible                   linux-x86_64 again, in a clone elsewhere: fails if a byte differs
 #
-# Needs Linux on x86-64, git, rustup, binutils, and python3 with venv. Installs Rust's targets, maturin, zig
-# and a checker of SBOMs in target/, and mingw-w64 by apt-get for Windows. Each build of the command takes 4
+# Needs Linux on x86-64, git, rustup, binutils, and python3 with venv. Installs Rust's targets, maturin, zig,
+# NVRTC and a checker of SBOMs in target/, and mingw-w64 by apt-get for Windows. Each build of the command takes 4
 # minutes of processor time.
 set -euo pipefail
 exec < /dev/null
@@ -58,8 +58,8 @@ module() {
     module_made=yes
 }
 
-# The kernels for a GPU, as PTX, which programs and wheels carry where the driver of a GPU can be loaded: on
-# Windows, and on Linux with glibc.
+# Makes the PTX of the kernels, and adds the feature `gpu` to a command: where the driver of a GPU can be
+# loaded, on Windows and on Linux with glibc.
 with_kernels() {
     crates/slipfront-gpu/ptx.py
     "$@" --features gpu

@@ -18,7 +18,7 @@ from cyclonedx.validation.json import JsonStrictValidator
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests/licences"))
 from crates import REPOSITORY, cargo, fail, packages, run
-from notices import MUSL, PARTS, features, linked
+from notices import MUSL, PARTS, feature_options, linked
 
 
 def checksums():
@@ -46,7 +46,7 @@ def component(package, checksum):
 def sbom(folder, target, seconds):
     """The list of the crates that are compiled into the program of a folder."""
     manifest = f"{folder}/Cargo.toml"
-    options = features(folder, [target])
+    options = feature_options(folder, [target])
     known = {(package["name"], package["version"]): package for package in packages(manifest, *options)}
     sums = checksums()
     inside = {crate: component(known[crate], sums.get(crate)) for crate in sorted(linked(folder, [target]))}

@@ -50,10 +50,12 @@ platforms, of which one alone may contain less:
 WIDTH = 100
 
 
-def features(folder, targets):
-    """The features that a release has: the driver of a GPU can be loaded on Windows, and on Linux with glibc.
+def feature_options(folder, targets):
+    """Options of cargo for the features that a release has: the driver of a GPU can be loaded on Windows, and on Linux with glibc.
 
-    >>> features("python", ["x86_64-unknown-linux-gnu"]), features("python", ["x86_64-unknown-linux-musl"])
+    slipfront-mpi has no such feature.
+
+    >>> feature_options("python", ["x86_64-unknown-linux-gnu"]), feature_options("python", ["x86_64-unknown-linux-musl"])
     (['--features=gpu'], [])
     """
     can_load = any("windows" in target or "linux-gnu" in target for target in targets)
@@ -63,7 +65,7 @@ def features(folder, targets):
 def linked(folder, targets):
     """Name and version of each crate that is compiled into a program: not what only builds it, tests it, or is a macro."""
     platforms = [f"--target={target}" for target in targets]
-    options = ["--edges=normal,no-proc-macro", "--prefix=none", "--format={p}", *features(folder, targets)]
+    options = ["--edges=normal,no-proc-macro", "--prefix=none", "--format={p}", *feature_options(folder, targets)]
     tree = cargo("tree", f"{folder}/Cargo.toml", *options, *platforms)
     return {(line.split()[0], line.split()[1].removeprefix("v")) for line in tree.splitlines() if line}
 
@@ -72,7 +74,7 @@ def contained(folders, targets):
     """The packages that slipfront's programs in these folders contain, without its own, sorted by name and version."""
     found = {}
     for folder in folders:
-        known = {(package["name"], package["version"]): package for package in packages(f"{folder}/Cargo.toml", *features(folder, targets))}
+        known = {(package["name"], package["version"]): package for package in packages(f"{folder}/Cargo.toml", *feature_options(folder, targets))}
         found.update({crate: known[crate] for crate in linked(folder, targets)})
     others = []
     for (name, version), package in sorted(found.items()):

@@ -42,7 +42,8 @@ const LEAST_BLOCKS: usize = 100_000;
 /// device.
 const MORE_BYTES_PER_BLOCK: f64 = 180.0;
 
-/// Bytes for each number of a block that the law of friction remembers, measured in this way.
+/// Bytes of the machine's memory that a run on a device needs in addition for each number of a block that the
+/// law of friction remembers. Measured with the fused kernel as device.
 const MORE_BYTES_PER_MEMORY: f64 = 30.0;
 
 impl DeviceArgs {

@@ -71,7 +71,7 @@ FN Sums no_sums() {
     return s;
 }
 
-FN bool falls(const Equations& q) { return q.inverse_fall_length > 0.0; }
+FN bool falls(const Equations& q) { return q.inverse_fall_length >= 0.0; }
 
 // Kinetic impulse of block b of n at its present slip, with the velocity of the step that ends now:
 // kernel/fused/thresholds.rs in crates/slipfront/src.

@@ -157,7 +157,7 @@ impl Batch {
                 && blocks as u64 == latest.first_block + n as u64
                 && self.given.len() == expected
                 && self.memory.len() == latest.first_memory as usize + memory_len(lattice)
-                && bins_are_few(lattice),
+                && is_complete(lattice),
             "the arrays of a lattice of {nx} x {ny} blocks have other lengths"
         );
         Ok(())
@@ -209,26 +209,36 @@ fn count_len(lattice: &DeviceLattice, steps: u32) -> usize {
     bins * lattice.counted_steps(steps).count()
 }
 
-/// Whether each block of a lattice whose sliding blocks are counted has a bin that exists.
-fn bins_are_few(lattice: &DeviceLattice) -> bool {
-    lattice.counts.as_ref().is_none_or(|counts| {
-        let most = counts.bin_of.iter().max().map_or(0, |bin| usize::from(*bin));
-        counts.bin_of.len() == lattice.flags.len() && most < counts.bins.count
-    })
-}
-
 /// Number of doubles that the kernels expect as memory of the law of friction of a lattice.
 fn memory_len(lattice: &DeviceLattice) -> usize {
+    let columns = lattice
+        .strength
+        .as_ref()
+        .map_or(0, |strength| 2 + strength.columns.len());
+    columns * lattice.flags.len()
+}
+
+/// Whether the kernels find bins and columns that exist.
+fn is_complete(lattice: &DeviceLattice) -> bool {
     let equations = &lattice.equations;
-    let of_block = match (
-        equations.inverse_fall_length > 0.0,
+    let has_bins = lattice.counts.as_ref().is_none_or(|counts| {
+        let most = counts.bin_of.iter().max().map_or(0, |bin| usize::from(*bin));
+        counts.bin_of.len() == lattice.flags.len() && most < counts.bins.count
+    });
+    let columns = match (
+        equations.inverse_fall_length >= 0.0,
         equations.healing_time.is_finite(),
     ) {
         (false, _) => 0,
-        (true, false) => 3,
-        (true, true) => 5,
+        (true, false) => 1,
+        (true, true) => 3,
     };
-    of_block * lattice.flags.len()
+    has_bins
+        && lattice
+            .strength
+            .as_ref()
+            .map_or(0, |strength| strength.columns.len())
+            >= columns
 }
 
 /// Converts the words of a record to a [`StepRecord`].

@@ -8,6 +8,7 @@ use cudarc::driver::sys::CUdevice_attribute_enum::CU_DEVICE_ATTRIBUTE_MAX_SHARED
 use cudarc::driver::sys::CUfunction_attribute_enum::CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES;
 use cudarc::driver::{CudaContext, CudaFunction, CudaStream, DriverError, LaunchConfig, PushKernelArg, sys};
 use cudarc::nvrtc::{self, CompileOptions, Ptx};
+use slipfront::PositionBins;
 use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::arrays::Arrays;
@@ -33,6 +34,20 @@ const SOURCES: [&str; 9] = [
 /// Bytes of shared memory that a kernel needs per block of the lattice.
 const BYTES_PER_BLOCK: usize = 6 * size_of::<f64>() + size_of::<u32>();
 
+/// Library of the driver.
+const DRIVER: &str = if cfg!(windows) {
+    "nvcuda.dll"
+} else {
+    "libcuda.so.1"
+};
+
+/// Library of NVRTC, its folder in the package for Python, and the variable that names folders of libraries.
+const NVRTC: [&str; 3] = if cfg!(windows) {
+    ["nvrtc64_120_0.dll", "nvidia/cuda_nvrtc/bin", "PATH"]
+} else {
+    ["libnvrtc.so", "nvidia/cuda_nvrtc/lib", "LD_LIBRARY_PATH"]
+};
+
 /// Thread-group sizes for which there are kernels for small lattices, and the largest number of blocks for
 /// each if memory allows.
 const GROUPS: [(u32, usize); 3] = [(128, 1024), (256, 2304), (512, usize::MAX)];
@@ -46,6 +61,10 @@ const MOST_LATTICES: usize = 65_535;
 /// Bytes of the GPU's memory that a block needs: its state before and after a step, its limits, its flags and
 /// first slip, and its part of the sums of a group.
 const BYTES_ON_GPU: usize = 10 * size_of::<f64>() + size_of::<u16>() + size_of::<u32>() + 1;
+
+/// Most bytes that a block may need in addition: impulse, fall and memory of strength that falls with slip,
+/// and its bin.
+const MORE_BYTES_ON_GPU: usize = 5 * size_of::<f64>() + size_of::<u16>();
 
 /// Number of steps at once for which the largest lattice leaves memory.
 const STEPS_AT_ONCE: usize = 1024;
@@ -83,8 +102,7 @@ impl Gpu {
         // SAFETY: the function only tries to load a library, and initialising that library is the driver's
         // own code.
         if !unsafe { sys::is_culib_present() } {
-            let message = "no NVIDIA driver was found (libcuda.so.1)";
-            return Err(DeviceError(message.to_owned()));
+            return Err(DeviceError(format!("no NVIDIA driver was found ({DRIVER})")));
         }
         let context = CudaContext::new(0).map_err(failed("no GPU can be opened"))?;
         let (major, minor) = context
@@ -114,8 +132,10 @@ impl Gpu {
         };
         let (small, large) = kernels().map_err(failed("the GPU does not take the kernels"))?;
         let stream = context.default_stream();
-        let beside = size_of::<Lattice>() + STEPS_AT_ONCE * BYTES_PER_STEP;
-        let fit = room(&context, &stream)?.saturating_sub(beside) / BYTES_ON_GPU;
+        let counts = PositionBins::MAX * size_of::<u32>();
+        let beside = size_of::<Lattice>() + STEPS_AT_ONCE * (BYTES_PER_STEP + counts);
+        let of_blocks = room(&context, &stream)?.saturating_sub(beside);
+        let fit = of_blocks / (BYTES_ON_GPU + MORE_BYTES_ON_GPU);
         Ok(Self {
             name: context.name().map_err(failed("the GPU has no name"))?,
             most_blocks: fit.min(MOST_BLOCKS),
@@ -219,10 +239,12 @@ fn ptx(major: i32, minor: i32) -> Result<Ptx, DeviceError> {
     }
     // SAFETY: the function only tries to load a library that runs no code on initialisation.
     if !unsafe { nvrtc::sys::is_culib_present() } {
-        let message = "this program has no kernels for a GPU, and NVRTC, which could compile them, was not found \
-                       (libnvrtc.so): run crates/slipfront-gpu/ptx.py before you build it, or install the CUDA toolkit, or \
-                       `pip install nvidia-cuda-nvrtc-cu12` and name its folder `nvidia/cuda_nvrtc/lib` in LD_LIBRARY_PATH";
-        return Err(DeviceError(message.to_owned()));
+        let [library, folder, variable] = NVRTC;
+        return Err(DeviceError(format!(
+            "this program has no kernels for a GPU, and NVRTC, which could compile them, was not found \
+             ({library}): run crates/slipfront-gpu/ptx.py before you build it, or install the CUDA toolkit, or \
+             `pip install nvidia-cuda-nvrtc-cu12` and name its folder `{folder}` in {variable}"
+        )));
     }
     let options = CompileOptions {
         // No fused multiply-add: a product and a sum are two operations with two roundings, as on the CPU.

@@ -154,6 +154,42 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 30, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Several models in one call, some with strength that falls or with counts, each at its place in the
+    /// arrays.
+    #[test]
+    fn several_models_at_once(
+        models in prop::collection::vec(models(), 3),
+        counted in prop::collection::vec(any::<bool>(), 3),
+        groups in prop::option::of(1..4_u32),
+        steps in 1..40_u32,
+    ) {
+        let energies = EnergySteps { every: 3, last: 0 };
+        let mut fused = Vec::new();
+        for ((model, dt_star, state), counted) in models.into_iter().zip(counted) {
+            let mut simulation = Simulation::new(model.clone(), dt_star, state.clone(), Execution::default());
+            prop_assume!(simulation.run(Stop::at_step(u64::from(2 * steps)), &mut []).is_ok(), "diverges");
+            let bins = PositionBins::of(&model.lattice, &model.drive);
+            let mut lattice = DeviceLattice::new(model, dt_star, state.as_ref(), energies).unwrap();
+            if counted {
+                lattice.add_counts(5, &bins);
+            }
+            fused.push(lattice);
+        }
+        let mut emulated = fused.clone();
+        let device = Emulated { threads: 64, stride: 1, groups };
+        for _ in 0..2 {
+            FusedDevice.run(&mut fused.iter_mut().collect::<Vec<_>>(), steps).unwrap();
+            device.run(&mut emulated.iter_mut().collect::<Vec<_>>(), steps).unwrap();
+            for (one, other) in emulated.iter_mut().zip(&mut fused) {
+                assert_same(one, other);
+            }
+        }
+    }
+}
+
 /// The test that every device must pass before it is used.
 #[test]
 fn the_test_of_a_device_is_passed() {

@@ -60,7 +60,7 @@ impl DeviceRun for SummaryRun<'_> {
         self.case
     }
 
-    /// Adds what is made of blocks to what a device refuses: events, and the weakening energy at the end.
+    /// Refuses also events and strength that falls with slip, which need numbers of single blocks.
     fn refusal(&self, device: &dyn Device) -> Option<String> {
         if self.case.model.friction.needs().weakens_with_slip {
             return Some("the weakening energy of many runs at once is computed on the CPU alone".to_owned());

@@ -73,7 +73,7 @@ pub struct Equations {
     pub strain_limits: [f64; 2],
     /// Number of blocks.
     pub n_blocks: f64,
-    /// Inverse of the slip `D_c` over which [strength falls](FallingStrength); 0 if it does not fall.
+    /// Inverse of the slip `D_c` over which [strength falls](FallingStrength); negative if it does not fall.
     pub inverse_fall_length: f64,
     /// Time t* after which a stuck block has its full strength again; infinite if no block heals.
     pub healing_time: f64,
@@ -144,7 +144,7 @@ pub struct FallingStrength {
 pub struct SlidingCounts {
     /// The blocks are counted at all multiples of this number of a step.
     pub every: u64,
-    /// The bins.
+    /// Bins of the position along the drive.
     pub bins: PositionBins,
     /// Bin of each block.
     pub bin_of: Arc<[u16]>,

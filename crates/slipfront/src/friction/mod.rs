@@ -52,6 +52,15 @@ impl From<ContactSprings> for Friction {
 }
 
 impl Friction {
+    /// Coulomb's law with strength that falls over a slip of `length`, and is whole again after this time of
+    /// stick if there is one.
+    pub(crate) fn of_falling_strength(length: f64, healing_time: Option<f64>) -> Self {
+        Self::Coulomb(Coulomb {
+            slip_weakening: Some(SlipWeakening { length, healing_time }),
+            ..FrictionLaw::Projection.into()
+        })
+    }
+
     /// Needs of the law in addition to the thresholds of the blocks.
     pub fn needs(&self) -> Needs {
         match self {

@@ -90,7 +90,7 @@ impl DeviceLattice {
                 series: series.coefficients,
                 strain_limits: series.strain_limits,
                 n_blocks: slider.sum_of_drive_springs(lattice),
-                inverse_fall_length: law.map_or(0.0, |law| 1.0 / law.length),
+                inverse_fall_length: law.map_or(-1.0, |law| 1.0 / law.length),
                 healing_time: law.and_then(|law| law.healing_time).unwrap_or(f64::INFINITY),
             },
             energies,
@@ -228,7 +228,14 @@ impl DeviceLattice {
 
     /// Lets a device count the sliding blocks at a step and at others as far apart: at the multiples of the
     /// greatest common divisor of all such steps.
+    ///
+    /// # Panics
+    /// At step 0, which has no others as far apart.
     pub fn add_counts(&mut self, step: u64, bins: &PositionBins) {
+        assert_ne!(
+            step, 0,
+            "blocks are counted at the multiples of a step after the first"
+        );
         match &mut self.counts {
             Some(counts) if counts.bins == *bins => counts.every = gcd(counts.every, step),
             counts => *counts = Some(sliding_counts(&self.model, &self.flags, step, bins)),

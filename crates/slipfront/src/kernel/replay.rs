@@ -239,6 +239,7 @@ impl Replay {
         let counted = self.counted.take().filter(|_| self.clock.step > 0);
         let Some(source) = &mut self.source else {
             self.kernel = OnceLock::new();
+            self.lattice.forget_records(0);
             return;
         };
         if let Some(bins) = counted {
@@ -435,7 +436,7 @@ impl Engine for Replay {
 
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
         match self.on_cpu() {
-            Some(kernel) => kernel.read_memory(time_star, column, first, values),
+            Some(_) => self.kernel().read_memory(time_star, column, first, values),
             None => self.here().read_memory(column, first, values),
         }
     }

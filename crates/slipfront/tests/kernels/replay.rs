@@ -83,9 +83,10 @@ fn a_replay_has_the_same_bits(edges: Edges, texture: Option<Texture>, epsilon: f
     }
 }
 
-/// A device whose last bit is wrong in one number of one block.
+/// A device whose last bit is wrong in one number of one block of a slider of this size: in the last of the
+/// numbers that the law remembers, if there are any, else in a velocity.
 #[derive(Debug)]
-struct Wrong;
+struct Wrong(usize);
 
 impl Device for Wrong {
     fn name(&self) -> String {
@@ -99,9 +100,13 @@ impl Device for Wrong {
     fn run(&self, lattices: &mut [&mut DeviceLattice], steps: u32) -> Result<(), DeviceError> {
         FusedDevice.run(lattices, steps)?;
         if let [lattice] = lattices
-            && lattice.blocks == [60, 60]
+            && lattice.blocks == [self.0; 2]
         {
-            let one = &mut lattice.state.velocity.x[1800];
+            let of_law = lattice
+                .strength
+                .as_mut()
+                .and_then(|strength| strength.columns.last_mut());
+            let one = &mut of_law.unwrap_or(&mut lattice.state.velocity.x)[self.0];
             *one = f64::from_bits(one.to_bits() ^ 1);
         }
         Ok(())
@@ -111,9 +116,13 @@ impl Device for Wrong {
 #[test]
 fn a_device_with_other_bits_is_not_used() {
     (&FusedDevice as &dyn Device).test_bits().unwrap();
-    let refused = (&Wrong as &dyn Device).test_bits().unwrap_err().to_string();
-    let sentence = "a wrong device must not be used, since a test with 60 x 60 blocks differs from the CPU";
-    assert_eq!(refused, sentence);
+    for size in [60, 100] {
+        let refused = (&Wrong(size) as &dyn Device).test_bits().unwrap_err();
+        let sentence = format!(
+            "a wrong device must not be used, since a test with {size} x {size} blocks differs from the CPU"
+        );
+        assert_eq!(refused.to_string(), sentence);
+    }
 }
 
 /// A device that fails from some call on, having changed the lattices.
