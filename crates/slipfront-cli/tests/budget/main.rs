@@ -242,7 +242,7 @@ const OTHER_RUNS: [&str; 17] = [
     "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
     "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
     "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
-    "slider.blocks=[256,256];time.duration_star=20;output.snapshots={every=0.1};output.fields=['contact_stress_star'];output.movie=true",
+    "slider.blocks=[256,256];time.duration_star=8;output.snapshots={every=0.1};output.fields=['contact_stress_star'];output.movie=true",
     // Input files.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
      friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
@@ -481,7 +481,7 @@ fn assert_room(what: &str, said: f64, out: &Path) {
 
 /// A design with its verdict, on one thread and on two.
 fn designs(_: &Path) {
-    let text = "[base]\nslider.blocks = [200, 200]\ndrive.v_star = 0.3\n\
+    let text = "[base]\nslider.blocks = [150, 150]\ndrive.v_star = 0.3\n\
                 friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n[design]\n\
                 wish = { least = 'static_friction' }\ncoverage = [0, 15]\nfeature_blocks = 4\ngap_blocks = 4\n";
     let file = DesignFile::parse(text, "design.toml", "design", Path::new("")).unwrap();
