@@ -116,26 +116,30 @@ FN void measure_tiles(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     }
 }
 
-// Impulses after the slip of the step that ends now, of the blocks in the tiles of a group. It is a loop by itself, so
-// that other models need no registers for it.
-FN void weaken_tiles(const LargeLattices& l, u32 k, u32 group, const Tile& t) {
-    const Lattice& lattice = t.lattice;
-    const size_t n = lattice.n;
-    const double* velocity = l.arrays.state + 4 * lattice.first_block + 2 * n;
-    double* impulses = l.arrays.given + 2 * (lattice.first_block + (u64)k * lattice.steps) + n;
-    double* memory = l.arrays.memory + lattice.first_memory;
+// Calls `work` with each block in the tiles of a group. Loops of their own need no registers in that of the steps.
+template <class Work> FN void for_each_block(const LargeLattices& l, u32 group, const Tile& t, const Work& work) {
 #pragma unroll 1
     for (u32 tile = group; tile < t.tiles; tile += l.groups) {
         Corner corner = corner_of(t, tile);
 #pragma unroll 1
         for (int i = threadIdx.x; i < TILE_X * TILE_Y; i += blockDim.x) {
             Place p = place_of(t, corner, i);
-            if (!p.is_inside) continue;
-            size_t b = p.block;
-            Vec2 v = {velocity[b], velocity[n + b]};
-            impulses[b] = impulse_after_slip(lattice.equations, t.shared.step.number, v, memory, n, b);
+            if (p.is_inside) work(p.block);
         }
     }
+}
+
+// Impulses after the slip of the step that ends now, of the blocks in the tiles of a group.
+FN void weaken_tiles(const LargeLattices& l, u32 k, u32 group, const Tile& t) {
+    const Lattice& lattice = t.lattice;
+    const size_t n = lattice.n;
+    const double* velocity = l.arrays.state + 4 * lattice.first_block + 2 * n;
+    double* impulses = l.arrays.given + 2 * (lattice.first_block + (u64)k * lattice.steps) + n;
+    double* memory = l.arrays.memory + lattice.first_memory;
+    for_each_block(l, group, t, [&](size_t b) {
+        Vec2 v = {velocity[b], velocity[n + b]};
+        impulses[b] = impulse_after_slip(lattice.equations, t.shared.step.number, v, memory, n, b);
+    });
 }
 
 // Counts the sliding blocks in the tiles of a group, whose velocities after the step are known.
@@ -144,17 +148,10 @@ FN void count_tiles(const LargeLattices& l, u32 group, const Tile& t) {
     const size_t n = lattice.n;
     const double* velocity = l.state_after + 4 * lattice.first_block + 2 * n;
     const u16* flags = l.arrays.flags + lattice.first_block;
-#pragma unroll 1
-    for (u32 tile = group; tile < t.tiles; tile += l.groups) {
-        Corner corner = corner_of(t, tile);
-#pragma unroll 1
-        for (int i = threadIdx.x; i < TILE_X * TILE_Y; i += blockDim.x) {
-            Place p = place_of(t, corner, i);
-            if (!p.is_inside) continue;
-            Vec2 v = {velocity[p.block], velocity[n + p.block]};
-            count_block(l.arrays, lattice, t.shared.step.number, flags[p.block], v, p.block);
-        }
-    }
+    for_each_block(l, group, t, [&](size_t b) {
+        Vec2 v = {velocity[b], velocity[n + b]};
+        count_block(l.arrays, lattice, t.shared.step.number, flags[b], v, b);
+    });
 }
 
 template <Springs SPRINGS, bool ENERGY> FN void step_tiles(const LargeLattices& l, u32 k, u32 group, Tile& t) {

@@ -135,7 +135,6 @@ impl DeviceLattice {
     pub(crate) fn run_on_cpu(&mut self, steps: u32) {
         let model = Arc::clone(&self.model);
         let mut kernel = Fused::of_device(self, 1);
-        let mut counted = self.counted_steps(steps).peekable();
         let (mut latest, mut next) = (None, self.next_clock());
         for _ in 0..steps {
             let clock = next;
@@ -151,7 +150,7 @@ impl DeviceLattice {
                 stored: [stored.kinetic, stored.lattice, stored.drive_springs],
             });
             if let Some(counts) = &mut self.counts
-                && counted.next_if_eq(&clock.step).is_some()
+                && clock.step.is_multiple_of(counts.every)
             {
                 let mut sliding = vec![0; counts.bins.count];
                 kernel.count_in_contact(&model, &counts.bins, true, &mut sliding);
@@ -264,7 +263,7 @@ impl DeviceLattice {
 
     /// Forgets the records of all steps.
     pub(crate) fn clear_records(&mut self) {
-        self.forget_records(self.records.len());
+        self.records.clear();
         if let Some(counts) = &mut self.counts {
             counts.recorded.clear();
         }
