@@ -71,14 +71,23 @@ FN Sums no_sums() {
     return s;
 }
 
-FN bool falls(const Equations& q) { return q.inverse_fall_length >= 0.0; }
+FN bool heals(const Equations& q) { return q.healing_time < of_bits(0x7ff0000000000000LL); }
+
+// The larger one is 0, as in Rust, also where an infinite inverse has made the other NaN.
+FN double share_left(const Equations& q, double slip) { return larger(0.0, 1.0 - slip * q.inverse_fall_length); }
+
+// Energy that weakening has dissipated in block b of n: friction/coulomb/slip_weakening.rs in crates/slipfront/src.
+FN double weakening_energy_of(const Equations& q, const double* memory, size_t n, size_t b) {
+    double left = share_left(q, memory[2 * n + b]), lost_before = heals(q) ? memory[4 * n + b] : 0.0;
+    return 0.5 * memory[n + b] * q.fall_length * (lost_before + (1.0 - left * left));
+}
 
 // Kinetic impulse of block b of n at its present slip, with the velocity of the step that ends now:
 // kernel/fused/thresholds.rs in crates/slipfront/src.
 FN double impulse_after_slip(const Equations& q, u64 step, Vec2 velocity, double* memory, size_t n, size_t b) {
     double slip = memory[2 * n + b] + (step == 0 ? 0.0 : q.dt) * sqrt(square(velocity));
-    double left = larger(1.0 - slip * q.inverse_fall_length, 0.0);
-    if (q.healing_time < of_bits(0x7ff0000000000000LL)) {
+    double left = share_left(q, slip);
+    if (heals(q)) {
         bool is_stuck = velocity.x == 0.0 && velocity.y == 0.0;
         double now = (double)step * q.dt;
         if (!is_stuck) {
@@ -90,7 +99,7 @@ FN double impulse_after_slip(const Equations& q, u64 step, Vec2 velocity, double
         }
     }
     memory[2 * n + b] = slip;
-    return memory[b] + memory[n + b] * left;
+    return memory[b] + q.force_to_velocity * memory[n + b] * left;
 }
 
 struct Moved {

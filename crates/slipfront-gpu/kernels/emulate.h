@@ -123,7 +123,8 @@ template <class T> T __shfl_xor_sync(unsigned, T x, int distance) {
 }
 
 // Threads take turns only where they wait for each other.
-inline void atomicAdd(unsigned* sum, unsigned term) { *sum += term; }
+template <class T> void atomicAdd(T* sum, T term) { *sum += term; }
+template <class T> void atomicMax(T* largest, T other) { *largest = *largest < other ? other : *largest; }
 
 inline int __clzll(long long x) { return std::countl_zero((unsigned long long)x); }
 inline long long __double_as_longlong(double x) { return std::bit_cast<long long>(x); }

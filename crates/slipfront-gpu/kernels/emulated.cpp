@@ -32,6 +32,8 @@ extern "C" void slipfront_run_large(const Arrays* arrays, size_t count, u32 grou
     join();
     while (l.done < lattices->steps) {
         for_all_groups([&](u32 k, u32 group) { step_lattice(l, k, group, *tile); });
+        for_all_groups([&](u32 k, u32 group) { add_weakening_of_group<true>(l, k, group); });
+        for_all_groups([&](u32 k, u32 group) { add_weakening_of_group<false>(l, k, group); });
         l.done++;
         join();
         std::swap(l.arrays.state, l.state_after);

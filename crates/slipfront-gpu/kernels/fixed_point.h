@@ -24,6 +24,12 @@ FN Words words_of(i64 sum) {
     return words;
 }
 
+// A sum over all threads of a lattice of numbers of which none is negative. They find the largest number first, which
+// sets the quantum; as integers, the bits of such numbers have their order. Zeros before and after.
+struct CommonSum {
+    u64 largest, low, high;
+};
+
 // The double nearest to a sum, ties to even, as Rust converts an i128.
 FN double double_of(Words words) {
     i64 high = words.high + (words.low >> 40);
@@ -51,6 +57,14 @@ FN double double_of(Words words) {
 
 // The number that a sum stands for; 2^51 quanta make up the limit.
 FN double value_of(Words sum, double limit) { return double_of(sum) * (limit / 2251799813685248.0); }
+
+// The number that a common sum stands for, which is emptied.
+FN double take_sum(CommonSum& sum) {
+    Words words = {(i64)sum.low, (i64)sum.high};
+    double value = value_of(words, limit_of(of_bits((i64)sum.largest)));
+    sum.largest = sum.low = sum.high = 0;
+    return value;
+}
 
 // Numbers of a range that may lie far from zero, as differences from its centre.
 struct Window {

@@ -111,6 +111,32 @@ FN Totals join_sums(const Shared& shared) {
     return t;
 }
 
+// Adds the weakening energies of blocks first, first + stride, ... to the sum of their lattice: its largest term, and
+// once all threads have done so its terms. Those of a warp are at most 2^11.
+template <bool LARGEST> FN void add_weakening(Lattice& lattice, const double* memory, size_t first, size_t stride) {
+    CommonSum& sum = lattice.weakening_energy;
+    const size_t n = lattice.n;
+    const double shift = LARGEST ? 0.0 : shift_of(limit_of(of_bits((i64)sum.largest)));
+    double largest = 0.0;
+    i64 terms = 0;
+#pragma unroll 1
+    for (size_t b = first; b < n; b += stride) {
+        double energy = weakening_energy_of(lattice.equations, memory, n, b);
+        if (LARGEST) largest = larger(largest, energy);
+        else terms += integer_of(energy, shift);
+    }
+    if (LARGEST) largest = warp_max(largest);
+    else terms = warp_sum(terms);
+    if (threadIdx.x % WARP != 0) return;
+    if (LARGEST) {
+        atomicMax(&sum.largest, (u64)bits_of(largest));
+    } else {
+        Words words = words_of(terms);
+        atomicAdd(&sum.low, (u64)words.low);
+        atomicAdd(&sum.high, (u64)words.high);
+    }
+}
+
 FN void add_totals(Totals& sum, const Totals& t) {
     for (int k = 0; k < SUMS; k++) {
         sum.sums[k].low += t.sums[k].low;

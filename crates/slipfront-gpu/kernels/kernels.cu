@@ -26,6 +26,14 @@ extern "C" __global__ void __launch_bounds__(256, 2) step_large(LargeLattices l)
     step_lattice(l, blockIdx.y, blockIdx.x, tile);
 }
 
+extern "C" __global__ void __launch_bounds__(256, 2) largest_weakening(LargeLattices l) {
+    add_weakening_of_group<true>(l, blockIdx.y, blockIdx.x);
+}
+
+extern "C" __global__ void __launch_bounds__(256, 2) add_weakening_large(LargeLattices l) {
+    add_weakening_of_group<false>(l, blockIdx.y, blockIdx.x);
+}
+
 extern "C" __global__ void __launch_bounds__(256, 2) join_large(LargeLattices l) {
     __shared__ Totals of_warps[MAX_WARPS];
     join_lattice(l, blockIdx.y, of_warps);

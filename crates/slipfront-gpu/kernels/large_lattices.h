@@ -1,6 +1,7 @@
 // Lattices of any size, with their blocks in global memory. A step is two kernels: groups of threads take the tiles of
-// each lattice; then one group for each lattice finishes the step and begins the next. State is read from one array and
-// written to another, since a tile also moves the blocks around it, which other tiles have.
+// each lattice; then one group for each lattice finishes the step and begins the next. Two more between them add up the
+// weakening energy where it is needed. State is read from one array and written to another, since a tile also moves the
+// blocks around it, which other tiles have.
 #pragma once
 #include "group.h"
 
@@ -220,6 +221,14 @@ FN void step_lattice(const LargeLattices& l, u32 k, u32 group, Tile& t) {
     if (t.shared.step.has_energies) step_tiles_with<true>(l, k, group, t);
     else step_tiles_with<false>(l, k, group, t);
     if (counts_at(t.lattice, t.shared.step.number)) count_tiles(l, group, t);
+}
+
+// Adds the weakening energies of a part of the blocks of lattice number k, at a step at which they are needed.
+template <bool LARGEST> FN void add_weakening_of_group(const LargeLattices& l, u32 k, u32 group) {
+    Lattice& lattice = l.arrays.lattices[k];
+    if (!falls(lattice.equations) || !l.steps[k].has_energies) return;
+    const size_t threads = blockDim.x, first = group * threads + threadIdx.x;
+    add_weakening<LARGEST>(lattice, l.arrays.memory + lattice.first_memory, first, l.groups * threads);
 }
 
 // Finishes the latest step of lattice number k and begins the next one; with none done, begins the first.

@@ -127,7 +127,15 @@ FN void run_lattice(const Arrays& arrays, u32 k, double* shared_blocks, Shared& 
     __syncthreads();
     for (u32 done = 0; done < lattice.steps; done++) {
         const Step& step = shared.step;
-        if (falls(lattice.equations)) weaken_blocks(lattice, a, arrays.memory + lattice.first_memory, step.number);
+        if (falls(lattice.equations)) {
+            double* memory = arrays.memory + lattice.first_memory;
+            weaken_blocks(lattice, a, memory, step.number);
+            if (step.has_energies) {
+                add_weakening<true>(lattice, memory, threadIdx.x, blockDim.x);
+                __syncthreads();
+                add_weakening<false>(lattice, memory, threadIdx.x, blockDim.x);
+            }
+        }
         if (step.has_energies) sweep_with<true>(step.springs, lattice, a, shared);
         else sweep_with<false>(step.springs, lattice, a, shared);
         if (counts_at(lattice, step.number)) count_blocks(arrays, lattice, a, step.number);

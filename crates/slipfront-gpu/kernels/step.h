@@ -8,7 +8,7 @@ struct Equations {
     double dt, k_drive, dead_load[2], epsilon, velocity_decay, force_to_velocity, velocity_to_force;
     // Of straight and of diagonal springs.
     double stiffness[2], series[2][8], strain_limits[2], n_blocks;
-    double inverse_fall_length, healing_time;
+    double fall_length, inverse_fall_length, healing_time;
 };
 
 struct Bounds {
@@ -26,7 +26,7 @@ struct Motion {
 struct StepRecord {
     double displacement[2], velocity_after[2], velocity_square, friction_power, stress_square_max;
     u32 n_sliding[2];
-    double stored[3];
+    double stored[3], weakening_energy;
 };
 
 struct Lattice {
@@ -40,10 +40,11 @@ struct Lattice {
     // Sliding blocks are counted at multiples of this number of a step, if it is not 0; first of the bins of blocks, and
     // of the counts.
     u64 counted_every, first_bin, first_count;
+    CommonSum weakening_energy;
     u32 steps, nx, n, is_held, bins, unused;
 };
 
-static_assert(sizeof(Lattice) == 488 && sizeof(StepRecord) == 88, "the sizes that src/batch.rs has");
+static_assert(sizeof(Lattice) == 520 && sizeof(StepRecord) == 96, "the sizes that src/batch.rs has");
 
 // Numbers of all lattices, one lattice after the other.
 struct Arrays {
@@ -53,8 +54,9 @@ struct Arrays {
     // Squares of static thresholds, and kinetic impulses of the blocks, which change where strength falls with slip; x
     // and y of the driven ends at each step of the drive.
     double* given;
-    // Where strength falls with slip, for the blocks of a lattice: kinetic impulses without slip, their falls, slips,
-    // and where blocks heal the times of their latest motion and the shares lost before they healed.
+    // Where strength falls with slip, for the blocks of a lattice: kinetic impulses without slip, forces by which
+    // strength falls, slips, and where blocks heal the times of their latest motion and the shares lost before they
+    // healed.
     double* memory;
     const u16* flags;
     // Bins of the blocks, and counts of each bin at each of the steps at which sliding blocks are counted.
@@ -173,6 +175,8 @@ FN Totals no_totals() {
     return t;
 }
 
+FN bool falls(const Equations& q) { return q.fall_length >= 0.0; }
+
 FN void take_measured(Bounds& b, const Measured& m) {
     for (int k = 0; k < 4; k++) b.extent[k] = m.largest[k];
     for (int k = 0; k < 2; k++) b.difference[k] = m.largest[4 + k];
@@ -214,5 +218,7 @@ FN void finish_step(Lattice& lattice, const Step& s, const Totals& t, StepRecord
     record.stored[0] = kinetic;
     record.stored[1] = springs;
     record.stored[2] = drive_springs;
+    record.weakening_energy = 0.0;
+    if (s.has_energies && falls(e)) record.weakening_energy = take_sum(lattice.weakening_energy);
     if (s.measures) take_measured(b, t.measured);
 }

@@ -19,6 +19,7 @@ pub(crate) struct Lattice {
     counted_every: u64,
     first_bin: u64,
     first_count: u64,
+    weakening_energy: [u64; 3],
     pub(crate) steps: u32,
     nx: u32,
     n: u32,
@@ -34,6 +35,13 @@ impl Lattice {
         let [nx, ny] = [self.nx, self.n / self.nx].map(|size| size as usize);
         nx.div_ceil(along_x) * ny.div_ceil(along_y)
     }
+
+    /// Whether the weakening energy is needed at the step after some.
+    pub(crate) fn needs_weakening_energy(&self, done: u32) -> bool {
+        let step = self.first_step + u64::from(done);
+        let has_energies = step.is_multiple_of(self.energies_every) || step == self.energies_last;
+        has_energies && self.equations.fall_length >= 0.0
+    }
 }
 
 /// Size of the struct `Step` of `kernels/step.h`, in numbers of 8 bytes.
@@ -45,7 +53,7 @@ pub(crate) const STEP: usize = 120 / 8;
 pub(crate) const TOTALS: usize = 216 / 8;
 
 // The sizes of these structs in `kernels/step.h`.
-const _: () = assert!(size_of::<Lattice>() == 488 && size_of::<StepRecord>() == 88);
+const _: () = assert!(size_of::<Lattice>() == 520 && size_of::<StepRecord>() == 96);
 
 /// Size of a record, in numbers of 8 bytes.
 pub(crate) const RECORD: usize = size_of::<StepRecord>() / 8;
@@ -61,7 +69,7 @@ pub(crate) struct Batch {
     /// the drive.
     pub(crate) given: Vec<f64>,
     /// For each lattice whose strength falls with slip, after a number that is not used: the impulses of its
-    /// blocks without slip, their falls, and the columns that the law remembers.
+    /// blocks without slip, the forces by which their strength falls, and the columns that the law remembers.
     pub(crate) memory: Vec<f64>,
     pub(crate) flags: Vec<u16>,
     /// For each lattice whose sliding blocks are counted, after a number that is not used: bins of its
@@ -119,6 +127,7 @@ impl Batch {
             counted_every: lattice.counts.as_ref().map_or(0, |counts| counts.every),
             first_bin: self.bins.len() as u64,
             first_count: self.counts.len() as u64,
+            weakening_energy: [0; 3],
             steps,
             nx: nx as u32,
             n: n as u32,
@@ -225,10 +234,7 @@ fn is_complete(lattice: &DeviceLattice) -> bool {
         let most = counts.bin_of.iter().max().map_or(0, |bin| usize::from(*bin));
         counts.bin_of.len() == lattice.flags.len() && most < counts.bins.count
     });
-    let columns = match (
-        equations.inverse_fall_length >= 0.0,
-        equations.healing_time.is_finite(),
-    ) {
+    let columns = match (equations.fall_length >= 0.0, equations.healing_time.is_finite()) {
         (false, _) => 0,
         (true, false) => 1,
         (true, true) => 3,
@@ -253,5 +259,6 @@ fn record(words: &[u64; RECORD]) -> StepRecord {
         // GPUs and their host CPUs are little-endian.
         n_sliding: [words[7] as u32, (words[7] >> 32) as u32],
         stored: [number(8), number(9), number(10)],
+        weakening_energy: number(11),
     }
 }

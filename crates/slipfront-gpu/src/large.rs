@@ -30,6 +30,8 @@ const MANY_GROUPS: usize = 1024;
 pub(crate) struct LargeKernels {
     measure: CudaFunction,
     step: CudaFunction,
+    /// Kernels that add up weakening energies.
+    weakening: [CudaFunction; 2],
     join: CudaFunction,
 }
 
@@ -57,6 +59,10 @@ impl LargeKernels {
         Ok(Self {
             measure: module.load_function("measure_large")?,
             step: module.load_function("step_large")?,
+            weakening: [
+                module.load_function("largest_weakening")?,
+                module.load_function("add_weakening_large")?,
+            ],
             join: module.load_function("join_large")?,
         })
     }
@@ -68,10 +74,8 @@ impl LargeKernels {
         arrays: &mut Arrays,
         lattices: &[Lattice],
     ) -> Result<(), DriverError> {
-        let (count, n_steps) = (
-            lattices.len(),
-            lattices.first().map_or(0, |lattice| lattice.steps),
-        );
+        let count = lattices.len();
+        let n_steps = lattices.first().map_or(0, |lattice| lattice.steps);
         let tiles = lattices.iter().map(|lattice| lattice.tiles(TILE)).max();
         let tiles = tiles.unwrap_or(1);
         let groups = tiles.div_ceil((tiles / MANY_GROUPS).clamp(1, MOST_TILES));
@@ -83,7 +87,7 @@ impl LargeKernels {
             let steps = steps.device_ptr_mut(stream);
             let totals = totals.device_ptr_mut(stream);
             arrays.launch(stream, |arrays| {
-                let lattices = LargeLattices {
+                let of_kernels = LargeLattices {
                     arrays,
                     state_after: after.0,
                     steps: steps.0,
@@ -91,7 +95,7 @@ impl LargeKernels {
                     groups: groups as u32,
                     done: 0,
                 };
-                self.launch_steps(stream, lattices, count as u32, n_steps)
+                self.launch_steps(stream, of_kernels, lattices)
             })?;
         }
         if n_steps % 2 == 1 {
@@ -100,17 +104,18 @@ impl LargeKernels {
         Ok(())
     }
 
-    /// Launches the kernels for `n_steps` steps of `count` lattices: two for each step.
+    /// Launches the kernels for the steps of the lattices `given`: two for each step, and two more where the
+    /// weakening energy of a lattice is needed.
     fn launch_steps(
         &self,
         stream: &Arc<CudaStream>,
         mut lattices: LargeLattices,
-        count: u32,
-        n_steps: u32,
+        given: &[Lattice],
     ) -> Result<(), DriverError> {
+        let n_steps = given.first().map_or(0, |lattice| lattice.steps);
         let launch = |function, lattices: &LargeLattices, groups| {
             let config = LaunchConfig {
-                grid_dim: (groups, count, 1),
+                grid_dim: (groups, given.len() as u32, 1),
                 block_dim: (THREADS, 1, 1),
                 shared_mem_bytes: 0,
             };
@@ -120,9 +125,14 @@ impl LargeKernels {
         };
         launch(&self.measure, &lattices, lattices.groups)?;
         launch(&self.join, &lattices, 1)?;
-        for done in 1..=n_steps {
+        for done in 0..n_steps {
             launch(&self.step, &lattices, lattices.groups)?;
-            lattices.done = done;
+            if given.iter().any(|lattice| lattice.needs_weakening_energy(done)) {
+                for kernel in &self.weakening {
+                    launch(kernel, &lattices, lattices.groups)?;
+                }
+            }
+            lattices.done = done + 1;
             launch(&self.join, &lattices, 1)?;
             mem::swap(&mut lattices.arrays.state, &mut lattices.state_after);
         }

@@ -60,11 +60,8 @@ impl DeviceRun for SummaryRun<'_> {
         self.case
     }
 
-    /// Refuses also events and strength that falls with slip, which need numbers of single blocks.
+    /// Refuses also events, which need numbers of single blocks.
     fn refusal(&self, device: &dyn Device) -> Option<String> {
-        if self.case.model.friction.needs().weakens_with_slip {
-            return Some("the weakening energy of many runs at once is computed on the CPU alone".to_owned());
-        }
         refusal_of_run(self.case, device)
     }
 
@@ -127,6 +124,11 @@ mod tests {
             "drive.v_star = 0.1\ntime.duration_star = 20",
             "drive.v_star = 0.1\ntime.duration_star = 20\noutput.events = true",
             "drive.v_star = 0.1\noutput.snapshots = [10, 20]\nslider.edges = 'periodic'",
+            "time.stop = 'after_onset'\ndrive.v_star = 0.1\nfriction.slip_weakening = { length_star = 0.5 }",
+            "drive = { v_star = 0.1, loading = 'held' }\ntime.duration_star = 60\nslider.omega_star = 5\n\
+             friction.slip_weakening = { length_star = 0.1 }",
+            "drive.v_star = 0.1\noutput.series = 7\n\
+             friction = { healing_time_star = 1, slip_weakening = { length_star = 0.1 } }",
             "slider.omega_star = 0\nload.pressure = '50 GPa'\ndrive.v_star = 10\n\
              friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }",
         ]
@@ -154,10 +156,6 @@ mod tests {
     fn cases_of_the_cpu_are_refused_with_the_reason() {
         for (text, reason) in [
             ("output.events = true", "`output.events`"),
-            (
-                "friction.slip_weakening = { length_star = 0.5 }",
-                "the weakening energy",
-            ),
             ("drive.attach = 'left'", "drive springs"),
             (
                 "friction = { law = 'rate_and_state', a = 0.02, b = 0.06, d_c_star = 0.05, v_0_star = 0.01, mu_0 = 0.6 }",

@@ -73,7 +73,9 @@ pub struct Equations {
     pub strain_limits: [f64; 2],
     /// Number of blocks.
     pub n_blocks: f64,
-    /// Inverse of the slip `D_c` over which [strength falls](FallingStrength); negative if it does not fall.
+    /// Slip `D_c` over which [strength falls](FallingStrength); negative if it does not fall.
+    pub fall_length: f64,
+    /// Inverse of the slip over which strength falls.
     pub inverse_fall_length: f64,
     /// Time t* after which a stuck block has its full strength again; infinite if no block heals.
     pub healing_time: f64,
@@ -117,6 +119,9 @@ pub struct StepRecord {
     /// Kinetic energy, energy of the springs between blocks, and energy of the drive springs, at the steps at
     /// which they are [needed](EnergySteps).
     pub stored: [f64; 3],
+    /// Energy that the fall of strength has dissipated since the start, at these steps; 0 where strength does
+    /// not fall.
+    pub weakening_energy: f64,
 }
 
 /// Steps at which energies are computed.
@@ -131,8 +136,8 @@ pub struct EnergySteps {
 /// Memory of a law by which the strength of a block falls with its slip.
 #[derive(Clone, Debug)]
 pub struct FallingStrength {
-    /// Change of velocity in a step by the part of friction that is lost with slip, `dt max(S - K, 0)/c+`,
-    /// with the static threshold S and kinetic friction K, of the blocks.
+    /// Force by which strength falls, `max(S - K, 0)`, with the static threshold S and kinetic friction K, of
+    /// the blocks.
     pub drops: Arc<[f64]>,
     /// Columns of a checkpoint: the slip of the blocks, and where blocks heal the times t* of their latest
     /// motion and the shares of strength that they lost before they healed.

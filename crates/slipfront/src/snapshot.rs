@@ -182,32 +182,8 @@ impl Snapshot<'_> {
     /// the integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this
     /// together.
     pub fn weakening_energy(&self) -> f64 {
-        let Some(law) = self.model.friction.strength_over_slip() else {
-            return 0.0;
-        };
-        let surface = &self.model.surface;
-        let (mut energies, mut lost_before) = ([0.0; CHUNK], [0.0; CHUNK]);
-        let mut sum = [RunningSum::default()];
-        loop {
-            for first in (0..surface.n_blocks()).step_by(CHUNK) {
-                let energies = &mut energies[..CHUNK.min(surface.n_blocks() - first)];
-                self.engine.read_memory(self.time_star, 0, first, energies);
-                if law.healing_time.is_some() {
-                    let lost_before = &mut lost_before[..energies.len()];
-                    self.engine.read_memory(self.time_star, 2, first, lost_before);
-                }
-                // Replaces slips by energies.
-                for (k, energy) in energies.iter_mut().enumerate() {
-                    let block = first + k;
-                    let drop = (surface.static_limit(block) - surface.kinetic_force(block)).max(0.0);
-                    *energy = law.energy(drop, *energy, lost_before[k]);
-                }
-                sum[0].add(energies);
-            }
-            if let Some([energy]) = RunningSum::finish(self.communicator, &mut sum) {
-                return energy;
-            }
-        }
+        self.engine
+            .weakening_energy(self.model, self.time_star, self.communicator)
     }
 
     /// First-slip times t* of the blocks of this rank while in contact; NaN for blocks that have not slipped.

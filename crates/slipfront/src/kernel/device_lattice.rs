@@ -90,6 +90,7 @@ impl DeviceLattice {
                 series: series.coefficients,
                 strain_limits: series.strain_limits,
                 n_blocks: slider.sum_of_drive_springs(lattice),
+                fall_length: law.map_or(-1.0, |law| law.length),
                 inverse_fall_length: law.map_or(-1.0, |law| 1.0 / law.length),
                 healing_time: law.and_then(|law| law.healing_time).unwrap_or(f64::INFINITY),
             },
@@ -97,7 +98,7 @@ impl DeviceLattice {
             static_limit_squares: (0..n).map(limit_square).collect(),
             kinetic_impulses: (0..n).map(|b| impulse(surface.kinetic_force(b))).collect(),
             strength: law.map(|_| FallingStrength {
-                drops: drops.map(impulse).collect(),
+                drops: drops.collect(),
                 columns: vec![vec![0.0; n]; model.friction.n_columns()],
             }),
             flags: (0..n).map(|b| flags(&model, b)).collect(),
@@ -138,7 +139,8 @@ impl DeviceLattice {
         let (mut latest, mut next) = (None, self.next_clock());
         for _ in 0..steps {
             let clock = next;
-            let totals = kernel.step(&model, &clock, self.needs_energies(clock.step));
+            let energies = self.needs_energies(clock.step);
+            let totals = kernel.step(&model, &clock, energies);
             let stored = totals.stored_energy.unwrap_or_default();
             self.records.push_back(StepRecord {
                 displacement: totals.displacement,
@@ -148,6 +150,11 @@ impl DeviceLattice {
                 stress_square_max: kernel.stress_square_max(&model, &clock),
                 n_sliding: [totals.n_sliding, totals.n_slipping].map(|count| count as u32),
                 stored: [stored.kinetic, stored.lattice, stored.drive_springs],
+                weakening_energy: if energies {
+                    kernel.weakening_energy(&model, clock.time_star(), &Alone)
+                } else {
+                    0.0
+                },
             });
             if let Some(counts) = &mut self.counts
                 && clock.step.is_multiple_of(counts.every)

@@ -89,6 +89,7 @@ fn numbers(lattice: &DeviceLattice) -> Vec<u64> {
             record.velocity_square,
             record.friction_power,
             record.stress_square_max,
+            record.weakening_energy,
         ];
         [ux, uy, vx, vy, kinetic, springs, drive].into_iter().chain(sums)
     });

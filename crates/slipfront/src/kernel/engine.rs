@@ -3,7 +3,9 @@
 use super::block::{Block, Field};
 use crate::checkpoint::{BlockColumn, MotionBounds};
 use crate::clock::Clock;
+use crate::communicator::Communicator;
 use crate::device::{Device, DeviceError, DeviceLattice};
+use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
@@ -78,6 +80,39 @@ pub(crate) trait Engine: Send + Sync {
     /// `column` counts from 0, first the columns of the law,
     /// [`Friction::n_columns`](crate::friction::Friction::n_columns).
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
+
+    /// Energy dissipated by the fall of strength since the start, a part of the friction loss: for each block
+    /// the integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this
+    /// together.
+    fn weakening_energy(&self, model: &Model, time_star: f64, ranks: &dyn Communicator) -> f64 {
+        const PART: usize = 1 << 10;
+        let Some(law) = model.friction.strength_over_slip() else {
+            return 0.0;
+        };
+        let surface = &model.surface;
+        let (mut energies, mut lost_before) = ([0.0; PART], [0.0; PART]);
+        let mut sum = [RunningSum::default()];
+        loop {
+            for first in (0..surface.n_blocks()).step_by(PART) {
+                let energies = &mut energies[..PART.min(surface.n_blocks() - first)];
+                self.read_memory(time_star, 0, first, energies);
+                if law.healing_time.is_some() {
+                    let lost_before = &mut lost_before[..energies.len()];
+                    self.read_memory(time_star, 2, first, lost_before);
+                }
+                // Replaces slips by energies.
+                for (k, energy) in energies.iter_mut().enumerate() {
+                    let block = first + k;
+                    let drop = (surface.static_limit(block) - surface.kinetic_force(block)).max(0.0);
+                    *energy = law.energy(drop, *energy, lost_before[k]);
+                }
+                sum[0].add(energies);
+            }
+            if let Some([energy]) = RunningSum::finish(ranks, &mut sum) {
+                return energy;
+            }
+        }
+    }
 
     /// The lattice that a device computes, if the kernel replays its steps.
     fn device_lattice(&mut self) -> Option<&mut DeviceLattice> {

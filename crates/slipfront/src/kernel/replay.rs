@@ -17,6 +17,7 @@ use super::engine::{Engine, TakeSliding};
 use super::fused::Fused;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::clock::{Clock, Rest};
+use crate::communicator::Communicator;
 use crate::device::{Device, DeviceError, DeviceLattice, EnergySteps, StepRecord};
 use crate::model::Model;
 use crate::position_bins::PositionBins;
@@ -438,6 +439,15 @@ impl Engine for Replay {
         match self.on_cpu() {
             Some(_) => self.kernel().read_memory(time_star, column, first, values),
             None => self.here().read_memory(column, first, values),
+        }
+    }
+
+    fn weakening_energy(&self, model: &Model, time_star: f64, ranks: &dyn Communicator) -> f64 {
+        match self.on_cpu() {
+            // Not a reading, since the device records the energy where it computes.
+            Some(kernel) => kernel.weakening_energy(model, time_star, ranks),
+            None if self.lattice.needs_energies(self.clock.step) => self.present.weakening_energy,
+            None => self.kernel().weakening_energy(model, time_star, ranks),
         }
     }
 

@@ -305,6 +305,42 @@ fn a_device_is_called_where_readings_are_apart() {
     assert!((5..=25).contains(&until_2000), "{calls:?}");
 }
 
+/// A device records the weakening energy of every row of a series: rows are no readings of single blocks.
+#[test]
+fn weakening_energies_are_recorded_on_the_device() {
+    let slider = Slider {
+        blocks: [30, 20],
+        v_star: 0.1,
+        slip_weakening: Some(SlipWeakening {
+            length: 0.4,
+            healing_time: None,
+        }),
+        ..Slider::default()
+    };
+    let device = Arc::new(Failing {
+        calls: AtomicU32::new(0),
+        good: u32::MAX,
+    });
+    let observed = |execution: Execution| {
+        let mut curve = Curve::every(3);
+        let mut run = Simulation::new(slider.model(), 0.1, None, execution);
+        let mut observers = [Scheduled::always(&mut curve)];
+        run.run(Stop::at_step(900), &mut observers).unwrap();
+        (shown(&run), state(&run), curve)
+    };
+    let on_cpu = format!("{:?}", observed(fused()));
+    assert_eq!(device.calls.load(Ordering::Relaxed), 0);
+    let (found, state, curve) = observed(Execution {
+        device: Some(Arc::clone(&device) as Arc<dyn Device>),
+        ..fused()
+    });
+    assert!(curve.rows[290].energies.weakening_loss > 0.0);
+    assert!(format!("{:?}", (found, state, curve)) == on_cpu);
+    // 16, 32, ... 512 steps at once; one call more for the energies that were not foreseen, and one for the
+    // state at the end.
+    assert_eq!(device.calls.load(Ordering::Relaxed), 8);
+}
+
 /// The device counts blocks by their position, after the fused kernel has found that they are counted: it
 /// computes the steps of a transition.
 #[test]
