@@ -11,18 +11,38 @@ fn main() {
         std::fs::write(format!("{out}/kernels.ptx"), ptx).expect("OUT_DIR can be written");
     }
     #[cfg(feature = "emulated")]
-    cc::Build::new()
+    emulated();
+}
+
+/// Compiles the kernels for the CPU. If `tests/sanitizers.sh` names a sanitizer, threads of the GPU are
+/// threads of the CPU, and the sanitizer watches them.
+#[cfg(feature = "emulated")]
+fn emulated() {
+    println!("cargo::rerun-if-env-changed=SLIPFRONT_SANITIZER");
+    let mut build = cc::Build::new();
+    build
         .cpp(true)
         .std("c++20")
         .file("kernels/emulated.cpp")
         // No contraction: a product and a sum are two operations with two roundings, as everywhere in
         // slipfront.
         .flag("-ffp-contract=off")
-        // Undefined behaviour ends the test.
-        .flag("-fsanitize=undefined")
-        .flag("-fsanitize-undefined-trap-on-error")
         .flag("-Wno-unknown-pragmas")
         .warnings_into_errors(true)
-        .opt_level(2)
-        .compile("slipfront_kernels");
+        .opt_level(2);
+    match std::env::var("SLIPFRONT_SANITIZER") {
+        Ok(sanitizer) => {
+            println!("cargo::rustc-link-arg-tests=-l{}san", &sanitizer[..1]);
+            build
+                .flag(format!("-fsanitize={sanitizer}"))
+                .define("THREADS", None);
+        }
+        // Undefined behaviour ends the test.
+        Err(_) => {
+            build
+                .flag("-fsanitize=undefined")
+                .flag("-fsanitize-undefined-trap-on-error");
+        }
+    }
+    build.compile("slipfront_kernels");
 }

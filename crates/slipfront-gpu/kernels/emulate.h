@@ -1,130 +1,40 @@
-// A group of GPU threads on a CPU: each thread is a fiber, which runs until it has to wait for others, and warps
-// have 32 lanes. Tests take it where there is no GPU.
+// Groups of GPU threads on a CPU, with warps of 32 lanes. Tests take them where there is no GPU.
 #pragma once
-#include <setjmp.h>
-#include <ucontext.h>
-
 #include <bit>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <vector>
+
+#ifdef THREADS
+#include "threads.h"
+#else
+#include "fibers.h"
+#endif
 
 #define __device__
 #define __forceinline__ inline
 
-namespace emulated {
-const int LANES = 32;
-
-struct Fiber {
-    std::unique_ptr<char[]> stack;
-    // Where it begins, and where it goes on.
-    ucontext_t start;
-    jmp_buf here;
-    bool has_started = false;
-};
-
-// Threads first to first + count - 1, which wait for each other.
-struct Meeting {
-    int first, count, arrived = 0;
-    long number = 0;
-};
-
-struct GroupOfThreads {
-    std::vector<Fiber> fibers;
-    std::vector<Meeting> warps;
-    Meeting all;
-    std::vector<long long> exchanged;
-    std::function<void()> work;
-    ucontext_t caller;
-    int current = 0, stride = 1;
-};
-inline thread_local GroupOfThreads* group;
-
-// Goes on with another thread, and comes back when another one goes on with this.
-inline void switch_to(int next) {
-    Fiber &from = group->fibers[group->current], &to = group->fibers[next];
-    if (_setjmp(from.here)) return;
-    group->current = next;
-    if (to.has_started) _longjmp(to.here, 1);
-    to.has_started = true;
-    setcontext(&to.start);
-}
-
-// The last thread that arrives goes on; then the others find it in turn, each `stride` threads after another.
-inline void meet(Meeting& meeting) {
-    long number = meeting.number;
-    if (++meeting.arrived == meeting.count) {
-        meeting.arrived = 0;
-        meeting.number++;
-    }
-    while (meeting.number == number) {
-        switch_to(meeting.first + (group->current - meeting.first + group->stride) % meeting.count);
-    }
-}
-
-inline void run_thread() {
-    group->work();
-    meet(group->all);
-    setcontext(&group->caller);
-}
-
-// Runs `work` on each of `count` threads, a multiple of the lanes of a warp. Their order is set by the stride,
-// which has no divisor in common with the count: a result that depends on it shows that a barrier is missing.
-inline void run(int count, int stride, const std::function<void()>& work) {
-    const size_t stack = 1 << 16;
-    GroupOfThreads threads;
-    threads.fibers = std::vector<Fiber>(count);
-    threads.exchanged.assign(count, 0);
-    threads.all = {0, count};
-    threads.work = work;
-    threads.stride = stride;
-    for (int first = 0; first < count; first += LANES) threads.warps.push_back({first, LANES});
-    for (Fiber& fiber : threads.fibers) {
-        fiber.stack.reset(new char[stack]);
-        getcontext(&fiber.start);
-        fiber.start.uc_stack.ss_sp = fiber.stack.get();
-        fiber.start.uc_stack.ss_size = stack;
-        makecontext(&fiber.start, run_thread, 0);
-    }
-    group = &threads;
-    threads.fibers[0].has_started = true;
-    swapcontext(&threads.caller, &threads.fibers[0].start);
-    group = nullptr;
-}
-
-struct Thread {
-    struct Index {
-        operator int() const { return group->current; }
+inline const struct {
+    struct {
+        operator int() const { return emulated::current_thread(); }
     } x;
-};
-struct Group {
-    struct Size {
-        operator int() const { return group->all.count; }
+} threadIdx;
+inline const struct {
+    struct {
+        operator int() const { return emulated::threads_of_group(); }
     } x;
-};
-}  // namespace emulated
+} blockDim;
 
-inline const emulated::Thread threadIdx;
-inline const emulated::Group blockDim;
-
-inline void __syncthreads() { emulated::meet(emulated::group->all); }
-inline void __syncwarp() { emulated::meet(emulated::group->warps[emulated::group->current / emulated::LANES]); }
+inline void __syncthreads() { emulated::wait_for_group(); }
+inline void __syncwarp() { emulated::wait_for_warp(); }
 
 template <class T> T __shfl_xor_sync(unsigned, T x, int distance) {
-    emulated::GroupOfThreads& group = *emulated::group;
-    int here = group.current;
-    emulated::Meeting& warp = group.warps[here / emulated::LANES];
-    group.exchanged[here] = std::bit_cast<long long>(x);
-    emulated::meet(warp);
-    T other = std::bit_cast<T>(group.exchanged[here ^ distance]);
-    emulated::meet(warp);
+    std::vector<long long>& exchanged = emulated::exchanged();
+    const int here = threadIdx.x;
+    exchanged[here] = std::bit_cast<long long>(x);
+    emulated::wait_for_warp();
+    T other = std::bit_cast<T>(exchanged[here ^ distance]);
+    emulated::wait_for_warp();
     return other;
 }
-
-// Threads take turns only where they wait for each other.
-template <class T> void atomicAdd(T* sum, T term) { *sum += term; }
-template <class T> void atomicMax(T* largest, T other) { *largest = *largest < other ? other : *largest; }
 
 inline int __clzll(long long x) { return std::countl_zero((unsigned long long)x); }
 inline long long __double_as_longlong(double x) { return std::bit_cast<long long>(x); }

@@ -190,6 +190,45 @@ proptest! {
     }
 }
 
+/// Each kernel on a few blocks that move from the start, with strength that falls and without. This test is
+/// short under a sanitizer, too. Three groups of threads share four tiles.
+#[test]
+fn few_blocks() {
+    let (nx, ny) = (33, 17);
+    let n = nx * ny;
+    let wave = |k: f64, size: f64| -> Vec<f64> { (0..n).map(|b| size * (k * b as f64).sin()).collect() };
+    let moving = State {
+        displacement: VectorField {
+            x: wave(1.7, 0.5),
+            y: wave(2.9, 0.5),
+        },
+        velocity: VectorField {
+            x: wave(0.7, 0.1),
+            y: wave(1.3, 0.1),
+        },
+    };
+    for (epsilon, groups) in [(1e-6, None), (1e-3, None), (0.1, Some(3)), (1e-6, Some(3))] {
+        let lattice = Lattice::with_edges(nx, ny, [Edges::Periodic, Edges::Free]);
+        let mut surface = Surface::uniform(&lattice, 1.0, 0.5);
+        surface.textured[30] = true;
+        let slip_weakening = (epsilon == 1e-6).then_some(SlipWeakening {
+            length: 0.1,
+            healing_time: Some(0.5),
+        });
+        let friction = Friction::Coulomb(Coulomb {
+            slip_weakening,
+            ..FrictionLaw::Projection.into()
+        });
+        let model = Model::new(lattice, surface, Drive::along_x(0.1), 0.1, epsilon, friction);
+        let device = Emulated {
+            threads: 64,
+            stride: 1,
+            groups,
+        };
+        compare(&model, 0.2, Some(&moving), device, [5, 16, 3]);
+    }
+}
+
 /// The test that every device must pass before it is used.
 #[test]
 fn the_test_of_a_device_is_passed() {
