@@ -73,7 +73,7 @@ FN Sums no_sums() {
 
 FN bool heals(const Equations& q) { return q.healing_time < of_bits(0x7ff0000000000000LL); }
 
-// The larger one is 0, as in Rust, also where an infinite inverse has made the other NaN.
+// 0 if the share is NaN, which is 0 times an infinite inverse, as from f64::max of Rust.
 FN double share_left(const Equations& q, double slip) { return larger(0.0, 1.0 - slip * q.inverse_fall_length); }
 
 // Energy that weakening has dissipated in block b of n: friction/coulomb/slip_weakening.rs in crates/slipfront/src.

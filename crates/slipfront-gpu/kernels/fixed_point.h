@@ -24,8 +24,8 @@ FN Words words_of(i64 sum) {
     return words;
 }
 
-// A sum over all threads of a lattice of numbers of which none is negative. They find the largest number first, which
-// sets the quantum; as integers, the bits of such numbers have their order. Zeros before and after.
+// A sum to which all threads of a lattice add numbers that are not negative. They find the largest number first, which
+// sets the quantum: as integers, the bits of such numbers have the same order. All zero before the first number.
 struct CommonSum {
     u64 largest, low, high;
 };

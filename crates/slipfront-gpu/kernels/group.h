@@ -111,8 +111,8 @@ FN Totals join_sums(const Shared& shared) {
     return t;
 }
 
-// Adds the weakening energies of blocks first, first + stride, ... to the sum of their lattice: its largest term, and
-// once all threads have done so its terms. Those of a warp are at most 2^11.
+// Takes blocks first, first + stride, ... into the weakening energy of their lattice: finds the largest term, or adds
+// the terms, once all threads have found the largest. A warp adds at most 2^11 terms.
 template <bool LARGEST> FN void add_weakening(Lattice& lattice, const double* memory, size_t first, size_t stride) {
     CommonSum& sum = lattice.weakening_energy;
     const size_t n = lattice.n;

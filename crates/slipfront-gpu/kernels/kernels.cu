@@ -26,7 +26,7 @@ extern "C" __global__ void __launch_bounds__(256, 2) step_large(LargeLattices l)
     step_lattice(l, blockIdx.y, blockIdx.x, tile);
 }
 
-extern "C" __global__ void __launch_bounds__(256, 2) largest_weakening(LargeLattices l) {
+extern "C" __global__ void __launch_bounds__(256, 2) largest_weakening_large(LargeLattices l) {
     add_weakening_of_group<true>(l, blockIdx.y, blockIdx.x);
 }
 

@@ -1,5 +1,6 @@
-// Threads of a GPU as threads of a CPU, for its sanitizers: they find memory that threads use without a barrier between
-// them, and what lies beyond the end of an array.
+// Threads of a GPU as threads of a CPU, for sanitizers: they find memory that threads use without a barrier between
+// them, and uses of memory beyond the end of an array. An exchange between lanes is a barrier of their warp here, which
+// it is not on a GPU.
 #pragma once
 #include <atomic>
 #include <barrier>

@@ -19,6 +19,7 @@ pub(crate) struct Lattice {
     counted_every: u64,
     first_bin: u64,
     first_count: u64,
+    /// The struct `CommonSum` of `kernels/fixed_point.h`.
     weakening_energy: [u64; 3],
     pub(crate) steps: u32,
     nx: u32,
@@ -36,7 +37,7 @@ impl Lattice {
         nx.div_ceil(along_x) * ny.div_ceil(along_y)
     }
 
-    /// Whether the weakening energy is needed at the step after some.
+    /// Whether the weakening energy is needed at the step that follows the first `done` steps.
     pub(crate) fn needs_weakening_energy(&self, done: u32) -> bool {
         let step = self.first_step + u64::from(done);
         let has_energies = step.is_multiple_of(self.energies_every) || step == self.energies_last;
@@ -185,7 +186,7 @@ impl Batch {
                 .copy_from_slice(&self.first_slips[first..first + n]);
             if let Some(strength) = &mut lattice.strength {
                 let memory = self.memory[after.first_memory as usize..].chunks(n);
-                // After the impulses and the falls.
+                // After the impulses, and the forces by which strength falls.
                 for (column, values) in strength.columns.iter_mut().zip(memory.skip(2)) {
                     column.copy_from_slice(values);
                 }

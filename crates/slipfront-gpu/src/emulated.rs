@@ -6,13 +6,14 @@ use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::batch::{Batch, Lattice};
 
-/// A device that emulates groups of threads on the calling thread: slow, but exact.
+/// A device that emulates groups of threads: slow, but exact. The calling thread runs all of them in turn;
+/// under `tests/sanitizers.sh` each is a thread of the CPU.
 #[derive(Clone, Copy, Debug)]
 pub struct Emulated {
     /// Threads of a group: 32, 64, 128, 256, 512 or 1024.
     pub threads: u32,
-    /// Distance from a thread that waits to the thread that runs next: any odd number. Results do not depend
-    /// on it.
+    /// Distance from a thread that waits to the thread that runs next, if they run in turn: any odd number.
+    /// Results do not depend on it.
     pub stride: u32,
     /// Number of groups that share the tiles of each lattice, as on a GPU for lattices that are large; none
     /// for one group with all blocks in its own memory, as for small ones.

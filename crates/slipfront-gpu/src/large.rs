@@ -60,7 +60,7 @@ impl LargeKernels {
             measure: module.load_function("measure_large")?,
             step: module.load_function("step_large")?,
             weakening: [
-                module.load_function("largest_weakening")?,
+                module.load_function("largest_weakening_large")?,
                 module.load_function("add_weakening_large")?,
             ],
             join: module.load_function("join_large")?,
@@ -87,7 +87,7 @@ impl LargeKernels {
             let steps = steps.device_ptr_mut(stream);
             let totals = totals.device_ptr_mut(stream);
             arrays.launch(stream, |arrays| {
-                let of_kernels = LargeLattices {
+                let argument = LargeLattices {
                     arrays,
                     state_after: after.0,
                     steps: steps.0,
@@ -95,7 +95,7 @@ impl LargeKernels {
                     groups: groups as u32,
                     done: 0,
                 };
-                self.launch_steps(stream, of_kernels, lattices)
+                self.launch_steps(stream, argument, lattices)
             })?;
         }
         if n_steps % 2 == 1 {
@@ -104,37 +104,40 @@ impl LargeKernels {
         Ok(())
     }
 
-    /// Launches the kernels for the steps of the lattices `given`: two for each step, and two more where the
-    /// weakening energy of a lattice is needed.
+    /// Launches the kernels for the steps of some lattices with this first `argument`: two before the first
+    /// step, two for each step, and two more where the weakening energy of a lattice is needed.
     fn launch_steps(
         &self,
         stream: &Arc<CudaStream>,
-        mut lattices: LargeLattices,
-        given: &[Lattice],
+        mut argument: LargeLattices,
+        lattices: &[Lattice],
     ) -> Result<(), DriverError> {
-        let n_steps = given.first().map_or(0, |lattice| lattice.steps);
-        let launch = |function, lattices: &LargeLattices, groups| {
+        let n_steps = lattices.first().map_or(0, |lattice| lattice.steps);
+        let launch = |function, argument: &LargeLattices, groups| {
             let config = LaunchConfig {
-                grid_dim: (groups, given.len() as u32, 1),
+                grid_dim: (groups, lattices.len() as u32, 1),
                 block_dim: (THREADS, 1, 1),
                 shared_mem_bytes: 0,
             };
             // SAFETY: the argument has the type of the kernel's parameter. The batch has checked the lengths
             // of its arrays, and the others have a number for each group.
-            unsafe { stream.launch_builder(function).arg(lattices).launch(config) }.map(|_| ())
+            unsafe { stream.launch_builder(function).arg(argument).launch(config) }.map(|_| ())
         };
-        launch(&self.measure, &lattices, lattices.groups)?;
-        launch(&self.join, &lattices, 1)?;
+        launch(&self.measure, &argument, argument.groups)?;
+        launch(&self.join, &argument, 1)?;
         for done in 0..n_steps {
-            launch(&self.step, &lattices, lattices.groups)?;
-            if given.iter().any(|lattice| lattice.needs_weakening_energy(done)) {
+            launch(&self.step, &argument, argument.groups)?;
+            if lattices
+                .iter()
+                .any(|lattice| lattice.needs_weakening_energy(done))
+            {
                 for kernel in &self.weakening {
-                    launch(kernel, &lattices, lattices.groups)?;
+                    launch(kernel, &argument, argument.groups)?;
                 }
             }
-            lattices.done = done + 1;
-            launch(&self.join, &lattices, 1)?;
-            mem::swap(&mut lattices.arrays.state, &mut lattices.state_after);
+            argument.done = done + 1;
+            launch(&self.join, &argument, 1)?;
+            mem::swap(&mut argument.arrays.state, &mut argument.state_after);
         }
         Ok(())
     }

@@ -25,6 +25,9 @@ fn a_gpu_has_the_same_bits_or_is_refused_with_a_reason() {
             return;
         }
     };
+    (&gpu as &dyn Device)
+        .test_bits()
+        .expect("the GPU has the bits of the CPU");
     // In the memory that threads share, and in that of the GPU.
     for sizes in [[[25, 25], [7, 30]], [[100, 100], [67, 66]]] {
         compare(&gpu, sizes);

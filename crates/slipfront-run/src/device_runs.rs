@@ -15,8 +15,8 @@ pub(crate) const STEPS_AT_ONCE: u64 = 1024;
 /// Memory for the records and numbers of the runs that are computed at once.
 const MEMORY: usize = 1 << 30;
 
-/// Bytes of a block on its way through a device.
-const BYTES_PER_BLOCK: usize = 128;
+/// Most bytes of a block on its way through a device: those with strength that falls and heals.
+const BYTES_PER_BLOCK: usize = 180;
 
 /// A run whose steps a device computes, with the observers of what is kept of it.
 pub(crate) trait DeviceRun: Send + Sized {

@@ -180,7 +180,7 @@ impl Snapshot<'_> {
 
     /// Energy dissipated by the fall of strength since the start, a part of the friction loss: for each block
     /// the integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this
-    /// together.
+    /// together. On a device this reads all blocks, unless an observer needs energies at this step.
     pub fn weakening_energy(&self) -> f64 {
         self.engine
             .weakening_energy(self.model, self.time_star, self.communicator)

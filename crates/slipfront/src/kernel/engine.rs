@@ -85,6 +85,7 @@ pub(crate) trait Engine: Send + Sync {
     /// the integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this
     /// together.
     fn weakening_energy(&self, model: &Model, time_star: f64, ranks: &dyn Communicator) -> f64 {
+        // As in other sums over columns: few enough blocks at once for the stack.
         const PART: usize = 1 << 10;
         let Some(law) = model.friction.strength_over_slip() else {
             return 0.0;
