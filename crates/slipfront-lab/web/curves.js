@@ -242,6 +242,8 @@ function make() {
 export function startCurves() {
   make();
   on('curve', take);
+  // The instants, which the curves name with letters, may come after the last points.
+  on('numbers', refresh);
   on('measured', refresh);
   on('case', ({ why }) => {
     if (why === 'open') clear(recorded);

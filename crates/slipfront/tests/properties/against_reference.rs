@@ -446,7 +446,12 @@ impl Tolerance {
         let gap = distance + path + 2.0 * 16.0 * setting.dt * speed;
         let highest = speed + (stiffness * gap + bears) * setting.dt / lightest;
         let powers = heaviest * (1.0 + model.damping * setting.dt) / setting.dt * highest * highest;
-        let potentials = stiffness * gap * gap;
+        // A contact spring stretches until it bears the threshold, also with a dead load at the start.
+        let contact = match model.friction {
+            Friction::ContactSprings(springs) => 0.5 * bears * bears / springs.stiffness,
+            _ => 0.0,
+        };
+        let potentials = stiffness * gap * gap + contact;
         let n = (model.n_blocks() * (1 + sheets.len())) as f64;
         Self {
             force,
