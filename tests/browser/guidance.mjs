@@ -213,6 +213,16 @@ test('what the page shows is explained: letters, numbers, the percentage', async
   for (const what of ['headline', 'percent', 'sliding', 'letters', 'front']) await lab.reads('meanings', new RegExp(say(`meaning_${what}_is`).replace(/[.*+?^${}()|[\]\\]/g, '\\$&')));
 });
 
+test('instants that come after the last points of a curve have their letters', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  assert.equal(await lab.find('#curve-letters').isVisible(), false);
+  await lab.page.evaluate(async () => {
+    const { put, state } = await import('./store.js');
+    put('numbers', { ...state.numbers, instants: { A: 1 } });
+  });
+  await until(() => lab.find('#curve-letters').isVisible(), 'what letters are');
+});
+
 test('a notice lies on neither the colour bar nor a button, and goes by itself', async (t) => {
   const lab = await open(t, { toml: SMALL });
   await lab.page.evaluate(() => {
