@@ -3,6 +3,10 @@
 #include <bit>
 #include <cmath>
 
+namespace emulated {
+const int LANES = 32;
+}
+
 #ifdef THREADS
 #include "threads.h"
 #else

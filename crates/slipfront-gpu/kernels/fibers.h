@@ -8,8 +8,6 @@
 #include <vector>
 
 namespace emulated {
-const int LANES = 32;
-
 struct Fiber {
     std::unique_ptr<char[]> stack;
     // Where it begins, and where it goes on.

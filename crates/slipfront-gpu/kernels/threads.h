@@ -10,8 +10,6 @@
 #include <vector>
 
 namespace emulated {
-const int LANES = 32;
-
 struct GroupOfThreads {
     int count;
     std::barrier<> all{count};
