@@ -75,6 +75,9 @@ pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
 /// 10^7 blocks have rounding errors of 10^-9.
 const DISTINCT: f64 = 1e-6;
 
+/// Least distance by which a clipped outline extends beyond an edge, for the same rounding errors.
+const TOUCHING: f64 = 1e-8;
+
 /// The largest distance between neighbouring lines of a grid.
 fn largest_gap(lines: &[f64]) -> f64 {
     let gaps = lines.windows(2).map(|pair| pair[1] - pair[0]);
@@ -142,8 +145,9 @@ impl<'a> Mask<'a> {
         for [columns, heights] in &outlines.centers {
             let gap = largest_gap(columns);
             for &center in heights {
-                let [low, high] = outlines.bounds(1, center);
+                let [low, high] = outlines.heights(center);
                 let rows = blocks_between(low, high, self.lattice.ny, self.lattice.edges[1]);
+                let [bottom, top] = outlines.bounds(1, center);
                 let mut sweep = outlines.at_height(center);
                 for row in rows.clone() {
                     let Some(meshed_row) = self.meshed_row(row) else {
@@ -151,7 +155,7 @@ impl<'a> Mask<'a> {
                     };
                     watch(done + (row - rows.start) as f64 / rows.len() as f64)?;
                     if self.covers && self.full[meshed_row] {
-                        self.overlaps = true;
+                        self.overlaps |= (bottom..top).contains(&(row as f64 + 0.5));
                         continue;
                     }
                     sweep.intersect(row as f64 + 0.5, &mut crossings);
@@ -239,9 +243,7 @@ impl<'a> Mask<'a> {
         for shift in groove.shifts(grids) {
             let [[left, bottom], [right, top]] = groove.bounds(self.lattice, shift);
             for row in blocks_between(bottom, top, ny, edges[1]) {
-                if (bottom..top).contains(&(row as f64 + 0.5)) {
-                    self.fill(row, blocks_between(left, right, nx, edges[0]));
-                }
+                self.fill(row, blocks_between(left, right, nx, edges[0]));
             }
             is_clipped |= self.is_beyond(0, &[left, right]) || self.is_beyond(1, &[bottom, top]);
         }
@@ -299,7 +301,8 @@ impl<'a> Mask<'a> {
     /// Whether any of these coordinates lies beyond a free edge.
     fn is_beyond(&self, axis: usize, coordinates: &[f64]) -> bool {
         let size = [self.lattice.nx, self.lattice.ny][axis] as f64;
-        let is_beyond = |at: &f64| at.is_finite() && !(0.0..=size).contains(at);
+        // An outline that touches the edge is cut by rounding errors alone.
+        let is_beyond = |at: &f64| at.is_finite() && !(-TOUCHING..=size + TOUCHING).contains(at);
         self.lattice.edges[axis] == Edges::Free && coordinates.iter().any(is_beyond)
     }
 
@@ -330,12 +333,19 @@ impl<'a> Mask<'a> {
 /// Blocks along one axis with their centre k + 1/2 in [from, to); outside the lattice only along a periodic
 /// axis.
 fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> Range<isize> {
-    let (mut first, mut end) = ((from - 0.5).ceil(), (to - 0.5).ceil());
+    let (mut first, mut end) = (first_from(from), first_from(to));
     if from.is_infinite() || to.is_infinite() || edges == Edges::Free {
         first = first.max(0.0);
         end = end.min(count as f64);
     }
     first as isize..end.max(first) as isize
+}
+
+/// The first block with its centre k + 1/2 at or above `from`.
+fn first_from(from: f64) -> f64 {
+    let first = from.floor();
+    // A centre is exact, while `from - 0.5` might be rounded to a whole number.
+    if first + 0.5 >= from { first } else { first + 1.0 }
 }
 
 #[cfg(test)]
@@ -364,6 +374,87 @@ mod tests {
             w,
             across: false,
             rotate: 0.0,
+        }
+    }
+
+    /// A circle that passes through the centres of twelve blocks, which belong outside: 16 blocks whichever
+    /// way it is turned, on every lattice that it is moved over.
+    #[test]
+    fn a_turned_circle_covers_the_same_blocks() {
+        let lattice = Lattice::free(12, 12);
+        for rotate in [0.0, 37.2, 200.13624746953943, 359.0] {
+            for (s, across) in [(1, false), (1, true), (4, false)] {
+                let circle = Cavity {
+                    center: [5.5, 6.0],
+                    lambda: 2.5,
+                    s,
+                    w: 0.0,
+                    across,
+                    rotate,
+                };
+                assert_eq!(count(&lattice, Shape::Cavity(circle)), 16, "{circle:?}");
+            }
+        }
+    }
+
+    /// Every block is inside an ellipse if its centre is, by the formula alone: rows and columns are only
+    /// where to look. The ellipses touch the centres of blocks at their ends, in any direction.
+    #[test]
+    fn an_ellipse_covers_what_its_formula_says() {
+        let lattice = Lattice::free(40, 40);
+        for k in 0..720 {
+            let ellipse = Cavity {
+                center: [20.0 + 0.5 * f64::from(k % 2), 20.5],
+                lambda: f64::from(2 + k % 7),
+                w: [0.5, 0.25, -0.5, 0.0][k as usize % 4],
+                rotate: 0.5 * f64::from(k),
+                ..cavity(1, 0.0, 1.0)
+            };
+            let outlines = ellipse.outlines(&grids(&[]));
+            let meshed = mesh(&lattice, &[Shape::Cavity(ellipse).into()]);
+            for (b, &textured) in meshed.textured.iter().enumerate() {
+                let (i, j) = lattice.column_row(b);
+                let place = [i as f64 + 0.5, j as f64 + 0.5];
+                let sweep = outlines.at_height(ellipse.center[1]);
+                assert_eq!(
+                    textured,
+                    sweep.contains(ellipse.center[0], place),
+                    "{ellipse:?} at {place:?}"
+                );
+            }
+        }
+    }
+
+    /// Strips along both axes have their bounds by one rule, which is exact one last digit from a centre.
+    #[test]
+    fn strips_begin_at_the_same_centres_along_both_axes() {
+        for edge in [-0.5, 0.5, 3.5, 4.5] {
+            for edge in [f64::next_down(edge), edge, f64::next_up(edge)] {
+                let first = (-2..6).map(f64::from).find(|k| k + 0.5 >= edge);
+                assert_eq!(Some(first_from(edge)), first, "{edge:e}");
+            }
+        }
+    }
+
+    /// A circle that touches free edges is not clipped, however its bounds are rounded.
+    #[test]
+    fn an_outline_that_touches_an_edge_is_whole() {
+        let lattice = Lattice::free(50, 50);
+        for rotate in 0..90 {
+            let ellipse = Cavity {
+                lambda: 20.0,
+                w: 0.25,
+                rotate: f64::from(rotate),
+                ..cavity(1, 0.0, 1.0)
+            };
+            let outlines = ellipse.outlines(&grids(&[]));
+            let reach = [0, 1].map(|axis| outlines.bounds(axis, 0.0)[1]);
+            let touching = |by: f64| Cavity {
+                center: reach.map(|reach| reach - by),
+                ..ellipse
+            };
+            let clipped = |by| mesh(&lattice, &[Shape::Cavity(touching(by)).into()]).clipped;
+            assert_eq!((clipped(1e-9), clipped(1e-6)), (vec![], vec![0]), "{rotate}");
         }
     }
 

@@ -21,6 +21,20 @@ pub(super) enum Curve {
     Polygon(Vec<Vertex>),
 }
 
+impl Curve {
+    /// Distance from the curve within which [`Sweep::contains`] decides about a point, far above the rounding
+    /// errors of 10^-9 of coordinates of up to 10^7 blocks. A polygon needs none: it is cut where its corners
+    /// are.
+    fn margin(&self) -> f64 {
+        match self {
+            Self::Ellipse {
+                semi_axes: [a, b], ..
+            } => 1e-8 * (1.0 + a.abs().max(b.abs())),
+            Self::Polygon(_) => 0.0,
+        }
+    }
+}
+
 /// A coordinate relative to the centre, as two terms that are added to it one after the other.
 type Terms = [f64; 2];
 
@@ -89,6 +103,13 @@ impl Outlines {
                 })
             }
         }
+    }
+
+    /// Heights between which horizontal lines may cut the outline with its centre at this height: its bounds
+    /// with [`margin`](Curve::margin), since [`Sweep`] alone decides which points are inside.
+    pub(super) fn heights(&self, center: f64) -> [f64; 2] {
+        let ([low, high], margin) = (self.bounds(1, center), self.curve.margin());
+        [low - margin, high + margin]
     }
 
     /// The outlines with centres at this height, to be cut by lines from the lowest to the highest.
@@ -188,7 +209,9 @@ impl Sweep<'_> {
                 semi_axes: [a, b],
                 axis: [c, s],
             } => {
-                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic inequality in x.
+                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic inequality in x. The ellipse is
+                // slightly larger here: `contains` decides about a centre on the outline.
+                let [a, b] = [a, b].map(|semi_axis| semi_axis + self.curve.margin());
                 let dy = y - self.center;
                 let (p, q, r) = (c / a, s / b, dy * s / a);
                 let t = dy * c / b;
@@ -197,10 +220,8 @@ impl Sweep<'_> {
                 let root = half * half - square * (r * r + t * t - 1.0);
                 if root > 0.0 {
                     let root = root.sqrt();
-                    let (enter, leave) = ((-half - root) / square, (-half + root) / square);
-                    // Slightly wider: `contains` decides about a centre on the outline.
-                    let margin = 1e-9 * a.abs().max(b.abs());
-                    crossings.extend([[enter, -margin], [leave, margin]].map(Crossing::at));
+                    let ends = [(-half - root) / square, (-half + root) / square];
+                    crossings.extend(ends.map(|x| Crossing::at([x, 0.0])));
                 }
             }
             Curve::Polygon(_) => {

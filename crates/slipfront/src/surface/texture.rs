@@ -224,7 +224,8 @@ impl Cavity {
     }
 
     pub(super) fn curve(&self) -> Curve {
-        let axis = unit_vector(self.rotate);
+        // A turned circle is the same circle, to the last bit.
+        let axis = unit_vector(if self.w == 0.0 { 0.0 } else { self.rotate });
         let swap = |p: [f64; 2]| if self.across { [p[1], p[0]] } else { p };
         if self.s == 1 || self.w == 0.0 {
             let w = if self.s == 1 { self.w } else { 0.0 };
