@@ -8,7 +8,8 @@ use std::process::Command;
 
 /// Files that determine the numbers of a run, relative to this crate; changes elsewhere in the checkout do
 /// not mark the revision as changed.
-const SOURCES: [&str; 5] = [
+const SOURCES: [&str; 6] = [
+    "../slipfront-kernel/src",
     "../slipfront/src",
     "../slipfront-case/src",
     "src",

@@ -1,5 +1,6 @@
 //! Limits on the textures of a design, and the conversion of a draft to a legal texture.
 
+use slipfront::opening;
 use slipfront_base::number_format::{are, count as count_of};
 
 use crate::patch::PatchDraft;
@@ -74,10 +75,10 @@ impl Limits {
         }
         // Few drafts have parts that are too narrow, so the width is determined only for those.
         let narrow = |set: &[bool], least| {
-            if grid.lattice.opened(set, least) == set {
+            if opening::opened(&grid.lattice, set, least) == set {
                 None
             } else {
-                grid.lattice.width(set)
+                opening::width(&grid.lattice, set)
             }
         };
         if let Some(found) = narrow(textured, self.feature) {
@@ -106,7 +107,7 @@ impl Limits {
             return Err(Illegal::Forbidden { blocks });
         }
         if let Some(most) = self.max_features {
-            let found = grid.lattice.n_pieces(textured);
+            let found = opening::n_pieces(&grid.lattice, textured);
             if found > most {
                 return Err(Illegal::Features { found, most });
             }
@@ -191,16 +192,16 @@ impl Limits {
 
     /// A set after too narrow parts are removed and too narrow gaps are filled.
     fn smoothed(&self, grid: &SliderBlocks, set: &[bool]) -> Vec<bool> {
-        let opened = grid.lattice.opened(set, self.feature);
+        let opened = opening::opened(&grid.lattice, set, self.feature);
         if self.gap <= 1 {
             return opened;
         }
-        let contact = grid.lattice.opened(&grid.others(&opened), self.gap);
+        let contact = opening::opened(&grid.lattice, &grid.others(&opened), self.gap);
         let closed = grid.others(&contact);
         if closed == opened {
             return opened;
         }
-        grid.lattice.opened(&closed, self.feature)
+        opening::opened(&grid.lattice, &closed, self.feature)
     }
 
     /// The block at the same place in the first cell.

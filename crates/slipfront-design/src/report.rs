@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
+use slipfront::opening;
 use slipfront_base::number_format::{count, four_digits, with_half_width, with_si_prefix};
 use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
@@ -174,11 +175,11 @@ impl Report<'_> {
     fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
         let grid = &design.evaluator.grid;
         let size = case.scales.block_size;
-        let width = |set: &[bool]| grid.lattice.width(set).map(|blocks| blocks as f64 * size);
+        let width = |set: &[bool]| opening::width(&grid.lattice, set).map(|blocks| blocks as f64 * size);
         let area = 0.01 * grid.percent(texture) * grid.n_blocks() as f64 * size * size;
         AsMeshed {
             coverage_percent: grid.percent(texture),
-            features: grid.lattice.n_pieces(texture),
+            features: opening::n_pieces(&grid.lattice, texture),
             feature_m: width(texture),
             gap_m: width(&grid.others(texture)),
             writing_length_m: self.file.line_spacing().map(|spacing| area / spacing),

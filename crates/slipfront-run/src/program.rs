@@ -54,13 +54,14 @@ pub fn in_words(version: &str, revision: Option<&str>) -> String {
     }
 }
 
-/// The identity of the build: version, and a hash of the sources of slipfront-base, slipfront, slipfront-case
-/// and slipfront-run and of the locked versions of the crates they use. Builds with the same identity give
-/// the same bits, whatever program they are part of.
+/// The identity of the build: version, and a hash of the sources of slipfront-base, slipfront-kernel,
+/// slipfront, slipfront-case and slipfront-run and of the locked versions of the crates they use. Builds with
+/// the same identity give the same bits, whatever program they are part of.
 pub fn this_build() -> &'static str {
     static BUILD: LazyLock<String> = LazyLock::new(|| {
         let hashes = [
             slipfront_base::SOURCE_HASH,
+            slipfront::KERNEL_SOURCE_HASH,
             slipfront::SOURCE_HASH,
             slipfront_case::SOURCE_HASH,
             env!("SLIPFRONT_SOURCE_HASH"),

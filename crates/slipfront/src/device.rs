@@ -9,16 +9,16 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::Arc;
 
+use slipfront_kernel::MotionBounds;
 use thiserror::Error;
 
-use crate::checkpoint::MotionBounds;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 
 /// First-slip step of a block that has not slipped in contact.
-pub const NEVER: u32 = u32::MAX;
+pub use slipfront_kernel::NEVER;
 
 /// Computes the steps of lattices.
 pub trait Device: fmt::Debug + Send + Sync {

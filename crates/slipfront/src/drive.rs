@@ -4,10 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
 use crate::lattice::{K_DIAGONAL, K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::vector_field::{length, unit_vector};
+use slipfront_kernel::fixed_point::sum_over;
 
 /// Drive of the slider.
 #[derive(Clone, Debug, PartialEq)]

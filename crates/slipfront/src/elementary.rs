@@ -66,8 +66,16 @@ pub(crate) fn ln(x: f64) -> f64 {
     let n = f64::from_bits((bits >> 52) | TO_WHOLE.to_bits()) - (TO_WHOLE + 1023.0);
     let m = f64::from_bits((bits & MANTISSA).wrapping_add(LEAST));
     let s = (m - 1.0) / (m + 1.0);
-    let c: [f64; 10] = std::array::from_fn(|k| 2.0 / (2 * k + 1) as f64);
-    n * LN_2[0] + (n * LN_2[1] + s * polynomial(c, s * s))
+    const C: [f64; 10] = {
+        let mut c = [0.0; 10];
+        let mut k = 0;
+        while k < 10 {
+            c[k] = 2.0 / (2 * k + 1) as f64;
+            k += 1;
+        }
+        c
+    };
+    n * LN_2[0] + (n * LN_2[1] + s * polynomial(C, s * s))
 }
 
 /// Bound on x below which [`small_mean_decay`] has enough terms to be exact to the last digit.
@@ -84,7 +92,8 @@ pub(crate) fn mean_decay(x: f64) -> f64 {
 /// The mean `(1 - e^-x)/x` for x below [`SMALL_DECAY`], by a series.
 #[inline(always)]
 pub(crate) fn small_mean_decay(x: f64) -> f64 {
-    let c: [f64; 14] = std::array::from_fn(|k| INVERSE_FACTORIALS[k + 1]);
+    let mut c = [0.0; 14];
+    c.copy_from_slice(&INVERSE_FACTORIALS[1..15]);
     polynomial(c, -x)
 }
 

@@ -23,17 +23,15 @@
 //! ```
 
 pub mod checkpoint;
-pub mod communicator;
 pub mod device;
 pub mod exact_solutions;
 pub mod kernel;
-pub mod lattice;
 pub mod observe;
+pub mod opening;
 pub mod parallel;
 pub mod scales;
 pub mod stability;
 pub mod surface;
-#[cfg(feature = "testing")]
 pub mod testing;
 
 mod clock;
@@ -42,16 +40,13 @@ mod dead_load;
 mod drive;
 mod elementary;
 mod error;
-mod fixed_point;
 mod forces;
 mod friction;
 mod measure;
 mod model;
 mod moduli;
 mod onset;
-mod opening;
 mod position_bins;
-mod reductions;
 mod sheets;
 mod simulation;
 mod slider;
@@ -60,6 +55,8 @@ mod state;
 mod stop;
 mod totals;
 mod vector_field;
+
+pub use slipfront_kernel::{communicator, lattice};
 
 pub use checkpoint::Checkpoint;
 pub use communicator::Communicator;
@@ -84,3 +81,5 @@ pub use vector_field::VectorField;
 
 /// BLAKE3 hash of the sources of this crate. Programs with the same hash give the same bits.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");
+/// BLAKE3 hash of the sources of the vector kernel.
+pub use slipfront_kernel::SOURCE_HASH as KERNEL_SOURCE_HASH;

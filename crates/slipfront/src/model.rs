@@ -7,13 +7,13 @@ use std::sync::Arc;
 use crate::communicator::Communicator;
 use crate::dead_load::DeadLoad;
 use crate::drive::{Drive, Loading, Program};
-use crate::fixed_point::sum_over;
 use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice, SpringStiffness};
 use crate::sheets::{self, Sheet};
 use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::{dot, length};
+use slipfront_kernel::fixed_point::sum_over;
 
 /// Path of the drive to the onset of sliding where all blocks are in contact, in units of displacement:
 /// t_s* = 2.5/V* (Eq. 12).

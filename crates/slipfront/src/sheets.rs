@@ -9,16 +9,7 @@
 //! h_k m u_k'' = h_k F_c(u_k) + g_k (u_k-1 - u_k) + g_k+1 (u_k+1 - u_k) - h_k m Omega u_k'
 //! ```
 
-/// A sheet above the lowest one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet {
-    /// Thickness `h_k` over that of the lowest sheet: the stiffness of the springs between its blocks and the
-    /// mass of its blocks, relative to the lowest sheet.
-    pub thickness: f64,
-    /// Stiffness `g_k` of the spring between each of its blocks and the block below, in units of `E h` with
-    /// the thickness h of the lowest sheet.
-    pub coupling: f64,
-}
+pub use slipfront_kernel::Sheet;
 
 /// Mass of the blocks of all sheets at one place, in units of that of the lowest sheet.
 pub(crate) fn mass(sheets: &[Sheet]) -> f64 {

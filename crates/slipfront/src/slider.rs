@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
 use crate::lattice::{Edge, Lattice, harmonic_mean};
+use slipfront_kernel::fixed_point::sum_over;
 
 /// Heterogeneous properties of the slider; arrays have one value per block. Without any of them, as in the
 /// paper, all blocks are equal.

@@ -3,7 +3,6 @@
 use crate::checkpoint::BlockColumn;
 use crate::clock::{Clock, Rest};
 use crate::communicator::Communicator;
-use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
@@ -11,6 +10,7 @@ use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::dot;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// A run at one instant t_n. Forces, friction and contact are those of the update that starts at t_n.
 pub struct Snapshot<'a> {

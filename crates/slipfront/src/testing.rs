@@ -1,5 +1,7 @@
 //! Helpers for tests of slipfront and of crates that use it: ranks that are threads, private parts of the
 //! fused kernel, and tests that run in their own process.
+//!
+//! It is in every build, so that the command and the tests are compiled from one physics.
 
 use std::process::Command;
 use std::sync::mpsc::{Receiver, Sender, channel};

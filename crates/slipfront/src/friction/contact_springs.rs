@@ -5,14 +5,14 @@ use std::ops::Range;
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 
-use super::integrator::Integrator;
 use super::needs::Needs;
 use crate::dead_load::DeadLoad;
-use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, dot};
+use slipfront_kernel::Integrator;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// Springs between every block in contact and the substrate: `F_f = -k_t (u - a)`, where the anchor `a` moves
 /// when `k_t |u - a|` exceeds the static threshold.

@@ -6,27 +6,26 @@
 
 mod contact_springs;
 mod coulomb;
-mod integrator;
 mod needs;
 mod rate_and_state;
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
+use slipfront_kernel::Integrator;
 
 pub use self::contact_springs::{AfterBreak, ContactSprings};
 pub use self::coulomb::*;
-pub(crate) use self::integrator::{Integrator, SMALLEST_VELOCITY};
 pub use self::needs::Needs;
 pub use self::rate_and_state::RateAndState;
 
 use self::contact_springs::SpringContact;
 use self::rate_and_state::StateContact;
 use crate::dead_load::DeadLoad;
-use crate::fixed_point::RunningSum;
 use crate::forces::Forces;
 use crate::state::State;
 use crate::surface::Surface;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// The law of friction of all blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,10 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use slipfront_kernel::{SeriesNumbers, Springs};
+
 use super::engine::Engine;
-use super::fused::{Fused, LargestFactors, SeriesNumbers, blocks_differ};
+use super::fused::{Fused, blocks_differ, largest_factors};
 use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
 use crate::communicator::Alone;
@@ -12,11 +14,11 @@ use crate::device::{
     CpuOnly, DeviceLattice, EnergySteps, Equations, FallingStrength, Motion, NEVER, SlidingCounts,
     StepRecord, flag,
 };
-use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
+use slipfront_kernel::Integrator;
 
 impl DeviceLattice {
     /// Checks that the equations of a device cover a model.
@@ -37,7 +39,7 @@ impl DeviceLattice {
             (model.slider.is_viscous(), "internal viscosity is"),
             (model.drive.rotation.is_some(), "a drive that rotates is"),
             (
-                blocks_differ(model, &LargestFactors::of(model, &Alone)),
+                blocks_differ(model, &largest_factors(model, &Alone)),
                 "sliders whose blocks, drive springs or dead loads differ are",
             ),
         ];
@@ -88,7 +90,7 @@ impl DeviceLattice {
                 velocity_to_force: integrator.velocity_to_force,
                 stiffness: [model.springs.straight, model.springs.diagonal],
                 series: series.coefficients,
-                strain_limits: series.strain_limits,
+                strain_limits: Springs::strain_limits(),
                 n_blocks: slider.sum_of_drive_springs(lattice),
                 fall_length: law.map_or(-1.0, |law| law.length),
                 inverse_fall_length: law.map_or(-1.0, |law| 1.0 / law.length),

@@ -1,16 +1,17 @@
 //! The interface of every kernel.
 
 use super::block::{Block, Field};
-use crate::checkpoint::{BlockColumn, MotionBounds};
+use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::device::{Device, DeviceError, DeviceLattice};
-use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::Totals;
+use slipfront_kernel::MotionBounds;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// Receives consecutive blocks: the first, whether each slides, and their velocities half a step later.
 pub(crate) type TakeSliding<'a> = &'a mut dyn FnMut(usize, &[bool], [&[f64]; 2]);

@@ -15,7 +15,7 @@ use super::block::{Block, Field};
 use super::device_lattice::gcd;
 use super::engine::{Engine, TakeSliding};
 use super::fused::Fused;
-use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::{Clock, Rest};
 use crate::communicator::Communicator;
 use crate::device::{Device, DeviceError, DeviceLattice, EnergySteps, StepRecord};
@@ -23,6 +23,7 @@ use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::Totals;
+use slipfront_kernel::MotionBounds;
 
 /// The steps of a lattice that a device computes.
 #[derive(Debug)]

@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use slipfront_kernel::fixed_point::sum_over;
+use slipfront_kernel::reductions;
+
 use super::observer::Observer;
 use crate::error::RunError;
-use crate::fixed_point::sum_over;
 use crate::model::Model;
-use crate::reductions;
 use crate::snapshot::Snapshot;
 use crate::vector_field::dot;
 

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::coefficients::Coefficients;
 use crate::communicator::Communicator;
-use crate::fixed_point::{FixedPoint, join, split};
 use crate::parallel::*;
+use slipfront_kernel::fixed_point::{FixedPoint, join, split};
 
 /// Values for the whole surface, equal to the last bit on every rank and for any number of ranks.
 #[derive(Clone, Copy, Debug, PartialEq)]

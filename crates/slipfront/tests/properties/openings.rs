@@ -1,7 +1,7 @@
 //! Openings of sets of blocks by squares, their widths and their pieces.
 
 use proptest::prelude::*;
-use slipfront::{Edges, Lattice};
+use slipfront::{Edges, Lattice, opening};
 
 /// The definition of an opening, square by square.
 fn opened_by_squares(lattice: &Lattice, set: &[bool], side: usize) -> Vec<bool> {
@@ -39,7 +39,7 @@ proptest! {
         } else {
             opened_by_squares(&lattice, &set, side)
         };
-        prop_assert_eq!(lattice.opened(&set, side), expected);
+        prop_assert_eq!(opening::opened(&lattice, &set, side), expected);
     }
 }
 
@@ -55,14 +55,17 @@ fn drawn<const N: usize>(rows: [&str; N]) -> Vec<bool> {
 fn slivers_at_edges_are_seen() {
     let lattice = Lattice::free(5, 5);
     let set = drawn(["#....", "#....", "#.###", "#.###", "#.###"]);
-    assert_eq!(lattice.width(&set), Some(1));
-    assert_eq!(lattice.n_pieces(&set), 2);
-    let opened = lattice.opened(&set, 3);
+    assert_eq!(opening::width(&lattice, &set), Some(1));
+    assert_eq!(opening::n_pieces(&lattice, &set), 2);
+    let opened = opening::opened(&lattice, &set, 3);
     assert_eq!(opened, drawn([".....", ".....", "..###", "..###", "..###"]));
-    assert_eq!(lattice.width(&opened), Some(3));
+    assert_eq!(opening::width(&lattice, &opened), Some(3));
     // Around a periodic axis, the strip is a part of the set at the opposite edge.
     let around = Lattice::with_edges(5, 3, [Edges::Periodic, Edges::Free]);
     let set = drawn(["##..#"; 3]);
-    assert_eq!((around.width(&set), around.n_pieces(&set)), (Some(3), 1));
-    assert_eq!(around.width(&[false; 15]), None);
+    assert_eq!(
+        (opening::width(&around, &set), opening::n_pieces(&around, &set)),
+        (Some(3), 1)
+    );
+    assert_eq!(opening::width(&around, &[false; 15]), None);
 }

@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use super::reading::{BlockState, LawReading, Update};
 use crate::forces::{part, part_mut};
-use crate::friction::integrator::Integrator;
 use crate::friction::needs::Needs;
 use crate::surface::Surface;
 use crate::vector_field::VectorField;
+use slipfront_kernel::Integrator;
 
 /// An interface under the edge of an upright sheet. Friction acts on a block along x alone. Along y the block
 /// moves freely, or rests on a foundation with springs that hold it up against its load:

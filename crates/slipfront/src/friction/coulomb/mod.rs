@@ -21,12 +21,12 @@ use self::reading::{Literal, Projection, Reversal};
 use self::slip_weakening::Slipped;
 use self::update::friction_forces;
 use self::weakening::Weakened;
-use super::integrator::Integrator;
 use super::needs::Needs;
 use crate::forces::Forces;
 use crate::state::State;
 use crate::surface::{Adhesion, Surface};
 use crate::vector_field::VectorField;
+use slipfront_kernel::Integrator;
 
 /// Coulomb friction (Eq. 4), and the dependences of its thresholds.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::friction::integrator::Integrator;
 use crate::vector_field::{add, dot, length};
+use slipfront_kernel::Integrator;
 
 /// Reading of Eq. 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

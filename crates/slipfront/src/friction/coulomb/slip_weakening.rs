@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use slipfront_kernel::FallWithSlip;
+
 use crate::forces::part;
 use crate::friction::needs::Needs;
 use crate::vector_field::{VectorField, length};
@@ -35,6 +37,15 @@ impl SlipWeakening {
         }
     }
 
+    /// The law as the fused kernel knows it.
+    #[inline(always)]
+    pub(crate) fn fall(&self) -> FallWithSlip {
+        FallWithSlip {
+            length: self.length,
+            healing_time: self.healing_time,
+        }
+    }
+
     /// Share of the fall of strength that is left after a slip, `max(0, 1 - s/D_c)`.
     ///
     /// ```
@@ -43,7 +54,7 @@ impl SlipWeakening {
     /// ```
     #[inline(always)]
     pub fn share_left(&self, slip: f64) -> f64 {
-        (1.0 - slip * (1.0 / self.length)).max(0.0)
+        self.fall().share_left(slip)
     }
 
     /// Share of the largest weakening energy, `(S - K) D_c/2`, that has been lost after a slip:
@@ -58,8 +69,7 @@ impl SlipWeakening {
     /// ```
     #[inline(always)]
     pub fn share_lost(&self, slip: f64) -> f64 {
-        let left = self.share_left(slip);
-        1.0 - left * left
+        self.fall().share_lost(slip)
     }
 
     /// Energy that weakening has dissipated in a block with a fall of strength of `drop = max(S - K, 0)`, the
@@ -75,8 +85,7 @@ impl SlipWeakening {
     /// Whether a stuck block that last moved at `moved_at` has its full strength again at `time_star`.
     #[inline(always)]
     pub(crate) fn heals(&self, moved_at: f64, time_star: f64) -> bool {
-        self.healing_time
-            .is_some_and(|healing_time| time_star - moved_at >= healing_time)
+        self.fall().heals(moved_at, time_star)
     }
 }
 

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::reading::{BlockState, LawReading};
 use crate::forces::{Forces, part, part_mut};
-use crate::friction::integrator::Integrator;
 use crate::state::State;
+use slipfront_kernel::Integrator;
 
 /// Applies the friction law to some blocks: finds friction, velocities and the blocks that slide from
 /// thresholds, velocities and forces.

@@ -5,14 +5,14 @@ mod slide;
 use std::ops::Range;
 
 use self::slide::{LARGE, Sliding, slide};
-use super::integrator::Integrator;
 use super::needs::Needs;
 use crate::elementary::{SMALL_DECAY, exp, ln, mean_decay, small_mean_decay};
-use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, length};
+use slipfront_kernel::Integrator;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// Rate-and-state friction with Dieterich's law for the state:
 /// `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients over `mu_s`.

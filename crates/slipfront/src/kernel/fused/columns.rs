@@ -2,168 +2,176 @@
 
 use std::ops::Range;
 
-use super::band::Band;
-use super::layout::{Layout, TILE};
-use super::vector::LANES;
+use slipfront_kernel::{Band, LANES, Layout, NEVER, TILE};
+
 use crate::checkpoint::BlockColumn;
-use crate::device::NEVER;
 
-impl Band {
-    /// Sets the values of a column of a checkpoint from block `first` on, for the blocks of the band.
-    pub(super) fn set_column(
-        &mut self,
-        layout: &Layout,
-        dt_star: f64,
-        column: BlockColumn,
-        first: usize,
-        values: &[f64],
-    ) {
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let values = &values[of_values];
-            let with_halo = self.halo + own.start..self.halo + own.end;
-            match column {
-                BlockColumn::DisplacementX => self.displacement.x[with_halo].copy_from_slice(values),
-                BlockColumn::DisplacementY => self.displacement.y[with_halo].copy_from_slice(values),
-                BlockColumn::VelocityX => self.velocity.x[own].copy_from_slice(values),
-                BlockColumn::VelocityY => self.velocity.y[own].copy_from_slice(values),
-                BlockColumn::FirstSlip => {
-                    for (step, time_star) in self.first_slip[own].iter_mut().zip(values) {
-                        // An integer, except for the rounding of the product in the checkpoint and of this
-                        // quotient.
-                        let number = (time_star / dt_star).round();
-                        *step = if number.is_nan() { NEVER } else { number as u32 };
-                    }
+/// Sets the values of a column of a checkpoint from block `first` on, for the blocks of the band.
+pub(super) fn set_column(
+    band: &mut Band,
+    layout: &Layout,
+    dt_star: f64,
+    column: BlockColumn,
+    first: usize,
+    values: &[f64],
+) {
+    for [of_values, own] in common(band, layout, first, values.len()) {
+        let values = &values[of_values];
+        let with_halo = band.halo + own.start..band.halo + own.end;
+        match column {
+            BlockColumn::DisplacementX => band.displacement.x[with_halo].copy_from_slice(values),
+            BlockColumn::DisplacementY => band.displacement.y[with_halo].copy_from_slice(values),
+            BlockColumn::VelocityX => band.velocity.x[own].copy_from_slice(values),
+            BlockColumn::VelocityY => band.velocity.y[own].copy_from_slice(values),
+            BlockColumn::FirstSlip => {
+                for (step, time_star) in band.first_slip[own].iter_mut().zip(values) {
+                    // An integer, except for the rounding of the product in the checkpoint and of this
+                    // quotient.
+                    let number = (time_star / dt_star).round();
+                    *step = if number.is_nan() { NEVER } else { number as u32 };
                 }
             }
         }
     }
+}
 
-    /// Writes to `values` a column of a checkpoint from block `first` on, for the blocks of the band.
-    pub(super) fn read_column(
-        &self,
-        layout: &Layout,
-        dt_star: f64,
-        column: BlockColumn,
-        first: usize,
-        values: &mut [f64],
-    ) {
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let values = &mut values[of_values];
-            let with_halo = self.halo + own.start..self.halo + own.end;
-            match column {
-                BlockColumn::DisplacementX => values.copy_from_slice(&self.displacement.x[with_halo]),
-                BlockColumn::DisplacementY => values.copy_from_slice(&self.displacement.y[with_halo]),
-                BlockColumn::VelocityX => values.copy_from_slice(&self.velocity.x[own]),
-                BlockColumn::VelocityY => values.copy_from_slice(&self.velocity.y[own]),
-                BlockColumn::FirstSlip => {
-                    for (time_star, &step) in values.iter_mut().zip(&self.first_slip[own]) {
-                        *time_star = if step == NEVER {
-                            f64::NAN
-                        } else {
-                            f64::from(step) * dt_star
-                        };
-                    }
+/// Writes to `values` a column of a checkpoint from block `first` on, for the blocks of the band.
+pub(super) fn read_column(
+    band: &Band,
+    layout: &Layout,
+    dt_star: f64,
+    column: BlockColumn,
+    first: usize,
+    values: &mut [f64],
+) {
+    for [of_values, own] in common(band, layout, first, values.len()) {
+        let values = &mut values[of_values];
+        let with_halo = band.halo + own.start..band.halo + own.end;
+        match column {
+            BlockColumn::DisplacementX => values.copy_from_slice(&band.displacement.x[with_halo]),
+            BlockColumn::DisplacementY => values.copy_from_slice(&band.displacement.y[with_halo]),
+            BlockColumn::VelocityX => values.copy_from_slice(&band.velocity.x[own]),
+            BlockColumn::VelocityY => values.copy_from_slice(&band.velocity.y[own]),
+            BlockColumn::FirstSlip => {
+                for (time_star, &step) in values.iter_mut().zip(&band.first_slip[own]) {
+                    *time_star = if step == NEVER {
+                        f64::NAN
+                    } else {
+                        f64::from(step) * dt_star
+                    };
                 }
             }
         }
     }
+}
 
-    /// Sets a column of the memory of the law of friction from block `first` on, for the blocks of the band.
-    pub(super) fn set_memory(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let memory = self
-                .thresholds
-                .as_mut()
-                .and_then(|thresholds| thresholds.column_mut(column));
-            if let Some(memory) = memory {
-                memory[own].copy_from_slice(&values[of_values]);
-            }
+/// Sets a column of the memory of the law of friction from block `first` on, for the blocks of the band.
+pub(super) fn set_memory(band: &mut Band, layout: &Layout, column: usize, first: usize, values: &[f64]) {
+    for [of_values, own] in common(band, layout, first, values.len()) {
+        let memory = band
+            .thresholds
+            .as_mut()
+            .and_then(|thresholds| thresholds.column_mut(column));
+        if let Some(memory) = memory {
+            memory[own].copy_from_slice(&values[of_values]);
         }
     }
+}
 
-    /// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, for the
-    /// blocks of the band.
-    pub(super) fn read_memory(
-        &self,
-        layout: &Layout,
-        time_star: f64,
-        column: usize,
-        first: usize,
-        values: &mut [f64],
-    ) {
-        let Some(thresholds) = &self.thresholds else {
-            return;
+/// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, for the
+/// blocks of the band.
+pub(super) fn read_memory(
+    band: &Band,
+    layout: &Layout,
+    time_star: f64,
+    column: usize,
+    first: usize,
+    values: &mut [f64],
+) {
+    let Some(thresholds) = &band.thresholds else {
+        return;
+    };
+    for [of_values, own] in common(band, layout, first, values.len()) {
+        for (value, k) in values[of_values].iter_mut().zip(own) {
+            let is_moving = band.velocity.at(k) != [0.0, 0.0];
+            *value = thresholds.memory(column, k, is_moving, time_star);
+        }
+    }
+}
+
+/// Sets a column of the sheets above from block `first` on, for the blocks of the band. Each sheet has
+/// columns for displacement and velocity along x and y.
+pub(super) fn set_upper_column(
+    band: &mut Band,
+    layout: &Layout,
+    column: usize,
+    first: usize,
+    values: &[f64],
+) {
+    let halo = band.halo;
+    for [of_values, own] in common(band, layout, first, values.len()) {
+        let [u, v] = band.of_sheet_mut(1 + column / 4);
+        let with_halo = halo + own.start..halo + own.end;
+        let array = match column % 4 {
+            0 => &mut u.x[with_halo],
+            1 => &mut u.y[with_halo],
+            2 => &mut v.x[own],
+            _ => &mut v.y[own],
         };
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            for (value, k) in values[of_values].iter_mut().zip(own) {
-                let is_moving = self.velocity.at(k) != [0.0, 0.0];
-                *value = thresholds.memory(column, k, is_moving, time_star);
-            }
-        }
+        array.copy_from_slice(&values[of_values]);
     }
+}
 
-    /// Sets a column of the sheets above from block `first` on, for the blocks of the band. Each sheet has
-    /// columns for displacement and velocity along x and y.
-    pub(super) fn set_upper_column(&mut self, layout: &Layout, column: usize, first: usize, values: &[f64]) {
-        let halo = self.halo;
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let [u, v] = self.of_sheet_mut(1 + column / 4);
-            let with_halo = halo + own.start..halo + own.end;
-            let array = match column % 4 {
-                0 => &mut u.x[with_halo],
-                1 => &mut u.y[with_halo],
-                2 => &mut v.x[own],
-                _ => &mut v.y[own],
-            };
-            array.copy_from_slice(&values[of_values]);
-        }
+/// Writes to `values` a column of [`set_upper_column`].
+pub(super) fn read_upper_column(
+    band: &Band,
+    layout: &Layout,
+    column: usize,
+    first: usize,
+    values: &mut [f64],
+) {
+    let [u, v] = band.of_sheet(1 + column / 4);
+    for [of_values, own] in common(band, layout, first, values.len()) {
+        let with_halo = band.halo + own.start..band.halo + own.end;
+        values[of_values].copy_from_slice(match column % 4 {
+            0 => &u.x[with_halo],
+            1 => &u.y[with_halo],
+            2 => &v.x[own],
+            _ => &v.y[own],
+        });
     }
+}
 
-    /// Writes to `values` a column of [`set_upper_column`](Self::set_upper_column).
-    pub(super) fn read_upper_column(&self, layout: &Layout, column: usize, first: usize, values: &mut [f64]) {
-        let [u, v] = self.of_sheet(1 + column / 4);
-        for [of_values, own] in self.common(layout, first, values.len()) {
-            let with_halo = self.halo + own.start..self.halo + own.end;
-            values[of_values].copy_from_slice(match column % 4 {
-                0 => &u.x[with_halo],
-                1 => &u.y[with_halo],
-                2 => &v.x[own],
-                _ => &v.y[own],
-            });
-        }
-    }
+/// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
+fn common(
+    band: &Band,
+    layout: &Layout,
+    first: usize,
+    count: usize,
+) -> impl Iterator<Item = [Range<usize>; 2]> + use<> {
+    let (layout, begin) = (*layout, band.first);
+    let from = layout.element_of(first).max(begin);
+    let to = (layout.element_of(first + count - 1) + 1).min(begin + band.len);
+    layout.rows_among(from..to).filter_map(move |(_, _, part)| {
+        let element = from + part.start;
+        let b = layout.block(element)? - first;
+        let own = element - begin;
+        Some([b..b + part.len(), own..own + part.len()])
+    })
+}
 
-    /// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
-    fn common(
-        &self,
-        layout: &Layout,
-        first: usize,
-        count: usize,
-    ) -> impl Iterator<Item = [Range<usize>; 2]> + use<> {
-        let (layout, begin) = (*layout, self.first);
-        let from = layout.element_of(first).max(begin);
-        let to = (layout.element_of(first + count - 1) + 1).min(begin + self.len);
-        layout.rows_among(from..to).filter_map(move |(_, _, part)| {
-            let element = from + part.start;
-            let b = layout.block(element)? - first;
-            let own = element - begin;
-            Some([b..b + part.len(), own..own + part.len()])
-        })
+/// Continues from a checkpoint after all columns are set, as if every tile had just been swept: the
+/// largest contact stress of a checkpoint includes the skipped tiles.
+pub(super) fn resume(band: &mut Band) {
+    for task in &mut band.tasks {
+        task.active = u32::MAX;
     }
-
-    /// Continues from a checkpoint after all columns are set, as if every tile had just been swept: the
-    /// largest contact stress of a checkpoint includes the skipped tiles.
-    pub(super) fn resume(&mut self) {
-        for task in &mut self.tasks {
-            task.active = u32::MAX;
-        }
-        for k in 0..self.len {
-            let v = self.velocity.at(k);
-            self.set_moving(k, v != [0.0, 0.0]);
-            let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
-            *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
-            self.slipped[k / LANES] |= u8::from(self.first_slip[k] != NEVER) << (k % LANES);
-        }
-        self.begin_thresholds();
+    for k in 0..band.len {
+        let v = band.velocity.at(k);
+        band.set_moving(k, v != [0.0, 0.0]);
+        let speed_square = &mut band.tiles[k / TILE].sums.speed_square;
+        *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
+        band.slipped[k / LANES] |= u8::from(band.first_slip[k] != NEVER) << (k % LANES);
     }
+    band.begin_thresholds();
 }

@@ -2,17 +2,9 @@
 //! exact spring law, whichever formula the sweep used: the forces on one block, and one field of all blocks,
 //! tile by tile, with the same bits.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::Level;
+use slipfront_kernel::{Band, LANES, Layout, SquareRoot, Step, Stress, StressReader, TILE};
 
-use super::aligned::Aligned;
-use super::aligned::chunks;
-use super::band::Band;
-use super::layout::{Layout, TILE};
-use super::pull::{pull, pull_from_above, pull_of_differing};
-use super::scratch::Scratch;
-use super::springs::Geometry;
-use super::step::Step;
-use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, splat, square};
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::TakeSliding;
 use crate::lattice::Bond;
@@ -98,20 +90,21 @@ fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f
 
 /// Reads `field` in every `stride`-th row, several blocks of a row at a time: `write` receives the row, the
 /// column of the first value, and the values.
-#[inline(always)]
-pub(super) fn read_rows<S: Simd, G: Geometry>(
-    simd: S,
-    geometry: G,
+pub(super) fn read_rows(
     model: &Model,
-    step: Step,
+    (level, step, springs): (Level, Step, SquareRoot),
     (field, stride): (Field, usize),
     (layout, bands): (&Layout, &[Band]),
     write: &mut dyn FnMut(usize, usize, &[f32]),
 ) {
     let mut values = [0.0; TILE];
     for band in bands {
-        let mut scratch = band.lock_scratch();
-        let mut springs_end = 0;
+        let stress = match field {
+            Field::ContactStress => Some(Stress::Contact),
+            Field::Traction => Some(Stress::Traction),
+            _ => None,
+        };
+        let mut stresses = stress.map(|stress| StressReader::new(level, band, stress, step, springs));
         for t in 0..band.tiles.len() {
             let elements = band.elements(t);
             let rows = || layout.rows_among(band.first + elements.start..band.first + elements.end);
@@ -119,29 +112,25 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
                 continue;
             }
             let displaced = band.halo + elements.start..band.halo + elements.end;
-            match field {
-                Field::ContactStress | Field::Traction => {
-                    // For consecutive tiles, the springs in between are in the ring buffer already.
-                    let from = band.below(displaced.start).max(springs_end);
-                    springs_end = displaced.end;
-                    let u = &band.displacement;
-                    band.upward(simd, geometry, u, &mut scratch, from, springs_end);
-                    band.lattice_forces(simd, geometry, u, t, &mut scratch);
-                    let mut forces = [[0.0; LANES]; TILE / LANES];
-                    if band.tiles[t].moving {
-                        for (j, i, blocks) in rows() {
-                            let first = band.first + elements.start + blocks.start;
-                            let kinetic = &mut forces.as_flattened_mut()[blocks];
-                            let b = model.lattice.block(i, j);
-                            model.surface.read_kinetic_forces(b, kinetic);
-                            for (k, force) in (first - band.first..).zip(kinetic) {
-                                *force = band.kinetic_force(k, *force, step.integrator.velocity_to_force);
-                            }
+            if let Some(stresses) = &mut stresses {
+                let mut forces = [[0.0; LANES]; TILE / LANES];
+                if band.tiles[t].moving {
+                    for (j, i, blocks) in rows() {
+                        let first = elements.start + blocks.start;
+                        let kinetic = &mut forces.as_flattened_mut()[blocks];
+                        model
+                            .surface
+                            .read_kinetic_forces(model.lattice.block(i, j), kinetic);
+                        for (k, force) in (first..).zip(kinetic) {
+                            *force = band.kinetic_force(k, *force, step.integrator.velocity_to_force);
                         }
                     }
-                    stresses::<S, G>(simd, step, field, band, t, &scratch, &mut forces);
-                    round(&mut values, forces.as_flattened());
                 }
+                stresses.read(t, &mut forces);
+                round(&mut values, forces.as_flattened());
+            }
+            match field {
+                Field::ContactStress | Field::Traction => {}
                 Field::DisplacementX => round(&mut values, &band.displacement.x[displaced]),
                 Field::DisplacementY => round(&mut values, &band.displacement.y[displaced]),
                 Field::VelocityX => round(&mut values, &band.velocity.x[elements.clone()]),
@@ -194,66 +183,5 @@ pub(super) fn read_sliding(model: &Model, layout: &Layout, bands: &[Band], take:
 fn round(values: &mut [f32; TILE], exact: &[f64]) {
     for (value, exact) in values.iter_mut().zip(exact) {
         *value = *exact as f32;
-    }
-}
-
-/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block.
-/// `forces` holds the kinetic friction of every element, and is overwritten by the result.
-#[inline(always)]
-fn stresses<S: Simd, G: Geometry>(
-    simd: S,
-    step: Step,
-    field: Field,
-    band: &Band,
-    t: usize,
-    scratch: &Scratch,
-    forces: &mut [[f64; LANES]],
-) {
-    let elements = band.elements(t);
-    let n = elements.len();
-    let displacements = chunks(&band.displacement, band.halo + elements.start, n);
-    let velocities = chunks(&band.velocity, elements.start, n);
-    let lattice_forces = chunks(&scratch.lattice, 0, n);
-    let above = band.upper.first();
-    let above = above.map(|above| above.above(band.halo + elements.start, n));
-    let interface = band
-        .interface
-        .as_ref()
-        .map(|interface| interface.of_elements(elements.clone()));
-    for (c, stress) in forces[..n / LANES].iter_mut().enumerate() {
-        let mut velocity = load_vec2(simd, velocities, c);
-        let mut kinetic_force = load(simd, stress);
-        let lattice = load_vec2(simd, lattice_forces, c);
-        let u = load_vec2(simd, displacements, c);
-        let variations = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER);
-        let mut drive = match (above, variations) {
-            (Some(above), _) => pull_from_above::<S, true>(simd, step, above, c, u),
-            (None, Some(variations)) => {
-                let first = elements.start + c * LANES;
-                let of_vector = |values: &Aligned| load(simd, &values[first..].as_chunks().0[0]);
-                let loads = variations.loads.as_ref().map(of_vector);
-                pull_of_differing(simd, step, of_vector(&variations.drive_springs), loads, u)
-            }
-            (None, None) => pull(simd, step, u),
-        };
-        if let Some(interface) = &interface {
-            let [reaction, share] = interface.reaction(simd, c, u[1]);
-            drive[1] += reaction;
-            (kinetic_force, velocity[1]) = (share * kinetic_force, splat(simd, 0.0));
-        }
-        let [x, y] = add(drive, lattice);
-        let mut force = [-x, -y];
-        let stuck = is_zero(simd, velocity);
-        if bits(simd, stuck) != u8::MAX {
-            let per_velocity = kinetic_force / square(velocity).sqrt();
-            force = select(stuck, force, scale(-per_velocity, velocity));
-        }
-        if interface.is_some() {
-            force[1] = splat(simd, 0.0);
-        }
-        if field == Field::ContactStress {
-            force = add(force, lattice);
-        }
-        square(force).sqrt().store_array(stress);
     }
 }

@@ -1,6 +1,7 @@
 //! The fused kernel on its own, for tests of behaviour that a simulation does not show, and as a device.
 
-use super::layout::VECTORS;
+use slipfront_kernel::VECTORS;
+
 use super::*;
 use crate::device::{Device, DeviceError, DeviceLattice};
 

@@ -1,77 +1,40 @@
-//! The fast kernel: the equations of [`general`](super::general) in one sweep over the blocks.
-//!
-//! Blocks are stored row after row in one array ([`layout`]), divided into tiles of 256 elements. A sweep
-//! advances one tile after the other by a step ([`band`]): displacements, springs, friction and all sums,
-//! eight blocks at a time ([`blocks`]), each spring once. Spring forces are computed from a series where this
-//! is as exact as the square root ([`springs`]). A tile at rest with nothing moving around it is skipped
-//! until one of its blocks can slip ([`rest`]). Every thread sweeps a band of tiles.
-//!
-//! A step must read displacement, velocity and two thresholds of every block and write displacement and
-//! velocity: 80 bytes. This bounds the speed on a lattice larger than the cache (`examples/large_step.rs`).
-//! Spring forces pass through a ring buffer that stays in the cache.
-//!
-//! A rank holds some rows and the displacements of the neighbouring rows ([`neighbours`]). Sheets above the
-//! lowest one are swept tile by tile with it ([`sheets`]).
+//! The fast kernel: the equations of [`general`](super::general) in one sweep over the blocks, by the crate
+//! [`slipfront_kernel`]. Here are the bands that threads share out, the rows of other ranks ([`neighbours`]),
+//! sums over all bands, and what the kernel asks about a model ([`properties`]).
 //!
 //! The trajectory has the same bits for any number of ranks and threads and any SIMD width, whether vectors
-//! are skipped or not: sums are sums of integers ([`quanta`]), and the choice between series and square root
-//! is made for the whole lattice.
+//! are skipped or not: sums are sums of integers, and the choice between series and square root is made for
+//! the whole lattice.
 
-mod aligned;
-mod band;
-mod blocks;
 mod columns;
 mod fields;
-#[cfg(feature = "testing")]
 pub(crate) mod for_tests;
-mod interface;
-mod layout;
 mod neighbours;
-mod pull;
-mod quanta;
-mod rest;
-mod schedule;
-mod scratch;
-mod sheets;
-mod sparse;
-mod springs;
-mod step;
-mod thresholds;
-mod upper_sheet;
-mod upright;
-mod variations;
-mod vector;
+mod properties;
 
 use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
+use slipfront_kernel::fixed_point::{FixedPoint, join, split};
+use slipfront_kernel::{
+    Band, Integrator, LANES, LargestFactors, Layout, MotionBounds, NEVER, Quanta, Springs, SquareRoot, Step,
+    Sums, SweepConditions, TILE, Vectors, halo, measure_displacements,
+};
 
-use self::aligned::Vectors;
-use self::band::Band;
-use self::blocks::Sums;
-use self::layout::{Layout, TILE};
 use self::neighbours::Neighbours;
-use self::quanta::Quanta;
-use self::schedule::SweepConditions;
-pub(crate) use self::springs::SeriesNumbers;
-use self::springs::{Differing, Series, SquareRoot};
-use self::step::Step;
-pub(crate) use self::variations::{LargestFactors, blocks_differ};
-use self::vector::LANES;
-use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use self::properties::ModelBlocks;
+pub(crate) use self::properties::{blocks_differ, largest_factors};
+use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::Clock;
 use crate::communicator::{Alone, Communicator};
-use crate::device::{DeviceLattice, Motion, NEVER};
-use crate::fixed_point::{FixedPoint, join, split};
-use crate::friction::Integrator;
+use crate::device::{DeviceLattice, Motion};
 use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::{Engine, TakeSliding};
 use crate::kernel::vectors;
-use crate::lattice::SpringStiffness;
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::parallel::*;
@@ -82,17 +45,6 @@ use crate::totals::{StoredEnergy, Totals};
 /// Number of steps between two measurements of displacements and their differences; in between, bounds are
 /// used.
 const MEASUREMENT_INTERVAL: u64 = 16;
-
-/// Formula for spring forces in a sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Springs {
-    /// The short series, for small strains of 1e-4 and less.
-    ShortSeries,
-    /// The long series, for strains up to 1e-2.
-    LongSeries,
-    /// The square root, for any strain.
-    SquareRoot,
-}
 
 /// The state of the blocks of a rank and the data to step them.
 #[derive(Debug)]
@@ -130,7 +82,6 @@ pub(crate) struct Fused {
     largest: LargestFactors,
     /// Sum of the relative stiffness of all drive springs: the number of blocks if all are equal.
     drive_springs: f64,
-    blocks_differ: bool,
     /// Number of columns that the law of friction adds to a checkpoint.
     columns_of_law: usize,
 }
@@ -154,9 +105,15 @@ impl Fused {
             &model.rows,
             &*neighbours.communicator,
         );
-        let largest = LargestFactors::of(model, &*neighbours.communicator);
+        let largest = largest_factors(model, &*neighbours.communicator);
         let differ = blocks_differ(model, &largest);
-        let band = |tiles| Band::new(&layout, model, &moduli, differ, state, dt_star, tiles);
+        let blocks = ModelBlocks {
+            model,
+            moduli: &moduli,
+            state,
+        };
+        let properties = blocks.properties(differ, dt_star);
+        let band = |tiles| Band::new(&layout, &properties, tiles);
         let bands: Vec<Band> = match threads {
             1 => tiles.into_iter().map(band).collect(),
             _ => tiles.into_par_iter().map(band).collect(),
@@ -186,11 +143,10 @@ impl Fused {
                 speed: speed_square.sqrt(),
                 ..MotionBounds::default()
             },
-            strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
+            strain_limits: Springs::strain_limits(),
             stress_square_max: 0.0,
             largest,
             drive_springs: model.slider.sum_of_drive_springs(&model.lattice),
-            blocks_differ: differ,
             columns_of_law: model.friction.n_columns(),
             neighbours,
         };
@@ -297,7 +253,7 @@ impl Fused {
     /// Sets a column of the blocks from `first` on.
     pub(crate) fn set_column(&mut self, column: BlockColumn, first: usize, values: &[f64]) {
         for band in &mut self.bands {
-            band.set_column(&self.layout, self.dt_star, column, first, values);
+            columns::set_column(band, &self.layout, self.dt_star, column, first, values);
         }
     }
 
@@ -306,8 +262,8 @@ impl Fused {
     fn set_memory(&mut self, column: usize, first: usize, values: &[f64]) {
         for band in &mut self.bands {
             match column.checked_sub(self.columns_of_law) {
-                None => band.set_memory(&self.layout, column, first, values),
-                Some(column) => band.set_upper_column(&self.layout, column, first, values),
+                None => columns::set_memory(band, &self.layout, column, first, values),
+                Some(column) => columns::set_upper_column(band, &self.layout, column, first, values),
             }
         }
     }
@@ -315,7 +271,7 @@ impl Fused {
     /// Completes the kernel with everything that follows from the columns set.
     pub(crate) fn resumed(mut self) -> Self {
         for band in &mut self.bands {
-            band.resume();
+            columns::resume(band);
         }
         self.copy_ghosts(true);
         self.fill_halos(0.0, true);
@@ -329,11 +285,9 @@ impl Fused {
         let bounds = &mut self.motion_bounds;
         if step.number.is_multiple_of(MEASUREMENT_INTERVAL) {
             let level = self.level;
-            for_each_band(
-                self.threads,
-                &mut self.bands,
-                &|band| dispatch!(level, simd => band.measure_displacements(simd)),
-            );
+            for_each_band(self.threads, &mut self.bands, &|band| {
+                measure_displacements(level, band);
+            });
             let mut largest = [f64::NEG_INFINITY; 6];
             for band in &self.bands {
                 let ([right, left, up, down], [along_x, along_y]) = (band.extent, band.difference);
@@ -349,13 +303,7 @@ impl Fused {
         // Between measurements the ends of a spring move apart by at most twice the highest speed.
         bounds.growth += 2.0 * step.move_dt * bounds.speed;
         let strain = self.motion_bounds.max_strain(model.epsilon);
-        let springs = if strain <= self.strain_limits[0] {
-            Springs::ShortSeries
-        } else if strain <= self.strain_limits[1] {
-            Springs::LongSeries
-        } else {
-            Springs::SquareRoot
-        };
+        let springs = Springs::up_to(strain, self.strain_limits);
         (springs, self.motion_bounds.move_ranges())
     }
 
@@ -370,7 +318,7 @@ impl Fused {
             is_next: self.swept_step.is_some_and(|swept| swept + 1 == step.number),
         };
         let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds, &self.largest));
-        let (threads, layout, differ) = (self.threads, self.layout, self.blocks_differ);
+        let (threads, layout) = (self.threads, self.layout);
         let touched = self.touched.as_slice();
         for_each_band(threads, &mut self.bands, &|band| {
             band.mark_touched(&layout, touched);
@@ -382,10 +330,10 @@ impl Fused {
         let touched = self.touched.as_slice();
         let sweep = |band: &mut Band| {
             band.schedule(&schedule, touched);
-            sweep(
+            slipfront_kernel::sweep(
                 level,
                 band,
-                (springs, differ),
+                springs,
                 (model.epsilon, model.springs),
                 step,
                 &quanta,
@@ -460,7 +408,7 @@ impl Fused {
     /// Writes the displacements of the first and the last row of this rank after moving by `move_dt`, for the
     /// neighbouring ranks.
     fn write_own_rows(&mut self, move_dt: f64) {
-        let (stride, len) = (self.layout.stride, self.layout.len());
+        let (stride, len) = (self.layout.stride, self.layout.n_elements());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
             // Nothing beyond a free edge; one sheet after the other.
             for k in 0..self.neighbours.own[end].len() {
@@ -537,7 +485,7 @@ impl Fused {
     /// Reads one of the columns of the sheets above, for the blocks from `first` on.
     fn read_upper_column(&self, column: usize, first: usize, values: &mut [f64]) {
         for band in &self.bands {
-            band.read_upper_column(&self.layout, column, first, values);
+            columns::read_upper_column(band, &self.layout, column, first, values);
         }
     }
 
@@ -615,7 +563,7 @@ impl Engine for Fused {
             number < u64::from(NEVER),
             "step {number}: runs end before step {NEVER}"
         );
-        let mut step = Step::new(model, clock);
+        let mut step = properties::step(model, clock);
         if self.swept_step.is_none() {
             // At the start, displacements already belong to t_0.
             step.move_dt = 0.0;
@@ -657,32 +605,26 @@ impl Engine for Fused {
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
     ) {
-        let step = Step::new(model, clock);
-        let elements = (&self.layout, self.bands.as_slice());
         let root = SquareRoot {
             epsilon: model.epsilon,
             stiffness: model.springs,
         };
-        if self.blocks_differ {
-            let root = Differing(root);
-            dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, (field, stride), elements, write));
-        } else {
-            dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, (field, stride), elements, write));
-        }
+        let how = (self.level, properties::step(model, clock), root);
+        fields::read_rows(model, how, (field, stride), (&self.layout, &self.bands), write);
     }
 
     fn count_in_contact(&self, _: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
         let layout = &self.layout;
         if self.threads == 1 {
             for band in &self.bands {
-                band.count_in_contact(layout, bins, sliding, counts);
+                band.for_each_in_contact(layout, sliding, |i, j| counts[bins.bin(i, j)] += 1);
             }
             return;
         }
         // Each band counts in bins of its own, so that threads share none.
         let of_band = |band: &Band| {
             let mut counts = vec![0; bins.count];
-            band.count_in_contact(layout, bins, sliding, &mut counts);
+            band.for_each_in_contact(layout, sliding, |i, j| counts[bins.bin(i, j)] += 1);
             counts
         };
         let of_bands: Vec<Vec<i64>> = self.bands.par_iter().map(of_band).collect();
@@ -736,7 +678,7 @@ impl Engine for Fused {
 
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         for band in &self.bands {
-            band.read_column(&self.layout, self.dt_star, column, first, values);
+            columns::read_column(band, &self.layout, self.dt_star, column, first, values);
         }
     }
 
@@ -751,7 +693,7 @@ impl Engine for Fused {
     }
 
     fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64 {
-        let step = Step::new(model, clock);
+        let step = properties::step(model, clock);
         let mut square = self.stress_square_max;
         for band in &self.bands {
             for (t, task) in band.tasks.iter().enumerate() {
@@ -781,7 +723,7 @@ impl Engine for Fused {
             return;
         }
         for band in &self.bands {
-            band.read_memory(&self.layout, time_star, column, first, values);
+            columns::read_memory(band, &self.layout, time_star, column, first, values);
         }
     }
 }
@@ -794,7 +736,7 @@ const MIN_BAND_TILES: usize = 1024;
 fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>) {
     let n_tiles = layout.n_tiles();
     // Tiles within a halo of the rows of other ranks; the last tile may be short.
-    let end = band::halo(layout).div_ceil(TILE) + 1;
+    let end = halo(layout).div_ceil(TILE) + 1;
     let [first, last] = layout.has_neighbours().map(|has| if has { end } else { 0 });
     let (inner, has_inner) = match n_tiles.checked_sub(first + last) {
         Some(1..) => (first..n_tiles - last, true),
@@ -830,42 +772,6 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
                     displacement.set(k, u);
                 }
             }
-        }
-    }
-}
-
-/// Advances a band by a step with the vector instructions of `level`.
-fn sweep(
-    level: Level,
-    band: &mut Band,
-    (springs, blocks_differ): (Springs, bool),
-    (epsilon, stiffness): (f64, SpringStiffness),
-    step: Step,
-    quanta: &Quanta,
-    energies: bool,
-) {
-    let (short, long, root) = (
-        Series::<3> { epsilon, stiffness },
-        Series::<7> { epsilon, stiffness },
-        SquareRoot { epsilon, stiffness },
-    );
-    match (springs, blocks_differ) {
-        (Springs::ShortSeries, false) => {
-            dispatch!(level, simd => band.sweep(simd, short, step, quanta, energies));
-        }
-        (Springs::LongSeries, false) => {
-            dispatch!(level, simd => band.sweep(simd, long, step, quanta, energies));
-        }
-        (Springs::SquareRoot, false) => {
-            dispatch!(level, simd => band.sweep(simd, root, step, quanta, energies));
-        }
-        (Springs::ShortSeries, true) => {
-            dispatch!(level, simd => band.sweep(simd, Differing(short), step, quanta, energies));
-        }
-        // Compiling one sweep less is worth more than the time that the longer series would save at larger
-        // strains.
-        (Springs::LongSeries | Springs::SquareRoot, true) => {
-            dispatch!(level, simd => band.sweep(simd, Differing(root), step, quanta, energies));
         }
     }
 }

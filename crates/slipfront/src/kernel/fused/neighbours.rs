@@ -3,7 +3,8 @@
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
-use super::layout::Layout;
+use slipfront_kernel::Layout;
+
 use crate::communicator::Communicator;
 
 /// Displacements of the row below the first row of this rank and of the row above the last, ghosts included,
@@ -53,7 +54,7 @@ impl Neighbours {
             meanwhile,
         );
         self.moved.clear();
-        let firsts = [-(layout.stride as isize), layout.len() as isize];
+        let firsts = [-(layout.stride as isize), layout.n_elements() as isize];
         for (first, (row, before)) in firsts.into_iter().zip(self.rows.iter().zip(&self.before)) {
             for (element, (u, before)) in (first..).zip(row.iter().zip(before).take(layout.stride)) {
                 // Compared with the previous exchange, so that the other rank need not send which elements
@@ -71,7 +72,7 @@ impl Neighbours {
         let ([below, above], stride) = (&self.rows, layout.stride);
         let (row, k) = match element {
             ..0 => (below, stride.checked_add_signed(element)?),
-            _ => (above, (element as usize).checked_sub(layout.len())?),
+            _ => (above, (element as usize).checked_sub(layout.n_elements())?),
         };
         // The next sheet follows after the row.
         (k < stride).then(|| row.get(sheet * stride + k))?.copied()

@@ -9,16 +9,18 @@ use super::springs::{damper_forces, lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::clock::Clock;
 use crate::dead_load::DeadLoad;
-use crate::fixed_point::RunningSum;
 use crate::forces::{Forces, part, part_mut};
-use crate::friction::{BandContact, Integrator};
+use slipfront_kernel::Integrator;
+use slipfront_kernel::fixed_point::RunningSum;
+
+use crate::friction::BandContact;
 use crate::kernel::block::Block;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
+use slipfront_kernel::reductions;
 
 // So few that the results of one pass are still in the cache when the next pass needs them.
 /// Number of blocks of a part, unless a row has more.

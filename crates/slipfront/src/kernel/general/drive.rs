@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::dead_load::DeadLoad;
-use crate::fixed_point::RunningSum;
 use crate::forces::{part, part_mut};
 use crate::model::Model;
 use crate::vector_field::VectorField;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// Properties of the drive of each block in addition to the drive springs of its model.
 #[derive(Debug)]

@@ -19,17 +19,14 @@ mod weighted;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::dispatch;
-
 use self::band::{Band, BandSums, Summed};
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::{Engine, TakeSliding};
-use super::vectors;
-use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use super::vectors::{level, vectorized};
+use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::Clock;
 use crate::communicator::Communicator;
-use crate::fixed_point::RunningSum;
 use crate::friction::ContactTotals;
 use crate::model::Model;
 use crate::moduli::Moduli;
@@ -37,6 +34,8 @@ use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::VectorField;
+use slipfront_kernel::MotionBounds;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// Least number of blocks in a band if there are several: some tens of microseconds of work.
 const MIN_BAND_BLOCKS: usize = 1024;
@@ -255,7 +254,11 @@ impl General {
             let sums = self.energy_sums;
             for_each_band(self.threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
-                dispatch!(vectors::level(), _ => band.add_energies(model, drive_time_star, sums));
+                vectorized(
+                    level(),
+                    #[inline(always)]
+                    || band.add_energies(model, drive_time_star, sums),
+                );
             });
             for one in &self.bands {
                 RunningSum::join(&mut self.energy_sums, &one.band.energy_sums);
@@ -293,11 +296,15 @@ impl General {
 
 impl Engine for General {
     fn step(&mut self, model: &Model, clock: &Clock, energies: bool) -> Totals {
-        let (threads, level) = (self.threads, vectors::level());
+        let (threads, level) = (self.threads, level());
         let moves = std::mem::replace(&mut self.started, true);
         for_each_band(threads, &mut self.bands, &|one| {
             let (model, band) = one.with_model(model);
-            dispatch!(level, _ => band.begin_step(model, moves));
+            vectorized(
+                level,
+                #[inline(always)]
+                || band.begin_step(model, moves),
+            );
         });
         // Springs join blocks of different bands: all blocks must have moved, and bands exchanged their rows,
         // before any band computes forces.
@@ -307,7 +314,11 @@ impl Engine for General {
             let sums = self.sums;
             for_each_band(threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
-                dispatch!(level, _ => band.evaluate(model, clock, is_known, sums));
+                vectorized(
+                    level,
+                    #[inline(always)]
+                    || band.evaluate(model, clock, is_known, sums),
+                );
             });
             for one in &self.bands {
                 RunningSum::join(&mut self.sums, &one.band.sums);

@@ -6,13 +6,13 @@ use super::drive::DrivenBlocks;
 use super::rows::Rows;
 use super::springs::{lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, dot_products};
-use crate::fixed_point::RunningSum;
 use crate::forces::{part, part_mut};
-use crate::friction::Integrator;
 use crate::model::Model;
 use crate::sheets::Sheet;
 use crate::state::State;
 use crate::vector_field::VectorField;
+use slipfront_kernel::Integrator;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// The blocks of a band in a sheet above the lowest one.
 pub(super) struct UpperSheet {

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use super::rows::Rows;
-use crate::fixed_point;
 use crate::forces::{part, part_mut};
 use crate::lattice::{Bond, Edges, Lattice, SpringStiffness};
 use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
+use slipfront_kernel::fixed_point;
 
 /// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, with every spring computed once.
 /// Must be called for earlier blocks first. `relative`: stiffness of each spring over that of its bond, for a

@@ -1,7 +1,7 @@
 //! Sums over blocks with a weight for each block.
 
-use crate::fixed_point::RunningSum;
 use crate::vector_field::VectorField;
+use slipfront_kernel::fixed_point::RunningSum;
 
 /// Room for values of the blocks of a part.
 #[derive(Debug)]

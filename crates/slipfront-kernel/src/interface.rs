@@ -11,12 +11,12 @@ use super::pull::pull_of_differing;
 use super::quanta::Quanta;
 use super::step::Step;
 use super::vector::{Chunks, add, bits, is_zero, load, load_vec2, or_zero_below, scale, splat};
-use crate::friction::{Interface as Law, SMALLEST_VELOCITY};
-use crate::model::Model;
+use crate::integrator::SMALLEST_VELOCITY;
+use crate::properties::Properties;
 
 /// The interface under the elements of a band.
 #[derive(Debug)]
-pub(super) struct Interface {
+pub(crate) struct Interface {
     /// Stiffness of the foundation under each element; 0 where there is no block in contact.
     foundation: Aligned,
     /// Normal forces `F_n` of the load.
@@ -29,16 +29,16 @@ pub(super) struct Interface {
 
 /// Numbers of the interface under some elements, in vectors of eight.
 #[derive(Clone, Copy)]
-pub(super) struct InterfaceLoop<'a> {
+pub(crate) struct InterfaceLoop<'a> {
     foundation: Chunks<'a>,
     load: Chunks<'a>,
     inverse_load: Chunks<'a>,
 }
 
 impl Interface {
-    /// The interface of a model under `n` elements from `first` on; none where friction acts in the plane.
-    pub(super) fn of(layout: &Layout, model: &Model, first: usize, n: usize) -> Option<Self> {
-        let law: Law = model.friction.interface()?;
+    /// The interface under `n` elements from `first` on; none where friction acts in the plane.
+    pub(crate) fn of(layout: &Layout, properties: &Properties, first: usize, n: usize) -> Option<Self> {
+        let foundation = properties.foundation?;
         let zeros = |n| Aligned::filled(n, 0.0);
         let mut interface = Self {
             foundation: zeros(n),
@@ -47,11 +47,14 @@ impl Interface {
             still: zeros(TILE),
         };
         for k in 0..n {
-            let Some(b) = layout.block(first + k).filter(|&b| !model.surface.textured[b]) else {
+            let Some(b) = layout
+                .block(first + k)
+                .filter(|&b| !properties.blocks.is_textured(b))
+            else {
                 continue;
             };
-            let load = model.surface.load(b);
-            interface.foundation[k] = law.foundation;
+            let load = properties.blocks.normal_force(b);
+            interface.foundation[k] = foundation;
             interface.load[k] = load;
             interface.inverse_load[k] = if load > 0.0 { 1.0 / load } else { 0.0 };
         }
@@ -59,7 +62,7 @@ impl Interface {
     }
 
     /// The interface under some elements of the band.
-    pub(super) fn of_elements(&self, elements: Range<usize>) -> InterfaceLoop<'_> {
+    pub(crate) fn of_elements(&self, elements: Range<usize>) -> InterfaceLoop<'_> {
         InterfaceLoop {
             foundation: self.foundation[elements.clone()].as_chunks().0,
             load: self.load[elements.clone()].as_chunks().0,
@@ -68,16 +71,16 @@ impl Interface {
     }
 
     /// Zeros in place of the velocities along y of `n` elements of a tile.
-    pub(super) fn still(&self, n: usize) -> Chunks<'_> {
+    pub(crate) fn still(&self, n: usize) -> Chunks<'_> {
         self.still[..n].as_chunks().0
     }
 }
 
 impl InterfaceLoop<'_> {
-    /// Change of the normal forces on eight blocks that have risen by `rise`, by the operations of
-    /// [`Law::reaction`], and the ratio of the normal forces to those of the load.
+    /// Change of the normal forces on eight blocks that have risen by `rise`,
+    /// `-min(K u_y, F_n)`, and the ratio of the normal forces to those of the load.
     #[inline(always)]
-    pub(super) fn reaction<S: Simd>(&self, simd: S, chunk: usize, rise: f64x8<S>) -> [f64x8<S>; 2] {
+    pub(crate) fn reaction<S: Simd>(&self, simd: S, chunk: usize, rise: f64x8<S>) -> [f64x8<S>; 2] {
         let [foundation, bears, inverse] =
             [self.foundation, self.load, self.inverse_load].map(|array| load(simd, &array[chunk]));
         let held = foundation * rise;
@@ -86,10 +89,10 @@ impl InterfaceLoop<'_> {
     }
 }
 
-/// Eqs. 2 and 4-7 along an interface: the operations of [`crate::friction::AlongX`], eight blocks at a time,
-/// and all sums that observers need at every step. Returns whether any of the blocks moves.
+/// Eqs. 2 and 4-7 along an interface, eight blocks at a time, and all sums that observers need at every step.
+/// Returns whether any of the blocks moves.
 #[inline(always)]
-pub(super) fn friction_along_x<S: Simd>(
+pub(crate) fn friction_along_x<S: Simd>(
     simd: S,
     step: Step,
     quanta: &Quanta,

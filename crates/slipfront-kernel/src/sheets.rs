@@ -22,16 +22,15 @@ use super::pull::{Above, coupling_force, pull_from_above};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
-use super::upper_sheet::UpperSheet;
+use super::upper_sheet::{Sheet, UpperSheet};
 use super::vector::{Chunks, ChunksMut, add, load, load_vec2, or_zero_below, scale, splat, square, subtract};
-use crate::friction::SMALLEST_VELOCITY;
-use crate::sheets::Sheet;
+use crate::integrator::SMALLEST_VELOCITY;
 
 impl Band {
     /// Moves the first tiles of the sheets above, and computes the springs of the row before them; then
     /// [`upper_tiles`](Self::upper_tiles) advances one tile after the other.
     #[inline(always)]
-    pub(super) fn begin_upper<S: Simd, G: Geometry>(
+    pub(crate) fn begin_upper<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -59,7 +58,7 @@ impl Band {
     /// Advances tile `t` of the sheets above by a step, and moves the tile `ahead` of it. A separate
     /// function, so that it is not part of the sweep of a single sheet.
     #[inline(never)]
-    pub(super) fn upper_tiles<S: Simd, G: Geometry>(
+    pub(crate) fn upper_tiles<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -194,7 +193,7 @@ impl Band {
     }
 
     /// Adds the sums of the sheets above to those of the lowest sheet, which the drive does not pull.
-    pub(super) fn add_upper(&mut self) {
+    pub(crate) fn add_upper(&mut self) {
         for one in &self.upper {
             self.sums.include(&one.sums);
         }

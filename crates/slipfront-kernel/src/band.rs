@@ -20,52 +20,51 @@ use super::springs::Geometry;
 use super::step::Step;
 use super::thresholds::Thresholds;
 use super::upper_sheet::UpperSheet;
-use super::variations::{Variation, Variations, present};
+use super::variations::{Variation, Variations};
 use super::vector::{Chunks, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
-use crate::device::NEVER;
-use crate::friction::Integrator;
 use crate::lattice::Bond;
-use crate::model::Model;
-use crate::moduli::Moduli;
-use crate::position_bins::PositionBins;
-use crate::state::State;
+use crate::properties::Properties;
+
+/// The step of a slip that has not come.
+pub const NEVER: u32 = u32::MAX;
 
 /// A tile after its latest sweep.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct TileState {
-    pub(super) sums: Sums<i64, f64>,
+pub struct TileState {
+    /// Sums over the blocks of the tile.
+    pub sums: Sums<i64, f64>,
     /// Whether an element of the tile moves, ghosts included.
-    pub(super) moving: bool,
+    pub moving: bool,
     /// Whether the first active steps and energies of the tile's vectors are known, so that they can be swept
     /// one by one.
-    pub(super) settled: bool,
+    pub settled: bool,
     /// The first step at which a block of the tile may slip if nothing around it moves; 0 if unknown.
-    pub(super) active_from_step: u64,
+    pub active_from_step: u64,
     /// Largest u_x, -u_x, u_y, -u_y of the tile's blocks at the latest measurement.
-    pub(super) extent: [f64; 4],
+    pub extent: [f64; 4],
     /// Largest difference of u_x and of u_y between the tile's blocks and their neighbours at the latest
     /// measurement.
-    pub(super) difference: [f64; 2],
+    pub difference: [f64; 2],
     /// Whether a block of the tile has moved since the latest measurement.
-    pub(super) displacements_are_old: bool,
+    pub displacements_are_old: bool,
 }
 
 /// Work to be done on a tile in a sweep. A mask has one bit per vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct TileTask {
+pub struct TileTask {
     /// The vectors that are swept: one of their blocks or a neighbour moves, or one of their blocks may slip.
-    pub(super) active: u32,
+    pub active: u32,
     /// Active vectors that were skipped at the previous step.
-    pub(super) was_skipped: u32,
+    pub was_skipped: u32,
     /// Vectors with a moving block or a neighbour of one.
-    pub(super) touched: u32,
+    pub touched: u32,
     /// Whether the active vectors are few, and are swept one by one.
-    pub(super) sparse: bool,
+    pub sparse: bool,
     /// Whether all vectors are swept and few are touched, so that from now on they can be swept one by one,
     /// or not at all.
-    pub(super) settles: bool,
+    pub settles: bool,
     /// Whether the tile's springs to the next row are needed, by the tile itself or by a tile to the north.
-    pub(super) needs_springs: bool,
+    pub needs_springs: bool,
 }
 
 /// Consecutive tiles, with the arrays that one thread uses to advance them by a step.
@@ -73,76 +72,78 @@ pub(super) struct TileTask {
 /// Indices of arrays with halos count from the first element of the front halo, other indices from the first
 /// element of the band.
 #[derive(Debug)]
-pub(super) struct Band {
+pub struct Band {
     /// Index of the first tile.
-    pub(super) first_tile: usize,
+    pub first_tile: usize,
     /// Index of the first element.
-    pub(super) first: usize,
+    pub first: usize,
     /// Number of elements, in whole vectors.
-    pub(super) len: usize,
-    pub(super) tiles: Vec<TileState>,
-    pub(super) tasks: Vec<TileTask>,
+    pub len: usize,
+    /// The tiles after their latest sweeps.
+    pub tiles: Vec<TileState>,
+    /// Work of the latest sweep on each tile.
+    pub tasks: Vec<TileTask>,
     /// Sums over the band's tiles after the latest sweep.
-    pub(super) sums: Sums<i128, f64, u64>,
+    pub sums: Sums<i128, f64, u64>,
     /// The first step at which a block of the band may slip if nothing around it moves; 0 if unknown or
     /// something moves.
-    pub(super) next_active_step: u64,
-    /// Largest [`TileState::extent`] and [`TileState::difference`] of the band's tiles at the latest
-    /// measurement.
-    pub(super) extent: [f64; 4],
-    pub(super) difference: [f64; 2],
+    pub next_active_step: u64,
+    /// Largest [`TileState::extent`] of the band's tiles at the latest measurement.
+    pub extent: [f64; 4],
+    /// Largest [`TileState::difference`] of the band's tiles at the latest measurement.
+    pub difference: [f64; 2],
     /// Number of elements before and after the band with displacements that the band keeps, see [`halo`].
-    pub(super) halo: usize,
+    pub halo: usize,
     // If all blocks are equal, a step moves only two vectors and two thresholds per block through memory. All
     // other data are bits, or are in the scratch arrays, which stay in the cache.
     /// Displacements at t_n, with halos.
-    pub(super) displacement: Vectors,
+    pub displacement: Vectors,
     /// Velocities at t_n + dt/2.
-    pub(super) velocity: Vectors,
+    pub velocity: Vectors,
     /// Squares of the static thresholds `mu_s F_n`.
     static_limit_squares: Aligned,
     /// Change of velocity by kinetic friction in a step, `dt mu_k F_n/(m c+)`.
     kinetic_impulses: Aligned,
     /// The step of the first slip in contact, or [`NEVER`].
-    pub(super) first_slip: Vec<u32>,
+    pub first_slip: Vec<u32>,
     // One byte per vector shows at once whether all eight elements have a spring, or whether none moves.
     /// Masks of the elements that have a spring to the east, north, north-east and north-west; with the front
     /// halo.
-    pub(super) masks: [Vec<u8>; 4],
+    pub(crate) masks: [Vec<u8>; 4],
     /// Mask of the elements that are blocks.
-    pub(super) blocks: Vec<u8>,
+    pub(crate) blocks: Vec<u8>,
     /// Mask of the elements that are blocks in contact.
     in_contact: Vec<u8>,
     /// Mask of the elements that move, ghosts included.
-    pub(super) moving: Vec<u8>,
+    pub moving: Vec<u8>,
     // Repeats information of `first_slip`, so that the 32 bytes of a vector there are accessed only when a
     // block slips for the first time.
     /// Mask of the blocks in contact that have ever slid.
-    pub(super) slipped: Vec<u8>,
+    pub slipped: Vec<u8>,
     // These two arrays make it unnecessary to look at the resting vectors of a settled tile. They say when
     // each vector must be swept, and its share of the tile's sum of energies, which is replaced then.
     /// The first step at which a block of each vector may slip; 0 for a touched vector. Known in settled
     /// tiles.
-    pub(super) active_from_step: Vec<u64>,
+    pub(crate) active_from_step: Vec<u64>,
     /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
-    pub(super) lattice_energy: Vec<i64>,
+    pub(crate) lattice_energy: Vec<i64>,
     /// Springs, drive springs and masses of a heterogeneous slider.
-    pub(super) variations: Option<Variations>,
+    pub(crate) variations: Option<Variations>,
     /// Thresholds under a law of friction that changes them.
-    pub(super) thresholds: Option<Thresholds>,
+    pub thresholds: Option<Thresholds>,
     /// The interface of an upright sheet, along which friction acts.
-    pub(super) interface: Option<Interface>,
+    pub(crate) interface: Option<Interface>,
     /// The sheets above the lowest, which are without friction.
-    pub(super) upper: Vec<UpperSheet>,
+    pub upper: Vec<UpperSheet>,
     /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone,
     /// uses the arrays without it.
     scratch: Mutex<Scratch>,
     /// Number of elements from one row to the next.
-    pub(super) stride: usize,
+    pub stride: usize,
 }
 
 /// Number of elements before and after a band with displacements that the band keeps.
-pub(super) fn halo(layout: &Layout) -> usize {
+pub fn halo(layout: &Layout) -> usize {
     whole_vectors(layout.stride + 1 + LANES)
 }
 
@@ -150,15 +151,14 @@ pub(super) fn halo(layout: &Layout) -> usize {
 /// `first`, and for `len` elements from there on.
 fn spring_masks(
     layout: &Layout,
-    model: &Model,
-    moduli: &Moduli,
+    properties: &Properties,
     first: usize,
     halo: usize,
     len: usize,
 ) -> [Vec<u8>; 4] {
     let mut masks = [(); 4].map(|()| vec![0; (halo + len) / LANES]);
     for k in 0..halo + len {
-        let springs = present(moduli, model, layout, (first + k) as isize - halo as isize);
+        let springs = properties.has_springs(layout, (first + k) as isize - halo as isize);
         for (masks, present) in masks.iter_mut().zip(springs) {
             masks[k / LANES] |= u8::from(present) << (k % LANES);
         }
@@ -167,18 +167,10 @@ fn spring_masks(
 }
 
 impl Band {
-    /// The band of the given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
-    pub(super) fn new(
-        layout: &Layout,
-        model: &Model,
-        moduli: &Moduli,
-        blocks_differ: bool,
-        state: Option<&State>,
-        dt_star: f64,
-        tiles: Range<usize>,
-    ) -> Self {
+    /// The band of the given tiles of a lattice.
+    pub fn new(layout: &Layout, properties: &Properties, tiles: Range<usize>) -> Self {
         let first = tiles.start * TILE;
-        let len = whole_vectors((tiles.end * TILE).min(layout.len()) - first);
+        let len = whole_vectors((tiles.end * TILE).min(layout.n_elements()) - first);
         let halo = halo(layout);
         let bytes = || vec![0; len / LANES];
         let mut band = Self {
@@ -198,18 +190,19 @@ impl Band {
             // A ghost has the velocity of its block: infinite friction keeps it from moving by itself.
             kinetic_impulses: Aligned::filled(len, f64::INFINITY),
             first_slip: vec![NEVER; len],
-            masks: spring_masks(layout, model, moduli, first, halo, len),
+            masks: spring_masks(layout, properties, first, halo, len),
             blocks: bytes(),
             in_contact: bytes(),
             moving: bytes(),
             slipped: bytes(),
             active_from_step: vec![0; len / LANES],
             lattice_energy: vec![0; len / LANES],
-            variations: blocks_differ
-                .then(|| Variations::new(layout, model, moduli, halo, first..first + len)),
-            thresholds: Thresholds::of(model, len),
-            interface: Interface::of(layout, model, first, len),
-            upper: model
+            variations: properties
+                .blocks_differ
+                .then(|| Variations::new(layout, properties, halo, first..first + len)),
+            thresholds: properties.changing.map(|law| Thresholds::new(law, len)),
+            interface: Interface::of(layout, properties, first, len),
+            upper: properties
                 .sheets
                 .iter()
                 .map(|sheet| UpperSheet::new(*sheet, layout.stride, len, halo))
@@ -222,18 +215,17 @@ impl Band {
             }),
             stride: layout.stride,
         };
-        let force_to_velocity = Integrator::new(model.damping, dt_star).force_to_velocity;
+        let (blocks, force_to_velocity) = (properties.blocks, properties.force_to_velocity);
         for k in 0..len {
-            let Some(b) = layout.block(first + k).filter(|&b| model.slider.exists(b)) else {
+            let Some(b) = layout.block(first + k).filter(|&b| blocks.exists(b)) else {
                 continue;
             };
-            let static_limit = model.surface.static_limit(b);
+            let (static_limit, kinetic_force) = (blocks.static_limit(b), blocks.kinetic_force(b));
             band.static_limit_squares[k] = static_limit * static_limit;
-            band.kinetic_impulses[k] =
-                force_to_velocity * model.surface.kinetic_force(b) / model.slider.mass(b);
+            band.kinetic_impulses[k] = force_to_velocity * kinetic_force / blocks.mass(b);
             if let Some(thresholds) = &mut band.thresholds {
-                let drop = (static_limit - model.surface.kinetic_force(b)).max(0.0);
-                thresholds.set_drop(k, force_to_velocity * drop / model.slider.mass(b));
+                let drop = (static_limit - kinetic_force).max(0.0);
+                thresholds.set_drop(k, force_to_velocity * drop / blocks.mass(b));
                 if drop > 0.0 && thresholds.follow_slip() {
                     // The strength at the present slip is the only threshold.
                     band.static_limit_squares[k] = 0.0;
@@ -241,13 +233,12 @@ impl Band {
             }
             let bit = 1 << (k % LANES);
             band.blocks[k / LANES] |= bit;
-            if !model.surface.textured[b] {
+            if !blocks.is_textured(b) {
                 band.in_contact[k / LANES] |= bit;
             }
             band.tiles[k / TILE].displacements_are_old = true;
-            if let Some(state) = state {
-                let v = state.velocity.at(b);
-                band.displacement.set(halo + k, state.displacement.at(b));
+            if let Some([u, v]) = blocks.motion(b) {
+                band.displacement.set(halo + k, u);
                 band.velocity.set(k, v);
                 band.set_moving(k, v != [0.0, 0.0]);
                 let speed_square = &mut band.tiles[k / TILE].sums.speed_square;
@@ -259,14 +250,14 @@ impl Band {
     }
 
     /// Finds thresholds that change before the first sweep.
-    pub(super) fn begin_thresholds(&mut self) {
+    pub fn begin_thresholds(&mut self) {
         if let Some(thresholds) = &mut self.thresholds {
             thresholds.begin(&self.kinetic_impulses);
         }
     }
 
     /// Locks the arrays of intermediate results while fields are read.
-    pub(super) fn lock_scratch(&self) -> MutexGuard<'_, Scratch> {
+    pub(crate) fn lock_scratch(&self) -> MutexGuard<'_, Scratch> {
         self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -276,30 +267,30 @@ impl Band {
 
     /// The elements before and after the band with displacements that the band keeps. The last vector may
     /// extend beyond the last row.
-    pub(super) fn halos(&self, layout: &Layout) -> [Range<isize>; 2] {
+    pub fn halos(&self, layout: &Layout) -> [Range<isize>; 2] {
         let (first, halo) = (self.first as isize, self.halo as isize);
-        let end = first + self.len.min(layout.len() - self.first) as isize;
+        let end = first + self.len.min(layout.n_elements() - self.first) as isize;
         [first - halo..first, end..first + self.len as isize + halo]
     }
 
     /// Index in the displacements of an element, which may belong to a halo.
-    pub(super) fn halo_index(&self, element: isize) -> usize {
+    pub fn halo_index(&self, element: isize) -> usize {
         (element - self.first as isize + self.halo as isize) as usize
     }
 
     /// Elements of the band's tile `t`, counted from the band's first.
-    pub(super) fn elements(&self, t: usize) -> Range<usize> {
+    pub fn elements(&self, t: usize) -> Range<usize> {
         t * TILE..((t + 1) * TILE).min(self.len)
     }
 
     /// Vectors of the band's tile `t`.
-    pub(super) fn vectors(&self, t: usize) -> Range<usize> {
+    pub fn vectors(&self, t: usize) -> Range<usize> {
         let elements = self.elements(t);
         elements.start / LANES..elements.end / LANES
     }
 
     /// Records whether an element moves.
-    pub(super) fn set_moving(&mut self, k: usize, moves: bool) {
+    pub fn set_moving(&mut self, k: usize, moves: bool) {
         let bit = 1 << (k % LANES);
         if moves {
             self.moving[k / LANES] |= bit;
@@ -309,15 +300,9 @@ impl Band {
         }
     }
 
-    /// Adds the blocks in contact of the band to `counts`, each in its bin: those that slide, or those that
-    /// do not.
-    pub(super) fn count_in_contact(
-        &self,
-        layout: &Layout,
-        bins: &PositionBins,
-        sliding: bool,
-        counts: &mut [i64],
-    ) {
+    /// Passes column and row of the blocks in contact of the band to `take`: of those that slide, or of those
+    /// that do not.
+    pub fn for_each_in_contact(&self, layout: &Layout, sliding: bool, mut take: impl FnMut(usize, usize)) {
         for (v, contact) in self.in_contact.iter().enumerate() {
             let slides = self.sliding(v);
             let mut counted = contact & if sliding { slides } else { !slides };
@@ -327,7 +312,7 @@ impl Band {
             let (row, column) = layout.row_column((self.first + v * LANES) as isize);
             while counted != 0 {
                 let (i, j) = layout.place_after(row as usize, column, counted.trailing_zeros() as usize);
-                counts[bins.bin(i, j)] += 1;
+                take(i, j);
                 counted &= counted - 1;
             }
         }
@@ -335,7 +320,7 @@ impl Band {
 
     /// Displacements, with halos, and velocities of a sheet; the lowest has number 0.
     #[inline(always)]
-    pub(super) fn of_sheet(&self, number: usize) -> [&Vectors; 2] {
+    pub fn of_sheet(&self, number: usize) -> [&Vectors; 2] {
         match number.checked_sub(1) {
             None => [&self.displacement, &self.velocity],
             Some(number) => {
@@ -351,7 +336,7 @@ impl Band {
 
     /// Displacements, with halos, and velocities of a sheet, to be written; the lowest has number 0.
     #[inline(always)]
-    pub(super) fn of_sheet_mut(&mut self, number: usize) -> [&mut Vectors; 2] {
+    pub fn of_sheet_mut(&mut self, number: usize) -> [&mut Vectors; 2] {
         match number.checked_sub(1) {
             None => [&mut self.displacement, &mut self.velocity],
             Some(number) => {
@@ -366,7 +351,7 @@ impl Band {
     }
 
     /// Displacement that an element of a sheet will have after moving by `move_dt`.
-    pub(super) fn advanced(&self, sheet: usize, k: usize, move_dt: f64) -> [f64; 2] {
+    pub fn advanced(&self, sheet: usize, k: usize, move_dt: f64) -> [f64; 2] {
         let [displacement, velocity] = self.of_sheet(sheet);
         let ([ux, uy], [vx, vy]) = (displacement.at(self.halo + k), velocity.at(k));
         [ux + move_dt * vx, uy + move_dt * vy]
@@ -375,7 +360,7 @@ impl Band {
     /// One step of the scheduled tiles: displacements to t_n, forces there, velocities to t_n + dt/2. The
     /// halos contain the displacements at t_n of the elements around the band.
     #[inline(always)]
-    pub(super) fn sweep<S: Simd, G: Geometry>(
+    pub(crate) fn sweep<S: Simd, G: Geometry>(
         &mut self,
         simd: S,
         geometry: G,
@@ -461,13 +446,13 @@ impl Band {
 
     /// First element below element `k` with springs to the next row that element `k` needs.
     #[inline(always)]
-    pub(super) fn below(&self, k: usize) -> usize {
+    pub(crate) fn below(&self, k: usize) -> usize {
         k - whole_vectors(self.stride + 1)
     }
 
     /// Number of tiles after the present one that must have moved before its forces are computed.
     #[inline(always)]
-    pub(super) fn tiles_ahead(&self) -> usize {
+    pub(crate) fn tiles_ahead(&self) -> usize {
         (self.stride + MIRROR).div_ceil(TILE)
     }
 
@@ -504,7 +489,7 @@ impl Band {
     /// Forces of the springs to the next row of the elements `from..to` of a sheet with the given
     /// displacements, into the ring buffer. A separate function, compiled once for all callers.
     #[inline(never)]
-    pub(super) fn upward<S: Simd, G: Geometry>(
+    pub(crate) fn upward<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -658,7 +643,7 @@ impl Band {
     /// Eq. 3 in a tile of a sheet with the given displacements. A separate function, compiled once for all
     /// callers.
     #[inline(never)]
-    pub(super) fn lattice_forces<S: Simd, G: Geometry>(
+    pub(crate) fn lattice_forces<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -731,7 +716,7 @@ impl Band {
     /// Energy of the springs of a vector of a sheet with the given displacements and relative thickness, as
     /// in [`Sums`].
     #[inline(always)]
-    pub(super) fn lattice_energy<S: Simd, G: Geometry>(
+    pub(crate) fn lattice_energy<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -762,7 +747,7 @@ impl Band {
     /// `place` in the scratch array. `next`: the elements that need friction next, and those that move next;
     /// `across`: velocities along y for the thresholds, if they are not those of the elements.
     #[inline(always)]
-    pub(super) fn friction_loop<'a, S: Simd, const DIFFER: bool>(
+    pub(crate) fn friction_loop<'a, S: Simd, const DIFFER: bool>(
         &'a mut self,
         simd: S,
         step: Step,
@@ -815,7 +800,7 @@ impl Band {
     }
 
     /// Kinetic friction of an element at the latest sweep, from its friction `at_rest`.
-    pub(super) fn kinetic_force(&self, k: usize, at_rest: f64, velocity_to_force: f64) -> f64 {
+    pub fn kinetic_force(&self, k: usize, at_rest: f64, velocity_to_force: f64) -> f64 {
         let Some(thresholds) = &self.thresholds else {
             return at_rest;
         };
@@ -847,7 +832,7 @@ impl Band {
     /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo;
     /// empty where all springs are equal.
     #[inline(always)]
-    pub(super) fn spring_factors<G: Geometry>(&self, bond: usize, first: usize, n: usize) -> Chunks<'_> {
+    pub(crate) fn spring_factors<G: Geometry>(&self, bond: usize, first: usize, n: usize) -> Chunks<'_> {
         match &self.variations {
             Some(variations) if G::BLOCKS_DIFFER => variations.springs[bond][first..first + n].as_chunks().0,
             _ => &[],
@@ -857,7 +842,7 @@ impl Band {
     /// Number of steps for which vector `v` at rest can be skipped, with its lattice forces at `place` in the
     /// scratch array.
     #[inline(always)]
-    pub(super) fn steps_until_slip<S: Simd>(
+    pub(crate) fn steps_until_slip<S: Simd>(
         &self,
         simd: S,
         step: Step,
@@ -895,7 +880,7 @@ impl Band {
     /// Measures displacements and their differences along springs, in tiles in which or next to which
     /// anything has moved since the latest measurement.
     #[inline(always)]
-    pub(super) fn measure_displacements<S: Simd>(&mut self, simd: S) {
+    pub(crate) fn measure_displacements<S: Simd>(&mut self, simd: S) {
         (self.extent, self.difference) = ([f64::NEG_INFINITY; 4], [0.0; 2]);
         for t in 0..self.tiles.len() {
             if self.tiles[t].displacements_are_old {
@@ -964,7 +949,7 @@ impl Band {
     /// Springs of vector `v` to the east, north, north-east and north-west: masks of the existing ones, and
     /// the positions of their other ends.
     #[inline(always)]
-    pub(super) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
+    pub(crate) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
         let here = self.halo + v * LANES;
         let above = here + self.stride;
         let ends = [here + 1, above, above + 1, above - 1];
@@ -980,7 +965,7 @@ impl Band {
 
     /// Largest `tau_c^2` of the blocks in contact in those of the given vectors of a tile in which nothing
     /// moves.
-    pub(super) fn resting_stress_square(&self, t: usize, vectors: u32, step: &Step) -> f64 {
+    pub fn resting_stress_square(&self, t: usize, vectors: u32, step: &Step) -> f64 {
         // Block by block, since this is called for a vector only once after many steps of rest. The contact
         // of a stuck block bears the whole drive force, so that its spring forces are not needed.
         let mut most = 0.0_f64;
@@ -1007,7 +992,7 @@ impl Band {
 
 /// Moves some elements of a band (Eq. 8), `u += dt v`. Its displacements have a halo.
 #[inline(always)]
-pub(super) fn move_blocks<S: Simd>(
+pub(crate) fn move_blocks<S: Simd>(
     simd: S,
     dt: f64,
     displacement: &mut Vectors,

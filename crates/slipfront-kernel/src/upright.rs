@@ -14,7 +14,7 @@ impl Band {
     /// Eqs. 2 and 4-7 along the interface under a tile with known lattice forces. A separate function,
     /// compiled once for all spring formulas.
     #[inline(never)]
-    pub(super) fn interface_of_tile<S: Simd>(
+    pub(crate) fn interface_of_tile<S: Simd>(
         &mut self,
         simd: S,
         step: &Step,
@@ -51,7 +51,7 @@ impl Band {
 
     /// Mask of the elements of vector `v` that slide: those that move, or at an interface those that move
     /// along x.
-    pub(super) fn sliding(&self, v: usize) -> u8 {
+    pub fn sliding(&self, v: usize) -> u8 {
         if self.interface.is_none() {
             return self.moving[v];
         }

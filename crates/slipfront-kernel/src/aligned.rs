@@ -6,7 +6,7 @@ use super::vector::{Chunks, ChunksMut, LANES};
 
 /// A fixed number of f64 on a 64-byte boundary.
 #[derive(Debug, Default)]
-pub(super) struct Aligned {
+pub struct Aligned {
     /// The numbers, after up to seven unused ones. The vector never grows, so that its memory never moves.
     storage: Vec<f64>,
     first: usize,
@@ -14,7 +14,8 @@ pub(super) struct Aligned {
 }
 
 impl Aligned {
-    pub(super) fn filled(len: usize, value: f64) -> Self {
+    /// Numbers with one value.
+    pub fn filled(len: usize, value: f64) -> Self {
         let storage = vec![value; len + LANES - 1];
         let first = storage.as_ptr().align_offset(64).min(LANES - 1);
         Self { storage, first, len }
@@ -22,7 +23,7 @@ impl Aligned {
 
     /// The cache lines from element `k` on, which may be beyond the end.
     #[inline(always)]
-    pub(super) fn cache_lines(&self, k: usize) -> CacheLines {
+    pub(crate) fn cache_lines(&self, k: usize) -> CacheLines {
         CacheLines(self.as_ptr().wrapping_add(k).cast())
     }
 }
@@ -30,12 +31,12 @@ impl Aligned {
 /// Cache lines to fetch ahead of their use. On a lattice larger than the cache the sweep would otherwise wait
 /// for memory: it reads more arrays than processors prefetch by themselves.
 #[derive(Clone, Copy)]
-pub(super) struct CacheLines(*const i8);
+pub(crate) struct CacheLines(*const i8);
 
 impl CacheLines {
     /// Asks the processor to fetch the line with this index.
     #[inline(always)]
-    pub(super) fn prefetch(self, line: usize) {
+    pub(crate) fn prefetch(self, line: usize) {
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
@@ -68,32 +69,38 @@ impl DerefMut for Aligned {
 
 /// A plane vector per element, one array per component.
 #[derive(Debug, Default)]
-pub(super) struct Vectors {
-    pub(super) x: Aligned,
-    pub(super) y: Aligned,
+pub struct Vectors {
+    /// Components along x.
+    pub x: Aligned,
+    /// Components along y.
+    pub y: Aligned,
 }
 
 impl Vectors {
-    pub(super) fn zeros(len: usize) -> Self {
+    /// Vectors of length 0.
+    pub fn zeros(len: usize) -> Self {
         Self {
             x: Aligned::filled(len, 0.0),
             y: Aligned::filled(len, 0.0),
         }
     }
 
+    /// The vector of element `k`.
     #[inline(always)]
-    pub(super) fn at(&self, k: usize) -> [f64; 2] {
+    pub fn at(&self, k: usize) -> [f64; 2] {
         [self.x[k], self.y[k]]
     }
 
-    pub(super) fn set(&mut self, k: usize, [x, y]: [f64; 2]) {
+    /// Sets the vector of element `k`.
+    #[inline]
+    pub fn set(&mut self, k: usize, [x, y]: [f64; 2]) {
         (self.x[k], self.y[k]) = (x, y);
     }
 }
 
 /// The `n` elements from `from` on, in vectors of eight.
 #[inline(always)]
-pub(super) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [Chunks<'_>; 2] {
+pub(crate) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [Chunks<'_>; 2] {
     [
         vectors.x[from..from + n].as_chunks().0,
         vectors.y[from..from + n].as_chunks().0,
@@ -102,7 +109,7 @@ pub(super) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [Chunks<'_>; 2
 
 /// The `n` elements from `from` on, in vectors of eight to write to.
 #[inline(always)]
-pub(super) fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
+pub(crate) fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
     [
         vectors.x[from..from + n].as_chunks_mut().0,
         vectors.y[from..from + n].as_chunks_mut().0,

@@ -13,30 +13,31 @@ use super::vector::LANES;
 use crate::lattice::{Edges, Lattice};
 
 /// Number of elements in a tile, which is scheduled as a whole.
-pub(super) const TILE: usize = 256;
+pub const TILE: usize = 256;
 
 /// Number of vectors in a tile: one bit each in a `u32`.
-pub(super) const VECTORS: usize = TILE / LANES;
+pub const VECTORS: usize = TILE / LANES;
 
 /// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row
 /// joins.
 const MIN_ROW_ELEMENTS: usize = 16;
 
+/// Positions of the blocks of some rows of a lattice.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
+pub struct Layout {
     lattice: Lattice,
     /// The first row of the lattice that is stored here, and their number.
     first_row: usize,
     rows: usize,
     /// Number of elements from one row to the next.
-    pub(super) stride: usize,
+    pub stride: usize,
     /// Ghosts before the first block of a row.
     ghosts: usize,
 }
 
 impl Layout {
     /// The layout of the given rows of a lattice.
-    pub(super) fn new(lattice: &Lattice, rows: &Range<usize>) -> Self {
+    pub fn new(lattice: &Lattice, rows: &Range<usize>) -> Self {
         let ghosts = usize::from(lattice.edges[0] == Edges::Periodic);
         Self {
             lattice: *lattice,
@@ -48,28 +49,28 @@ impl Layout {
     }
 
     /// Number of elements, up to the end of the last row.
-    pub(super) fn len(&self) -> usize {
+    pub fn n_elements(&self) -> usize {
         self.rows * self.stride
     }
 
     /// Number of blocks of these rows.
-    pub(super) fn n_own_blocks(&self) -> usize {
+    pub fn n_own_blocks(&self) -> usize {
         self.rows * self.lattice.nx
     }
 
     /// Number of tiles. The last is shorter; only its last vector is filled up with elements that are no
     /// blocks.
-    pub(super) fn n_tiles(&self) -> usize {
-        self.len().div_ceil(TILE)
+    pub fn n_tiles(&self) -> usize {
+        self.n_elements().div_ceil(TILE)
     }
 
     /// Element of block (i, j).
-    pub(super) fn element(&self, i: usize, j: usize) -> usize {
+    pub fn element(&self, i: usize, j: usize) -> usize {
         j * self.stride + self.ghosts + i
     }
 
     /// Element of the block with index `b` in the lattice.
-    pub(super) fn element_of(&self, b: usize) -> usize {
+    pub fn element_of(&self, b: usize) -> usize {
         let (i, j) = self.lattice.column_row(b);
         self.element(i, j)
     }
@@ -81,31 +82,31 @@ impl Layout {
     }
 
     /// Index in the lattice of the block at an element, if there is one.
-    pub(super) fn block(&self, element: usize) -> Option<usize> {
+    pub fn block(&self, element: usize) -> Option<usize> {
         let j = element / self.stride;
         let i = self.column(element)?;
         (j < self.rows).then(|| self.lattice.block(i, j))
     }
 
     /// Number of rows.
-    pub(super) fn rows(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.rows
     }
 
     /// Row of the lattice that is stored as row `j`.
-    pub(super) fn lattice_row(&self, j: usize) -> usize {
+    pub fn lattice_row(&self, j: usize) -> usize {
         self.first_row + j
     }
 
     /// The ghosts of row `j`, each with the element that it copies.
-    pub(super) fn ghosts_of_row(&self, j: usize) -> [(usize, usize); 2] {
+    pub fn ghosts_of_row(&self, j: usize) -> [(usize, usize); 2] {
         let (first, last) = (self.element(0, j), self.element(self.lattice.nx - 1, j));
         [(first - 1, last), (last + 1, first)]
     }
 
     /// The blocks among these elements, row by row: the row, the column of the first block, and the elements
     /// of the blocks.
-    pub(super) fn rows_among(
+    pub fn rows_among(
         &self,
         elements: Range<usize>,
     ) -> impl Iterator<Item = (usize, usize, Range<usize>)> + use<> {
@@ -121,7 +122,8 @@ impl Layout {
         })
     }
 
-    pub(super) fn has_ghosts(&self) -> bool {
+    /// Whether rows have ghosts at their ends.
+    pub fn has_ghosts(&self) -> bool {
         self.ghosts > 0
     }
 
@@ -130,7 +132,7 @@ impl Layout {
     }
 
     /// Whether other ranks hold neighbouring rows below the first and above the last of the stored rows.
-    pub(super) fn has_neighbours(&self) -> [bool; 2] {
+    pub fn has_neighbours(&self) -> [bool; 2] {
         if self.rows == self.lattice.ny {
             return [false; 2];
         }
@@ -139,20 +141,20 @@ impl Layout {
     }
 
     /// Whether the last and the first of the stored rows are neighbours.
-    pub(super) fn wraps_along_y(&self) -> bool {
+    pub fn wraps_along_y(&self) -> bool {
         self.is_periodic_along_y() && self.rows == self.lattice.ny
     }
 
     /// Row and column of an element, ghosts included; the row counts from the first stored row, the column
     /// from the first ghost.
-    pub(super) fn row_column(&self, element: isize) -> (isize, usize) {
+    pub fn row_column(&self, element: isize) -> (isize, usize) {
         let stride = self.stride as isize;
         (element.div_euclid(stride), element.rem_euclid(stride) as usize)
     }
 
     /// Column and row of the lattice of the block `lanes` elements after a place of
     /// [`row_column`](Self::row_column), which is in the same row or the next.
-    pub(super) fn place_after(&self, row: usize, column: usize, lanes: usize) -> (usize, usize) {
+    pub fn place_after(&self, row: usize, column: usize, lanes: usize) -> (usize, usize) {
         let column = column + lanes;
         match column.checked_sub(self.stride) {
             None => (column - self.ghosts, self.lattice_row(row)),
@@ -162,7 +164,7 @@ impl Layout {
 
     /// Column and row of the lattice of the block at an element, or of the block that a ghost copies; none
     /// beyond a free edge or between the rows. The element may lie before the first or after the last row.
-    pub(super) fn place(&self, element: isize) -> Option<[usize; 2]> {
+    pub fn place(&self, element: isize) -> Option<[usize; 2]> {
         let (nx, ny) = (self.lattice.nx, self.lattice.ny as isize);
         let (row, column) = self.row_column(element);
         let mut j = row + self.first_row as isize;
@@ -175,7 +177,7 @@ impl Layout {
 
     /// Whether the lattice has the springs of an element to the east, north, north-east and north-west. The
     /// element may lie before the first or after the last row.
-    pub(super) fn springs(&self, element: isize) -> [bool; 4] {
+    pub fn springs(&self, element: isize) -> [bool; 4] {
         let ghosts = self.ghosts as isize;
         let (nx, ny) = (self.lattice.nx as isize, self.lattice.ny as isize);
         let (row, column) = self.row_column(element);
@@ -190,12 +192,8 @@ impl Layout {
 
     /// Pieces of the elements from `from` to `to`, each with its first element. Elements before the first row
     /// or after the last are left out, or taken from the other end if the axis is periodic.
-    pub(super) fn pieces(
-        &self,
-        from: isize,
-        to: isize,
-    ) -> impl Iterator<Item = (isize, Range<usize>)> + use<> {
-        let (n, wraps) = (self.len() as isize, self.wraps_along_y());
+    pub fn pieces(&self, from: isize, to: isize) -> impl Iterator<Item = (isize, Range<usize>)> + use<> {
+        let (n, wraps) = (self.n_elements() as isize, self.wraps_along_y());
         let mut first = from;
         std::iter::from_fn(move || {
             loop {
@@ -214,9 +212,9 @@ impl Layout {
     }
 
     /// Marks the vectors that contain the elements from `first` to `last` or neighbours of these: see
-    /// [`mark_vectors`]. The elements may lie outside the rows.
-    pub(super) fn mark_around(&self, first: isize, last: isize, masks: &[AtomicU32]) {
-        let (n, stride) = (self.len() as isize, self.stride as isize);
+    /// `mark_vectors`. The elements may lie outside the rows.
+    pub fn mark_around(&self, first: isize, last: isize, masks: &[AtomicU32]) {
+        let (n, stride) = (self.n_elements() as isize, self.stride as isize);
         for row in [-stride, 0, stride] {
             let (from, to) = (first + row - 1, last + row + 1);
             if from >= 0 && to < n {
@@ -283,11 +281,11 @@ mod tests {
             for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400), (254, 5)] {
                 let lattice = Lattice::with_edges(nx, ny, edges);
                 let layout = Layout::new(&lattice, &(0..lattice.ny));
-                for vector in 0..layout.len().div_ceil(LANES) {
+                for vector in 0..layout.n_elements().div_ceil(LANES) {
                     let masks = vectors_around(&layout, vector);
                     let is_marked =
                         |element: usize| masks[element / TILE] >> (element % TILE / LANES) & 1 == 1;
-                    for element in vector * LANES..((vector + 1) * LANES).min(layout.len()) {
+                    for element in vector * LANES..((vector + 1) * LANES).min(layout.n_elements()) {
                         assert!(is_marked(element));
                         let Some(b) = layout.block(element) else { continue };
                         let (i, j) = lattice.column_row(b);
@@ -327,7 +325,9 @@ mod tests {
             assert_eq!(layout.block(layout.element_of(b)), Some(b));
         }
         assert_eq!(
-            (0..layout.len()).filter(|&e| layout.block(e).is_some()).count(),
+            (0..layout.n_elements())
+                .filter(|&e| layout.block(e).is_some())
+                .count(),
             20
         );
         for j in 0..4 {

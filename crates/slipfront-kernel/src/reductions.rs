@@ -4,7 +4,7 @@ const LANES: usize = 8;
 
 /// Largest `term(k)` over `0..n`, at least 0.
 #[inline(always)]
-pub(crate) fn largest(n: usize, term: impl Fn(usize) -> f64) -> f64 {
+pub fn largest(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     let larger = |one: f64, other: f64| if other > one { other } else { one };
     let mut lanes = [0.0; LANES];
     let whole = n - n % LANES;

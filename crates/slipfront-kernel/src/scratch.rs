@@ -21,31 +21,31 @@ use super::vector::LANES;
 // mirror repeats the beginning there.
 /// Intermediate results of a sweep over the tiles, which are not needed later.
 #[derive(Debug, Default)]
-pub(super) struct Scratch {
+pub(crate) struct Scratch {
     /// Forces of the latest springs to the next row: a ring buffer over the elements.
-    pub(super) upward: [Vectors; 3],
+    pub(crate) upward: [Vectors; 3],
     /// Lattice forces `F_c` of the present tile.
-    pub(super) lattice: Vectors,
+    pub(crate) lattice: Vectors,
     /// Drive forces `F_s` of the present tile.
-    pub(super) drive: Vectors,
+    pub(crate) drive: Vectors,
     /// Velocities without friction of the present tile.
-    pub(super) free: Vectors,
+    pub(crate) free: Vectors,
     /// Magnitudes of the velocities without friction of the present tile.
-    pub(super) free_speed: Aligned,
+    pub(crate) free_speed: Aligned,
 }
 
 /// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over the
 /// end.
-pub(super) const MIRROR: usize = 2 * LANES;
+pub(crate) const MIRROR: usize = 2 * LANES;
 
 /// Number of elements in the fewest whole vectors that hold `elements`.
-pub(super) fn whole_vectors(elements: usize) -> usize {
+pub(crate) fn whole_vectors(elements: usize) -> usize {
     elements.next_multiple_of(LANES)
 }
 
 impl Scratch {
     /// Room for the springs of a tile, with `stride` elements per row.
-    pub(super) fn of_springs(stride: usize) -> Self {
+    pub(crate) fn of_springs(stride: usize) -> Self {
         let ring = whole_vectors(stride + 1 + TILE + LANES) + MIRROR;
         Self {
             upward: [(); 3].map(|()| Vectors::zeros(ring)),
@@ -56,7 +56,7 @@ impl Scratch {
 
     /// Number of elements in the ring buffer.
     #[inline(always)]
-    pub(super) fn ring(&self) -> usize {
+    pub(crate) fn ring(&self) -> usize {
         self.upward[0].x.len() - MIRROR
     }
 
@@ -64,7 +64,7 @@ impl Scratch {
     /// row below, `stride` elements before, wrap around: first element, end, and the two positions in the
     /// buffer.
     #[inline(always)]
-    pub(super) fn ring_segments(
+    pub(crate) fn ring_segments(
         &self,
         stride: usize,
         from: usize,

@@ -3,35 +3,36 @@
 
 use super::step::Step;
 use super::variations::LargestFactors;
-use crate::checkpoint::MotionBounds;
 use crate::fixed_point::{FixedPoint, Window};
+use crate::motion_bounds::MotionBounds;
 
 /// Quanta of the sums in a sweep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quanta {
+pub struct Quanta {
     /// Windows of `u - c` for each axis; c is the centre of the window.
-    pub(super) displacement: [Window; 2],
+    pub displacement: [Window; 2],
     /// Quanta of `w (u - c)`, with the relative stiffness w of the drive springs.
-    pub(super) weighted_displacement: [FixedPoint; 2],
+    pub weighted_displacement: [FixedPoint; 2],
     /// Quanta of `w (u - c)^2`.
-    pub(super) displacement_square: FixedPoint,
+    pub displacement_square: FixedPoint,
     /// Quanta of `w v`.
-    pub(super) velocity: FixedPoint,
+    pub velocity: FixedPoint,
     /// Quanta of masses times squares of sums of two velocities.
-    pub(super) motion_square: FixedPoint,
+    pub motion_square: FixedPoint,
     /// Quanta of products of a force and a sum of two velocities.
-    pub(super) friction_work: FixedPoint,
+    pub friction_work: FixedPoint,
     /// Quanta of squares of spring forces over the factors of the springs.
-    pub(super) lattice_energy: FixedPoint,
+    pub lattice_energy: FixedPoint,
     /// Quanta of `g (u_k+1 - u_k)^2` between the sheets of a stack.
-    pub(super) between_sheets: FixedPoint,
+    pub between_sheets: FixedPoint,
 }
 
 /// Factor for rounding in the bounds and in the numbers that they bound.
 const MARGIN: f64 = 1.0 + 1e-6;
 
 impl Quanta {
-    pub(super) fn new(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> Self {
+    /// Quanta for a step from bounds on the motion and the largest factors of any block.
+    pub fn new(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> Self {
         let [x, y] = bounds.windows.map(|window| window.differences().limit());
         let spring_force = largest.springs.straight * bounds.spring_range.limit();
         let speed = highest_speed(step, bounds, largest);

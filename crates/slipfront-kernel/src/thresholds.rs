@@ -7,30 +7,78 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 use super::aligned::Aligned;
 use super::step::Step;
 use super::vector::{Chunks, ChunksMut, LANES, is_zero, load, load_vec2, splat, square};
-use crate::friction::{SlipWeakening, Weakening};
-use crate::model::Model;
 
 /// Thresholds of the elements of a band at the latest sweep, where they change.
 #[derive(Debug)]
-pub(super) struct Thresholds {
+pub struct Thresholds {
     /// Kinetic impulses at the present speed or slip.
     kinetic_impulses: Aligned,
-    law: ChangingLaw,
+    state: Changing,
 }
 
 /// Law by which thresholds change.
-#[derive(Debug)]
-enum ChangingLaw {
-    /// Kinetic friction falls with speed; adhesion does not.
-    Speed { weakening: Weakening, adhesion: f64 },
+#[derive(Clone, Copy, Debug)]
+pub enum ChangingLaw {
+    /// Kinetic friction falls with speed.
+    Speed(FallWithSpeed),
     /// Strength falls with slip.
+    Slip(FallWithSlip),
+}
+
+/// Kinetic friction that falls with speed, while adhesion does not: `K - s (K - tau l^2)` with the share
+/// `s = (1 - ratio) |v|/(v_c + |v|)`.
+#[derive(Clone, Copy, Debug)]
+pub struct FallWithSpeed {
+    /// Speed `v_c` at which half of the fall is reached.
+    pub critical_speed: f64,
+    /// Kinetic friction at high speed over that at rest.
+    pub ratio: f64,
+    /// Adhesion `tau l^2` of a block.
+    pub adhesion: f64,
+}
+
+/// Strength that falls linearly over a slip.
+#[derive(Clone, Copy, Debug)]
+pub struct FallWithSlip {
+    /// Slip `D_c` over which strength falls.
+    pub length: f64,
+    /// Time t* after which a stuck block has its full strength again; none if no block heals.
+    pub healing_time: Option<f64>,
+}
+
+impl FallWithSlip {
+    /// Share of the fall that is left after a slip, `max(0, 1 - s/D_c)`.
+    #[inline(always)]
+    pub fn share_left(&self, slip: f64) -> f64 {
+        (1.0 - slip * (1.0 / self.length)).max(0.0)
+    }
+
+    /// Share of the work of the fall that is done after a slip, `1 - max(0, 1 - s/D_c)^2`.
+    #[inline(always)]
+    pub fn share_lost(&self, slip: f64) -> f64 {
+        let left = self.share_left(slip);
+        1.0 - left * left
+    }
+
+    /// Whether a stuck block that last moved at `moved_at` has its full strength again at `time_star`.
+    #[inline(always)]
+    pub fn heals(&self, moved_at: f64, time_star: f64) -> bool {
+        self.healing_time
+            .is_some_and(|healing_time| time_star - moved_at >= healing_time)
+    }
+}
+
+/// State of the elements under a law that changes their thresholds.
+#[derive(Debug)]
+enum Changing {
+    Speed(FallWithSpeed),
     Slip(Slipped),
 }
 
 /// Slip of the elements, with the memory of the law.
 #[derive(Debug)]
 struct Slipped {
-    law: SlipWeakening,
+    law: FallWithSlip,
     /// Kinetic impulses of the strength that falls with slip.
     drops: Aligned,
     slip: Aligned,
@@ -40,45 +88,40 @@ struct Slipped {
 }
 
 impl Thresholds {
-    /// Thresholds of a model in which they change; none for other models.
-    pub(super) fn of(model: &Model, n_elements: usize) -> Option<Self> {
-        let coulomb = model.friction.coulomb()?;
+    /// Thresholds of elements that have not slipped.
+    pub(crate) fn new(law: ChangingLaw, n_elements: usize) -> Self {
         let zeros = || Aligned::filled(n_elements, 0.0);
-        let law = match (coulomb.weakening, coulomb.slip_weakening) {
-            (Some(weakening), _) => ChangingLaw::Speed {
-                weakening,
-                adhesion: model.surface.adhesion().of_kinetic,
-            },
-            (None, Some(law)) => ChangingLaw::Slip(Slipped {
+        let state = match law {
+            ChangingLaw::Speed(law) => Changing::Speed(law),
+            ChangingLaw::Slip(law) => Changing::Slip(Slipped {
                 law,
                 drops: zeros(),
                 slip: zeros(),
                 healing: law.healing_time.map(|_| [zeros(), zeros()]),
             }),
-            (None, None) => return None,
         };
-        Some(Self {
+        Self {
             kinetic_impulses: Aligned::filled(n_elements, f64::INFINITY),
-            law,
-        })
+            state,
+        }
     }
 
     /// Whether both thresholds of a block are its strength at its present slip.
-    pub(super) fn follow_slip(&self) -> bool {
-        matches!(self.law, ChangingLaw::Slip(_))
+    pub(crate) fn follow_slip(&self) -> bool {
+        matches!(self.state, Changing::Slip(_))
     }
 
     /// Sets the largest fall of friction of an element, as an impulse, from the threshold at which the
     /// element first slips.
-    pub(super) fn set_drop(&mut self, k: usize, impulse: f64) {
-        if let ChangingLaw::Slip(slipped) = &mut self.law {
+    pub(crate) fn set_drop(&mut self, k: usize, impulse: f64) {
+        if let Changing::Slip(slipped) = &mut self.state {
             slipped.drops[k] = impulse;
         }
     }
 
     /// Finds the kinetic impulses of all elements at their slip, from those at rest, before the first sweep.
-    pub(super) fn begin(&mut self, at_rest: &[f64]) {
-        if let ChangingLaw::Slip(Slipped { law, drops, slip, .. }) = &self.law {
+    pub(crate) fn begin(&mut self, at_rest: &[f64]) {
+        if let Changing::Slip(Slipped { law, drops, slip, .. }) = &self.state {
             for (k, impulse) in self.kinetic_impulses.iter_mut().enumerate() {
                 *impulse = at_rest[k] + drops[k] * law.share_left(slip[k]);
             }
@@ -89,7 +132,7 @@ impl Thresholds {
     /// ends now, from the impulses of slow sliding without slip. If friction depends on speed, the inverse
     /// masses of the blocks are used.
     #[inline(always)]
-    pub(super) fn update<S: Simd>(
+    pub(crate) fn update<S: Simd>(
         &mut self,
         simd: S,
         step: &Step,
@@ -98,30 +141,30 @@ impl Thresholds {
         (at_rest, inverse_mass): (Chunks, Chunks),
     ) {
         let impulses = self.kinetic_impulses[elements.clone()].as_chunks_mut().0;
-        match &mut self.law {
-            ChangingLaw::Speed { weakening, adhesion } => {
-                let adhesive = step.integrator.force_to_velocity * *adhesion;
+        match &mut self.state {
+            Changing::Speed(law) => {
+                let adhesive = step.integrator.force_to_velocity * law.adhesion;
                 let at_rest = (at_rest, inverse_mass, adhesive);
-                weaken(simd, weakening, velocity, at_rest, impulses);
+                weaken(simd, law, velocity, at_rest, impulses);
             }
-            ChangingLaw::Slip(slipped) => slipped.weaken(simd, step, elements, velocity, at_rest, impulses),
+            Changing::Slip(slipped) => slipped.weaken(simd, step, elements, velocity, at_rest, impulses),
         }
     }
 
     /// Kinetic impulses of some elements at the latest sweep.
     #[inline(always)]
-    pub(super) fn kinetic_impulses(&self, elements: Range<usize>) -> Chunks<'_> {
+    pub(crate) fn kinetic_impulses(&self, elements: Range<usize>) -> Chunks<'_> {
         self.kinetic_impulses[elements].as_chunks().0
     }
 
     /// Kinetic impulse of an element at the latest sweep.
-    pub(super) fn kinetic_impulse(&self, k: usize) -> f64 {
+    pub(crate) fn kinetic_impulse(&self, k: usize) -> f64 {
         self.kinetic_impulses[k]
     }
 
     /// A column of a checkpoint, to be filled.
-    pub(super) fn column_mut(&mut self, column: usize) -> Option<&mut [f64]> {
-        let ChangingLaw::Slip(Slipped { slip, healing, .. }) = &mut self.law else {
+    pub fn column_mut(&mut self, column: usize) -> Option<&mut [f64]> {
+        let Changing::Slip(Slipped { slip, healing, .. }) = &mut self.state else {
             return None;
         };
         match (column, healing) {
@@ -133,10 +176,10 @@ impl Thresholds {
 
     /// Value of an element in a column of a checkpoint at t*; the element moves or is stuck. For an element
     /// that has healed since it was last swept, this is the value that its next sweep will find.
-    pub(super) fn memory(&self, column: usize, k: usize, is_moving: bool, time_star: f64) -> f64 {
-        let ChangingLaw::Slip(Slipped {
+    pub fn memory(&self, column: usize, k: usize, is_moving: bool, time_star: f64) -> f64 {
+        let Changing::Slip(Slipped {
             law, slip, healing, ..
-        }) = &self.law
+        }) = &self.state
         else {
             return f64::NAN;
         };
@@ -158,7 +201,7 @@ impl Thresholds {
 }
 
 impl Slipped {
-    /// Kinetic impulses at the slip of some elements: the operations of [`SlipWeakening::share_left`], eight
+    /// Kinetic impulses at the slip of some elements: the operations of [`FallWithSlip::share_left`], eight
     /// elements at a time.
     #[inline(always)]
     fn weaken<S: Simd>(
@@ -208,13 +251,13 @@ impl Slipped {
     }
 }
 
-/// Kinetic impulses at these velocities, from the impulses of slow sliding: the operations of
-/// [`Weakening::kinetic_force`]. `adhesive` is the impulse of adhesion on a block of mass 1. Elements that
-/// are no blocks have infinite impulses, which become NaN and also keep them at rest.
+/// Kinetic impulses at these velocities, from the impulses of slow sliding, by [`FallWithSpeed`]. `adhesive`
+/// is the impulse of adhesion on a block of mass 1. Elements that are no blocks have infinite impulses, which
+/// become NaN and also keep them at rest.
 #[inline(always)]
 fn weaken<S: Simd>(
     simd: S,
-    weakening: &Weakening,
+    law: &FallWithSpeed,
     [vx, vy]: [Chunks; 2],
     (impulses, inverse_mass, adhesive): (Chunks, Chunks, f64),
     weakened: ChunksMut,
@@ -222,8 +265,8 @@ fn weaken<S: Simd>(
     let n = weakened.len();
     let (vx, vy, impulses, inverse_mass) = (&vx[..n], &vy[..n], &impulses[..n], &inverse_mass[..n]);
     let [adhesive, zero] = [adhesive, 0.0].map(|number| splat(simd, number));
-    let fall = splat(simd, 1.0 - weakening.ratio);
-    let critical_speed = splat(simd, weakening.critical_speed);
+    let fall = splat(simd, 1.0 - law.ratio);
+    let critical_speed = splat(simd, law.critical_speed);
     for c in 0..n {
         let speed = square(load_vec2(simd, [vx, vy], c)).sqrt();
         let lost = fall * (speed / (critical_speed + speed));

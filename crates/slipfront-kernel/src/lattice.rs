@@ -1,7 +1,7 @@
 //! The slider's blocks, their neighbours and the springs between them.
 //!
 //! Block (i, j) has index `j nx + i`: i runs along x, and row 0 lies at y = 0. Its centre is at ((i + 1/2),
-//! (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) takes the springs from here.
+//! (j + 1/2)) in units of the block size. The kernels take the springs from here.
 
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -103,7 +103,7 @@ impl SpringStiffness {
 
     /// The given bond with one of these springs.
     #[inline(always)]
-    pub(crate) fn bond(self, bond: Bond) -> Bond {
+    pub fn bond(self, bond: Bond) -> Bond {
         Bond {
             stiffness: self.of(&bond),
             ..bond
@@ -123,7 +123,7 @@ impl SpringStiffness {
 
     /// Stiffness of the spring along a bond.
     #[inline(always)]
-    pub(crate) fn of(self, bond: &Bond) -> f64 {
+    pub fn of(self, bond: &Bond) -> f64 {
         match bond.offset {
             [0, _] | [_, 0] => self.straight,
             _ => self.diagonal,
@@ -227,7 +227,7 @@ impl Lattice {
 
     /// Stiffness against a strain along an axis, uniform in the other direction, in units of `E h`:
     /// `k_1 + k_2 = 9/8` for a sheet, `k_1` for a chain.
-    pub(crate) fn stiffness_along(&self) -> f64 {
+    pub fn stiffness_along(&self) -> f64 {
         if self.nx == 1 || self.ny == 1 {
             K_STRAIGHT
         } else {
@@ -269,7 +269,7 @@ impl Lattice {
     }
 
     /// Index of the neighbour along `bond` less the index of the block, away from the ends of rows.
-    pub(crate) fn shift(&self, bond: &Bond) -> usize {
+    pub fn shift(&self, bond: &Bond) -> usize {
         (bond.offset[1] as usize * self.nx).wrapping_add_signed(bond.offset[0])
     }
 
@@ -281,7 +281,7 @@ impl Lattice {
     }
 
     /// Whether the spring from block (i, j) to the block `offset` away runs along a free edge.
-    pub(crate) fn is_along_edge(&self, [i, j]: [usize; 2], offset: [isize; 2]) -> bool {
+    pub fn is_along_edge(&self, [i, j]: [usize; 2], offset: [isize; 2]) -> bool {
         let is_at_end = |coordinate: usize, count: usize, edges: Edges| {
             edges == Edges::Free && (coordinate == 0 || coordinate + 1 == count)
         };
@@ -307,7 +307,7 @@ fn neighbour_coordinate(coordinate: usize, offset: isize, count: usize, edges: E
 /// Stiffness of two springs in series, each half as long as a whole spring of the same modulus:
 /// `2 a b/(a + b)`; 0 if both are 0.
 #[inline(always)]
-pub(crate) fn harmonic_mean(a: f64, b: f64) -> f64 {
+pub fn harmonic_mean(a: f64, b: f64) -> f64 {
     if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 }
 }
 

@@ -16,16 +16,16 @@ use super::step::Step;
 use super::vector::{Vec2x8, add, dot, lane_max, scale, splat, square};
 
 /// Eight blocks with nothing moving in or around them.
-pub(super) struct RestingVector<S: Simd> {
-    pub(super) displacement: Vec2x8<S>,
+pub(crate) struct RestingVector<S: Simd> {
+    pub(crate) displacement: Vec2x8<S>,
     /// Lattice forces `F_c`.
-    pub(super) lattice: Vec2x8<S>,
-    pub(super) static_limit_square: f64x8<S>,
-    pub(super) kinetic_impulse: f64x8<S>,
+    pub(crate) lattice: Vec2x8<S>,
+    pub(crate) static_limit_square: f64x8<S>,
+    pub(crate) kinetic_impulse: f64x8<S>,
     /// Relative stiffness of the drive springs, and masses, of a heterogeneous slider.
-    pub(super) variation: Option<[f64x8<S>; 2]>,
+    pub(crate) variation: Option<[f64x8<S>; 2]>,
     /// Relative dead loads, where they differ.
-    pub(super) loads: Option<f64x8<S>>,
+    pub(crate) loads: Option<f64x8<S>>,
 }
 
 /// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
@@ -34,7 +34,7 @@ pub(super) struct RestingVector<S: Simd> {
 /// grows. Thus the contact stress of a skipped block is always largest at the first or at the last skipped
 /// step.
 #[inline(always)]
-pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
+pub(crate) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
     // The growth is valid until the speed of the drive changes next; callers look no further ahead.
     let [bx, by] = step.force_growth;
     let growth_square = bx * bx + by * by;

@@ -7,7 +7,7 @@ use super::vector::{Vec2x8, scale, splat, square};
 use crate::lattice::{Bond, SpringStiffness};
 
 /// Formula for the force of a spring.
-pub(super) trait Geometry: Copy {
+pub(crate) trait Geometry: Copy {
     /// Whether springs, masses or any other property differs from block to block.
     const BLOCKS_DIFFER: bool = false;
 
@@ -21,7 +21,7 @@ pub(super) trait Geometry: Copy {
 
 /// A formula for springs of a heterogeneous slider. It gives the forces of springs of factor 1.
 #[derive(Clone, Copy)]
-pub(super) struct Differing<G>(pub(super) G);
+pub(crate) struct Differing<G>(pub(crate) G);
 
 impl<G: Geometry> Geometry for Differing<G> {
     const BLOCKS_DIFFER: bool = true;
@@ -39,9 +39,11 @@ impl<G: Geometry> Geometry for Differing<G> {
 
 /// The formula with the length of the spring, exact at any strain, with the same bits as [`Bond::force`].
 #[derive(Clone, Copy)]
-pub(super) struct SquareRoot {
-    pub(super) epsilon: f64,
-    pub(super) stiffness: SpringStiffness,
+pub struct SquareRoot {
+    /// Displacements over lengths, `epsilon = P mu_s/(E h)`.
+    pub epsilon: f64,
+    /// Stiffness of the springs between blocks.
+    pub stiffness: SpringStiffness,
 }
 
 impl Geometry for SquareRoot {
@@ -80,28 +82,27 @@ impl Geometry for SquareRoot {
 /// The coefficients of g decrease, so that the truncation error after the term in `z^DEGREE` is less than
 /// `2 |z|^(DEGREE + 1)`, relative to g, for `|z| <= 1/4`: see [`Series::strain_limit`].
 #[derive(Clone, Copy)]
-pub(super) struct Series<const DEGREE: usize> {
-    pub(super) epsilon: f64,
-    pub(super) stiffness: SpringStiffness,
+pub(crate) struct Series<const DEGREE: usize> {
+    /// Displacements over lengths, `epsilon = P mu_s/(E h)`.
+    pub epsilon: f64,
+    /// Stiffness of the springs between blocks.
+    pub stiffness: SpringStiffness,
 }
 
 /// Constants of the series, for a device that evaluates it itself.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SeriesNumbers {
+pub struct SeriesNumbers {
     /// Coefficients of the long series for straight and for diagonal springs; the short series has the first
     /// four of them.
-    pub(crate) coefficients: [[f64; 8]; 2],
-    /// Largest strains for the short and for the long series.
-    pub(crate) strain_limits: [f64; 2],
+    pub coefficients: [[f64; 8]; 2],
 }
 
 impl SeriesNumbers {
     /// Constants for springs of this stiffness.
-    pub(crate) fn new(epsilon: f64, stiffness: SpringStiffness) -> Self {
+    pub fn new(epsilon: f64, stiffness: SpringStiffness) -> Self {
         let long = Series::<7> { epsilon, stiffness };
         Self {
             coefficients: [Bond::EAST, Bond::NORTH_EAST].map(|bond| long.coefficients(&bond)),
-            strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
         }
     }
 }
@@ -121,7 +122,7 @@ const G: [f64; 8] = [
 impl<const DEGREE: usize> Series<DEGREE> {
     /// Largest `|z|` at which the series is exact to rounding: `2 |z|^(DEGREE + 1) <= 2^-54`, a quarter of a
     /// unit in the last place.
-    pub(super) fn strain_limit() -> f64 {
+    pub(crate) fn strain_limit() -> f64 {
         libm::exp2(-55.0 / (DEGREE + 1) as f64)
     }
 

@@ -17,30 +17,30 @@ use super::vector::{
 };
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
-use crate::friction::SMALLEST_VELOCITY;
+use crate::integrator::SMALLEST_VELOCITY;
 use crate::lattice::{Bond, SpringStiffness};
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
-pub(super) type Upward<T> = [[T; 2]; 3];
+pub(crate) type Upward<T> = [[T; 2]; 3];
 
 /// Input of [`lattice_forces`], and the arrays in which the sums are stored.
-pub(super) struct LatticeLoop<'a> {
-    pub(super) here: [Chunks<'a>; 2],
-    pub(super) east: [Chunks<'a>; 2],
-    pub(super) has_east: &'a [u8],
+pub(crate) struct LatticeLoop<'a> {
+    pub(crate) here: [Chunks<'a>; 2],
+    pub(crate) east: [Chunks<'a>; 2],
+    pub(crate) has_east: &'a [u8],
     /// Factors of the springs to the east, for a heterogeneous slider.
-    pub(super) to_east: Chunks<'a>,
+    pub(crate) to_east: Chunks<'a>,
     /// Upward springs of these blocks.
-    pub(super) own: Upward<Chunks<'a>>,
+    pub(crate) own: Upward<Chunks<'a>>,
     /// Upward springs of the blocks to the south, south-west and south-east.
-    pub(super) behind: Upward<Chunks<'a>>,
+    pub(crate) behind: Upward<Chunks<'a>>,
     /// Lattice forces `F_c`.
-    pub(super) force: [ChunksMut<'a>; 2],
+    pub(crate) force: [ChunksMut<'a>; 2],
 }
 
 /// Force of the spring along `bond` of eight blocks, zero where it is not `present`.
 #[inline(always)]
-pub(super) fn spring<S: Simd, G: Geometry>(
+pub(crate) fn spring<S: Simd, G: Geometry>(
     simd: S,
     geometry: G,
     bond: &Bond,
@@ -53,7 +53,7 @@ pub(super) fn spring<S: Simd, G: Geometry>(
 
 /// Forces of springs times the factor of each, for a heterogeneous slider.
 #[inline(always)]
-pub(super) fn times_factor<S: Simd, G: Geometry>(
+pub(crate) fn times_factor<S: Simd, G: Geometry>(
     simd: S,
     force: Vec2x8<S>,
     factors: Chunks,
@@ -68,14 +68,14 @@ pub(super) fn times_factor<S: Simd, G: Geometry>(
 
 /// Sets the lanes to zero where a bit of `present` is 0.
 #[inline(always)]
-pub(super) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
+pub(crate) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
     or_else(simd, present, a, [splat(simd, 0.0); 2])
 }
 
 /// Takes `other` in the lanes where a bit of `present` is 0. Such bits are rare, so that without AVX-512
 /// testing for them is cheaper than masking.
 #[inline(always)]
-pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
+pub(crate) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
         a
     } else {
@@ -87,7 +87,7 @@ pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8
 /// displacements of the blocks and of their neighbours along the three bonds. `force` is the force on the
 /// lower blocks; masks mark the springs that exist.
 #[inline(always)]
-pub(super) fn upward_springs<S: Simd, G: Geometry>(
+pub(crate) fn upward_springs<S: Simd, G: Geometry>(
     simd: S,
     geometry: G,
     here: [Chunks; 2],
@@ -137,7 +137,7 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
 /// `west`: forces of the springs to the east of the eight elements before these; replaced by those of the
 /// last eight elements.
 #[inline(always)]
-pub(super) fn lattice_forces<S: Simd, G: Geometry>(
+pub(crate) fn lattice_forces<S: Simd, G: Geometry>(
     simd: S,
     geometry: G,
     arrays: LatticeLoop,
@@ -223,7 +223,7 @@ fn spring_energies<S: Simd>(
 /// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of
 /// [`Sums`], from their forces over the relative thickness of the sheet.
 #[inline(always)]
-pub(super) fn vector_energy<S: Simd, G: Geometry>(
+pub(crate) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
     geometry: G,
     springs: [Vec2x8<S>; 4],
@@ -239,7 +239,7 @@ pub(super) fn vector_energy<S: Simd, G: Geometry>(
 
 /// Contribution of eight blocks to the sums of `w (u - c)` and `w (u - c)^2`.
 #[inline(always)]
-pub(super) fn displacement_sums<S: Simd, const DIFFER: bool>(
+pub(crate) fn displacement_sums<S: Simd, const DIFFER: bool>(
     simd: S,
     u: Vec2x8<S>,
     blocks: u8,
@@ -278,99 +278,99 @@ fn first_n([x, y]: [Chunks<'_>; 2], n: usize) -> [Chunks<'_>; 2] {
 }
 
 /// Input and output of [`friction`].
-pub(super) struct FrictionLoop<'a> {
-    pub(super) displacement: [Chunks<'a>; 2],
-    pub(super) lattice: [Chunks<'a>; 2],
+pub(crate) struct FrictionLoop<'a> {
+    pub(crate) displacement: [Chunks<'a>; 2],
+    pub(crate) lattice: [Chunks<'a>; 2],
     /// Squares of the static thresholds `mu_s F_n`.
-    pub(super) static_limit_squares: Chunks<'a>,
+    pub(crate) static_limit_squares: Chunks<'a>,
     /// Change of velocity by kinetic friction in a step, `q = dt mu_k F_n/(m c+)`.
-    pub(super) kinetic_impulses: Chunks<'a>,
+    pub(crate) kinetic_impulses: Chunks<'a>,
     /// Mask of the elements that are blocks.
-    pub(super) blocks: &'a [u8],
+    pub(crate) blocks: &'a [u8],
     /// Mask of the elements that are blocks in contact.
-    pub(super) in_contact: &'a [u8],
+    pub(crate) in_contact: &'a [u8],
     /// Velocities at `t - dt/2`, then at `t + dt/2`.
-    pub(super) velocity: [ChunksMut<'a>; 2],
+    pub(crate) velocity: [ChunksMut<'a>; 2],
     /// Mask of the blocks that move after the step.
-    pub(super) moving: &'a mut [u8],
+    pub(crate) moving: &'a mut [u8],
     /// Mask of the blocks in contact that have ever slid.
-    pub(super) slipped: &'a mut [u8],
+    pub(crate) slipped: &'a mut [u8],
     /// The step at which each block in contact first slid.
-    pub(super) first_slip: &'a mut [[u32; LANES]],
+    pub(crate) first_slip: &'a mut [[u32; LANES]],
     /// Drive forces `F_s`, or those of the sheet above, computed by [`free_motion`].
-    pub(super) drive: [ChunksMut<'a>; 2],
+    pub(crate) drive: [ChunksMut<'a>; 2],
     /// Velocities that the blocks would have without friction, computed by [`free_motion`].
-    pub(super) free: [ChunksMut<'a>; 2],
+    pub(crate) free: [ChunksMut<'a>; 2],
     /// Magnitude of the velocity without friction, computed by [`free_motion`].
-    pub(super) free_speed: ChunksMut<'a>,
+    pub(crate) free_speed: ChunksMut<'a>,
     /// Memory of later tiles, to be fetched ahead.
-    pub(super) prefetched: [CacheLines; 6],
+    pub(crate) prefetched: [CacheLines; 6],
     /// Drive springs and masses of a heterogeneous slider.
-    pub(super) variation: Variation<'a>,
+    pub(crate) variation: Variation<'a>,
 }
 
 /// Eight blocks that do not rest, in a step with known next velocities.
-pub(super) struct Moved<S: Simd> {
+pub(crate) struct Moved<S: Simd> {
     /// Mask of the elements that are blocks.
-    pub(super) blocks: u8,
-    pub(super) displacement: Vec2x8<S>,
+    pub(crate) blocks: u8,
+    pub(crate) displacement: Vec2x8<S>,
     /// Velocities at `t - dt/2`.
-    pub(super) before: Vec2x8<S>,
+    pub(crate) before: Vec2x8<S>,
     /// Velocities at `t + dt/2`, 0 for elements that are no blocks.
-    pub(super) after: Vec2x8<S>,
+    pub(crate) after: Vec2x8<S>,
     /// Minus the friction force.
-    pub(super) against: Vec2x8<S>,
+    pub(crate) against: Vec2x8<S>,
     /// Contact stress (Eq. 10), with any sign; 0 where there is no contact.
-    pub(super) stress: Vec2x8<S>,
+    pub(crate) stress: Vec2x8<S>,
 }
 
 /// Sums over the blocks of a tile, as integers of type `I` in their [`Quanta`], and maxima. While the tile is
 /// swept, both are one number for each of eight lanes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sums<I, M, N = u32> {
+pub struct Sums<I, M, N = u32> {
     /// Sum of weighted displacements, `sum w (u - c)`, with the relative stiffness w of the drive springs and
     /// the centre c of the window.
-    pub(super) displacement: [I; 2],
+    pub displacement: [I; 2],
     /// Sum of weighted velocities, `sum w v(t + dt/2)`.
-    pub(super) velocity: [I; 2],
+    pub velocity: [I; 2],
     /// Four times `sum m v^2` at t_n, with v the mean of the half steps:
     /// `sum m (v(t - dt/2) + v(t + dt/2))^2`.
-    pub(super) motion_square: I,
+    pub motion_square: I,
     /// Twice the power dissipated by friction at t_n, `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
-    pub(super) friction_work: I,
+    pub friction_work: I,
     /// Energy of the springs times `2 k_1`, at steps at which energies are needed. Summed by vectors, not in
     /// lanes.
-    pub(super) lattice_energy: I,
+    pub lattice_energy: I,
     /// Sum for the kinetic energy, `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are
     /// needed.
-    pub(super) velocity_squares: I,
+    pub velocity_squares: I,
     /// Sum for the energy of the drive springs, `sum w (u - c)^2`, at steps at which energies are needed.
-    pub(super) displacement_square: I,
+    pub displacement_square: I,
     /// Largest `tau_c^2` of a block in contact.
-    pub(super) stress_square: M,
+    pub stress_square: M,
     /// Square of the highest speed.
-    pub(super) speed_square: M,
+    pub speed_square: M,
     /// Number of blocks that slide.
-    pub(super) sliding: N,
+    pub sliding: N,
     /// Number of sliding blocks that are in contact.
-    pub(super) slipping: N,
+    pub slipping: N,
 }
 
 /// Constants that [`integers`] adds for the sums of every step, and the centres of the displacements, for
 /// each of eight lanes.
 #[derive(Clone, Copy)]
-pub(super) struct Shifts<S: Simd> {
-    pub(super) centres: Vec2x8<S>,
+pub(crate) struct Shifts<S: Simd> {
+    pub(crate) centres: Vec2x8<S>,
     displacement: Vec2x8<S>,
     weighted_displacement: Vec2x8<S>,
     velocity: f64x8<S>,
-    pub(super) motion_square: f64x8<S>,
+    pub(crate) motion_square: f64x8<S>,
     friction_work: f64x8<S>,
 }
 
 impl<S: Simd> Shifts<S> {
     #[inline(always)]
-    pub(super) fn of(simd: S, quanta: &Quanta) -> Self {
+    pub(crate) fn of(simd: S, quanta: &Quanta) -> Self {
         let [x, y] = quanta.displacement;
         let [weighted_x, weighted_y] = quanta.weighted_displacement;
         Self {
@@ -386,7 +386,7 @@ impl<S: Simd> Shifts<S> {
 
 impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     #[inline(always)]
-    pub(super) fn zero(simd: S) -> Self {
+    pub(crate) fn zero(simd: S) -> Self {
         let (zero, none) = (i64x8::splat(simd, 0), splat(simd, 0.0));
         Self {
             displacement: [zero; 2],
@@ -405,7 +405,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Adds the contribution of eight blocks to the sum of `w (u - c)`.
     #[inline(always)]
-    pub(super) fn add_displacement<const DIFFER: bool>(
+    pub(crate) fn add_displacement<const DIFFER: bool>(
         &mut self,
         simd: S,
         shifts: &Shifts<S>,
@@ -427,7 +427,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Adds the contribution of eight blocks to the sum of `w v(t + dt/2)`.
     #[inline(always)]
-    pub(super) fn add_velocity<const DIFFER: bool>(
+    pub(crate) fn add_velocity<const DIFFER: bool>(
         &mut self,
         simd: S,
         shifts: &Shifts<S>,
@@ -443,7 +443,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Adds the contribution of eight blocks to the sum of `w (u - c)^2`.
     #[inline(always)]
-    pub(super) fn add_stretch<const DIFFER: bool>(
+    pub(crate) fn add_stretch<const DIFFER: bool>(
         &mut self,
         simd: S,
         quanta: &Quanta,
@@ -461,7 +461,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     /// Adds eight blocks that do not rest to the sums of every step and to the maxima; `c`: their place in
     /// `variation`.
     #[inline(always)]
-    pub(super) fn add_moved<const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
+    pub(crate) fn add_moved<const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
         &mut self,
         simd: S,
         quanta: &Quanta,
@@ -518,7 +518,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 
     /// Sums over all lanes after `vectors` vectors.
     #[inline(always)]
-    pub(super) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
+    pub(crate) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
         let [x, y] = quanta.weighted_displacement;
         let mut sums = Sums {
             displacement: [
@@ -551,7 +551,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 impl Sums<i64, f64> {
     /// Leaves out the sums over the drive springs, for a sheet below others: the drive springs pull the
     /// highest sheet.
-    pub(super) fn below_others(self) -> Self {
+    pub(crate) fn below_others(self) -> Self {
         Self {
             displacement: [0; 2],
             velocity: [0; 2],
@@ -563,7 +563,7 @@ impl Sums<i64, f64> {
 
 impl Sums<i128, f64, u64> {
     /// Adds the sums of a tile or a band.
-    pub(super) fn include<I: Copy + Into<i128>, N: Copy + Into<u64>>(&mut self, part: &Sums<I, f64, N>) {
+    pub fn include<I: Copy + Into<i128>, N: Copy + Into<u64>>(&mut self, part: &Sums<I, f64, N>) {
         for axis in 0..2 {
             self.displacement[axis] += part.displacement[axis].into();
             self.velocity[axis] += part.velocity[axis].into();
@@ -580,7 +580,7 @@ impl Sums<i128, f64, u64> {
     }
 
     /// Adds the sums of all ranks, and lowers `step` to the earliest step of any rank.
-    pub(super) fn over_ranks(&mut self, step: &mut u64, communicator: &dyn Communicator) {
+    pub fn over_ranks(&mut self, step: &mut u64, communicator: &dyn Communicator) {
         let [ux, uy] = &mut self.displacement;
         let [vx, vy] = &mut self.velocity;
         let mut sums = [
@@ -616,13 +616,13 @@ impl Sums<i128, f64, u64> {
 
 /// The multiples of a quantum nearest to eight numbers, plus the bits of `shift`: see [`FixedPoint::shift`].
 #[inline(always)]
-pub(super) fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
+pub(crate) fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
     (numbers + shift).bitcast()
 }
 
 /// Sum of the multiples of a quantum in the [`integers`] of `vectors` vectors.
 #[inline(always)]
-pub(super) fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
+pub(crate) fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
     let added = ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64);
     lane_sum(lanes).wrapping_sub(added)
 }
@@ -700,7 +700,7 @@ fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOA
 /// at a time, and all sums that observers need at every step. Below other sheets, the pull of the next sheet
 /// replaces the drive, and sums over the drive springs are left out.
 #[inline(always)]
-pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
+pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
     simd: S,
     step: Step,
     quanta: &Quanta,
@@ -798,7 +798,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
 
 /// Values of eight blocks, times the weight of each block for a heterogeneous slider.
 #[inline(always)]
-pub(super) fn weighted<S: Simd, const DIFFER: bool>(
+pub(crate) fn weighted<S: Simd, const DIFFER: bool>(
     simd: S,
     numbers: f64x8<S>,
     weights: Chunks,
@@ -813,7 +813,7 @@ pub(super) fn weighted<S: Simd, const DIFFER: bool>(
 
 /// Records the step for those of eight blocks that slip for the first time.
 #[inline(always)]
-pub(super) fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [u32; LANES], number: u32) {
+pub(crate) fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [u32; LANES], number: u32) {
     let new = slips & !*slipped;
     // Rarely true: at most once per block in a run.
     if new != 0 {

@@ -4,27 +4,38 @@ use super::aligned::{Vectors, chunks};
 use super::blocks::Sums;
 use super::pull::Above;
 use super::scratch::Scratch;
-use crate::sheets::Sheet;
+
+/// A sheet above the lowest one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// Thickness `h_k` over that of the lowest sheet: the stiffness of the springs between its blocks and the
+    /// mass of its blocks, relative to the lowest sheet.
+    pub thickness: f64,
+    /// Stiffness `g_k` of the spring between each of its blocks and the block below, in units of `E h` with
+    /// the thickness h of the lowest sheet.
+    pub coupling: f64,
+}
 
 /// The elements of a band in a sheet above the lowest one.
 #[derive(Debug)]
-pub(super) struct UpperSheet {
-    pub(super) sheet: Sheet,
+pub struct UpperSheet {
+    /// Thickness and coupling.
+    pub sheet: Sheet,
     /// Displacements at t_n, with halos.
-    pub(super) displacement: Vectors,
+    pub displacement: Vectors,
     /// Velocities at t_n + dt/2.
-    pub(super) velocity: Vectors,
+    pub velocity: Vectors,
     /// Springs of the sheet, and their sums in the present tile.
-    pub(super) scratch: Scratch,
+    pub(crate) scratch: Scratch,
     /// Sums over the tiles in the latest sweep.
-    pub(super) sums: Sums<i128, f64, u64>,
+    pub sums: Sums<i128, f64, u64>,
     /// Energy of the springs to the sheet below times 2, in quanta, at steps at which energies are needed.
-    pub(super) energy_below: i128,
+    pub energy_below: i128,
 }
 
 impl UpperSheet {
     /// A sheet at rest with the given numbers of elements per row, in a band, and in a halo.
-    pub(super) fn new(sheet: Sheet, stride: usize, len: usize, halo: usize) -> Self {
+    pub fn new(sheet: Sheet, stride: usize, len: usize, halo: usize) -> Self {
         Self {
             sheet,
             displacement: Vectors::zeros(halo + len + halo),
@@ -37,7 +48,7 @@ impl UpperSheet {
 
     /// Blocks of the sheet above those of the sheet below, at some elements, counted from the front halo.
     #[inline(always)]
-    pub(super) fn above(&self, first: usize, n: usize) -> Above<'_> {
+    pub(crate) fn above(&self, first: usize, n: usize) -> Above<'_> {
         Above {
             coupling: self.sheet.coupling,
             displacement: chunks(&self.displacement, first, n),
@@ -45,7 +56,7 @@ impl UpperSheet {
     }
 
     /// Force of the sheet on a block below it at displacement `below`; `k`: index of the displacements.
-    pub(super) fn pull_on(&self, k: usize, below: [f64; 2]) -> [f64; 2] {
+    pub fn pull_on(&self, k: usize, below: [f64; 2]) -> [f64; 2] {
         let above = self.displacement.at(k);
         [0, 1].map(|axis| self.sheet.coupling * (above[axis] - below[axis]))
     }

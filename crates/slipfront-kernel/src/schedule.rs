@@ -21,23 +21,23 @@ const MAX_MARKED_VECTORS: usize = 10;
 
 /// Conditions common to all tiles in a sweep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SweepConditions {
+pub struct SweepConditions {
     /// Number of the step.
-    pub(super) number: u64,
+    pub number: u64,
     /// Whether tiles at rest are skipped.
-    pub(super) skips: bool,
+    pub skips: bool,
     /// Whether the sums that skipped tiles keep have become invalid.
-    pub(super) renews_sums: bool,
+    pub renews_sums: bool,
     /// Whether there was no sweep before.
-    pub(super) is_first: bool,
+    pub is_first: bool,
     /// Whether the latest sweep was made at the step before.
-    pub(super) is_next: bool,
+    pub is_next: bool,
 }
 
 impl Band {
     /// Marks all vectors that contain a moving element or a neighbour of one: one bit per vector for every
     /// tile of the rank.
-    pub(super) fn mark_touched(&self, layout: &Layout, touched: &[AtomicU32]) {
+    pub fn mark_touched(&self, layout: &Layout, touched: &[AtomicU32]) {
         let mark = |from: usize, to: usize| {
             layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
         };
@@ -61,7 +61,7 @@ impl Band {
     }
 
     /// Decides the work on every tile, and clears the marks.
-    pub(super) fn schedule(&mut self, sweep: &SweepConditions, touched: &[AtomicU32]) {
+    pub fn schedule(&mut self, sweep: &SweepConditions, touched: &[AtomicU32]) {
         for t in 0..self.tiles.len() {
             let all = u32::MAX >> (VECTORS - self.vectors(t).len());
             let (tile, before) = (self.tiles[t], self.tasks[t].active);
@@ -115,7 +115,7 @@ impl Band {
     }
 
     /// The first tile after `t` that will be swept as a whole.
-    pub(super) fn next_whole_tile(&self, t: usize) -> Option<usize> {
+    pub fn next_whole_tile(&self, t: usize) -> Option<usize> {
         let later = self.tasks.get(t + 1..)?.iter();
         later.clone().position(|task| !task.sparse).map(|n| t + 1 + n)
     }

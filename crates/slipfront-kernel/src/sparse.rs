@@ -27,7 +27,7 @@ const NORTH_WEST: usize = 3;
 
 impl Band {
     /// The vectors of a settled tile with blocks that may slip at step `number`.
-    pub(super) fn vectors_that_may_slip(&self, t: usize, number: u64) -> u32 {
+    pub(crate) fn vectors_that_may_slip(&self, t: usize, number: u64) -> u32 {
         let steps = self.active_from_step[self.vectors(t)].iter();
         steps
             .enumerate()
@@ -36,7 +36,7 @@ impl Band {
 
     /// Moves the blocks of the moving vectors of a tile (Eq. 8).
     #[inline(always)]
-    pub(super) fn advance_vectors<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
+    pub(crate) fn advance_vectors<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         let dt = splat(simd, step.move_dt);
         for v in self.vectors(t) {
             if self.moving[v] == 0 {
@@ -73,7 +73,7 @@ impl Band {
 
     /// Forces and velocities of the active vectors of a settled tile.
     #[inline(always)]
-    pub(super) fn sparse_tile<S: Simd, G: Geometry>(
+    pub(crate) fn sparse_tile<S: Simd, G: Geometry>(
         &mut self,
         simd: S,
         geometry: G,
@@ -152,7 +152,7 @@ impl Band {
     /// Finds the values for sweeping the vectors of a tile one by one, after a sweep of the whole tile with
     /// its energies. A separate function, compiled once for all spring formulas.
     #[inline(never)]
-    pub(super) fn settle<S: Simd>(&mut self, simd: S, step: &Step, t: usize, scratch: &Scratch) {
+    pub(crate) fn settle<S: Simd>(&mut self, simd: S, step: &Step, t: usize, scratch: &Scratch) {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -220,7 +220,7 @@ impl Band {
 
     /// Factors of the springs of vector `v` to the east, north, north-east and north-west.
     #[inline(always)]
-    pub(super) fn factors_of<G: Geometry>(&self, v: usize) -> [Chunks<'_>; 4] {
+    pub(crate) fn factors_of<G: Geometry>(&self, v: usize) -> [Chunks<'_>; 4] {
         [0, 1, 2, 3].map(|bond| self.spring_factors::<G>(bond, self.halo + v * LANES, LANES))
     }
 

@@ -11,7 +11,7 @@ use crate::reductions;
 
 /// Numbers with a given bound on their size, as multiples of a quantum, which is a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct FixedPoint {
+pub struct FixedPoint {
     /// Power of two above the bound; NaN if there is no bound, so that all sums are NaN.
     limit: f64,
 }
@@ -30,7 +30,7 @@ const MAX_TERMS: usize = 1 << 11;
 
 impl FixedPoint {
     /// Multiples of a quantum for numbers of at most `bound` in size.
-    pub(crate) fn new(bound: f64) -> Self {
+    pub fn new(bound: f64) -> Self {
         let exponent = bound.max(MIN_BOUND).to_bits() & f64::INFINITY.to_bits();
         Self {
             limit: if bound <= MAX_BOUND {
@@ -42,24 +42,24 @@ impl FixedPoint {
     }
 
     /// The power of two above the bound.
-    pub(crate) fn limit(self) -> f64 {
+    pub fn limit(self) -> f64 {
         self.limit
     }
 
     /// Multiples of the quantum that belongs to this [limit](Self::limit).
-    pub(crate) fn of_limit(limit: f64) -> Self {
+    pub fn of_limit(limit: f64) -> Self {
         Self { limit }
     }
 
     /// Shift by `1.5 2^52` quanta. Adding it to a number rounds the number to a multiple of the quantum, and
     /// the bits of the sum are the bits of the shift plus the multiple.
-    pub(crate) fn shift(self) -> f64 {
+    pub fn shift(self) -> f64 {
         3.0 * self.limit
     }
 
     /// The multiple of the quantum nearest to `x`.
     #[inline(always)]
-    pub(crate) fn integer(self, x: f64) -> i64 {
+    pub fn integer(self, x: f64) -> i64 {
         let shift = self.shift();
         (x + shift).to_bits().wrapping_sub(shift.to_bits()) as i64
     }
@@ -68,7 +68,7 @@ impl FixedPoint {
     /// is arbitrary, so that sums with such terms may wrap around. Without a bound, [`value`](Self::value)
     /// returns NaN for any sum.
     #[inline(always)]
-    pub(crate) fn sum(self, n: usize, term: impl Fn(usize) -> f64) -> i128 {
+    pub fn sum(self, n: usize, term: impl Fn(usize) -> f64) -> i128 {
         let mut sum = 0;
         for first in (0..n).step_by(MAX_TERMS) {
             let terms = first..n.min(first + MAX_TERMS);
@@ -79,14 +79,14 @@ impl FixedPoint {
     }
 
     /// Number that a sum of integers represents, rounded to the nearest double.
-    pub(crate) fn value(self, sum: i128) -> f64 {
+    pub fn value(self, sum: i128) -> f64 {
         sum as f64 * (self.limit / QUANTA)
     }
 }
 
 /// Numbers of a range that may lie far from zero, as differences from its centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Window {
+pub struct Window {
     centre: f64,
     differences: FixedPoint,
 }
@@ -97,7 +97,7 @@ impl Window {
     const MIN_RANGE: f64 = 1e-9;
 
     /// A window of at least twice the range from `low` to `high`, with this range in its middle.
-    pub(crate) fn around(low: f64, high: f64) -> Self {
+    pub fn around(low: f64, high: f64) -> Self {
         let differences = FixedPoint::new((high - low).max(Self::MIN_RANGE));
         let grid = differences.limit() / 8.0;
         Self {
@@ -107,7 +107,7 @@ impl Window {
     }
 
     /// The window with this [centre](Self::centre) and the limit of its [differences](Self::differences).
-    pub(crate) fn of([centre, limit]: [f64; 2]) -> Self {
+    pub fn of([centre, limit]: [f64; 2]) -> Self {
         Self {
             centre,
             differences: FixedPoint::of_limit(limit),
@@ -115,38 +115,38 @@ impl Window {
     }
 
     /// Whether all numbers from `low` to `high` can be converted.
-    pub(crate) fn contains(&self, low: f64, high: f64) -> bool {
+    pub fn contains(&self, low: f64, high: f64) -> bool {
         let [first, last] = [-1.0, 1.0].map(|side| self.centre + side * self.differences.limit());
         first <= low && high <= last
     }
 
     /// Middle of the window.
-    pub(crate) fn centre(&self) -> f64 {
+    pub fn centre(&self) -> f64 {
         self.centre
     }
 
     /// Multiples of a quantum for differences from the centre.
-    pub(crate) fn differences(&self) -> FixedPoint {
+    pub fn differences(&self) -> FixedPoint {
         self.differences
     }
 
     /// Constant for rounding: its sum with a number has, in its bits, the nearest multiple for the difference
     /// of the number from the centre. See [`FixedPoint::shift`].
-    pub(crate) fn shift(&self) -> f64 {
+    pub fn shift(&self) -> f64 {
         self.differences.shift() - self.centre
     }
 }
 
 /// Sum of `term(k)` over `0..n`, with the same bits for any order of the terms.
 #[inline(always)]
-pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
+pub fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     sum_over(&Alone, n, term)
 }
 
 /// Sum of `term(k)` over the blocks of all `ranks`, with the same bits for any order. All ranks must call
 /// this together, each with its own `n` terms.
 #[inline(always)]
-pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
+pub fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
     // A NaN term makes the bound infinite.
     let size = |term: f64| if term.is_nan() { f64::INFINITY } else { term.abs() };
     let mut largest = [reductions::largest(n, |k| size(term(k)))];
@@ -162,7 +162,7 @@ pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) 
 /// before, while the largest is found, and are added once more if the bound has changed. So the sum equals
 /// [`sum`] of the terms, whatever came before.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RunningSum {
+pub struct RunningSum {
     bound: FixedPoint,
     /// Bits of the largest size of a term so far. As integers, bits have the order of the sizes, and NaN is
     /// larger than all of them.
@@ -173,7 +173,7 @@ pub(crate) struct RunningSum {
 impl RunningSum {
     /// Adds terms to the sum.
     #[inline(always)]
-    pub(crate) fn add(&mut self, terms: &[f64]) {
+    pub fn add(&mut self, terms: &[f64]) {
         const SIZE: u64 = i64::MAX as u64;
         let shift = self.bound.shift();
         for terms in terms.chunks(MAX_TERMS) {
@@ -195,7 +195,7 @@ impl RunningSum {
     }
 
     /// Adds the terms of other sums with the same bounds.
-    pub(crate) fn join<const N: usize>(sums: &mut [Self; N], others: &[Self; N]) {
+    pub fn join<const N: usize>(sums: &mut [Self; N], others: &[Self; N]) {
         for (sum, other) in sums.iter_mut().zip(others) {
             sum.largest = sum.largest.max(other.largest);
             sum.sum += other.sum;
@@ -216,7 +216,7 @@ impl RunningSum {
 
     /// Sums of all terms that all `ranks` have added; none if a bound has changed, so that all terms have to
     /// be added once more.
-    pub(crate) fn finish<const N: usize>(ranks: &dyn Communicator, sums: &mut [Self; N]) -> Option<[f64; N]> {
+    pub fn finish<const N: usize>(ranks: &dyn Communicator, sums: &mut [Self; N]) -> Option<[f64; N]> {
         let mut largest = sums.each_ref().map(Self::largest);
         ranks.largest(&mut largest);
         let mut words = sums.each_ref().map(|sum| split(sum.sum));
@@ -247,13 +247,13 @@ const LOW_BITS: u32 = 40;
 /// sum.
 ///
 /// The sum over all ranks is below 2^102, the integers of 2^51 numbers.
-pub(crate) fn split(sum: i128) -> [i64; 2] {
+pub fn split(sum: i128) -> [i64; 2] {
     let low = sum & ((1 << LOW_BITS) - 1);
     [low as i64, (sum >> LOW_BITS) as i64]
 }
 
 /// Sum with the words, or sums of words, `low` and `high`: see [`split`].
-pub(crate) fn join([low, high]: [i64; 2]) -> i128 {
+pub fn join([low, high]: [i64; 2]) -> i128 {
     (i128::from(high) << LOW_BITS) + i128::from(low)
 }
 

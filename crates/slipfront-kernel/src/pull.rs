@@ -7,14 +7,14 @@ use super::vector::{Chunks, Vec2x8, add, load_vec2, scale, splat, subtract};
 
 /// Force of the drive springs (Eq. 2), `F_s = k_s (V t - u)`, with the dead load, on equal blocks.
 #[inline(always)]
-pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
+pub(crate) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
     add(pull_of_springs(simd, step, u), dead_load(simd, step))
 }
 
 /// Force of the drive springs (Eq. 2), `F_s = k_s,i (V t - u)`, with the dead load, on blocks that differ,
 /// given the relative stiffness of their drive springs, and their loads unless these are equal.
 #[inline(always)]
-pub(super) fn pull_of_differing<S: Simd>(
+pub(crate) fn pull_of_differing<S: Simd>(
     simd: S,
     step: Step,
     drive_springs: f64x8<S>,
@@ -42,16 +42,16 @@ fn dead_load<S: Simd>(simd: S, step: Step) -> Vec2x8<S> {
 
 /// Blocks of the sheet above some blocks; none where the drive springs pull these blocks.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Above<'a> {
+pub(crate) struct Above<'a> {
     /// Stiffness `g` of the springs to them.
-    pub(super) coupling: f64,
-    pub(super) displacement: [Chunks<'a>; 2],
+    pub(crate) coupling: f64,
+    pub(crate) displacement: [Chunks<'a>; 2],
 }
 
 impl Above<'_> {
     /// The first `n` vectors, if there are any.
     #[inline(always)]
-    pub(super) fn first<const HAS_ABOVE: bool>(self, n: usize) -> Self {
+    pub(crate) fn first<const HAS_ABOVE: bool>(self, n: usize) -> Self {
         let n = if HAS_ABOVE { n } else { 0 };
         let [x, y] = self.displacement;
         Self {
@@ -64,7 +64,7 @@ impl Above<'_> {
 /// Force from above on eight blocks at displacement `u`: from the springs to the sheet there,
 /// `g (u_k+1 - u_k)`, or from the drive springs (Eq. 2), with the dead load.
 #[inline(always)]
-pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
+pub(crate) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
     simd: S,
     step: Step,
     above: Above,
@@ -85,7 +85,7 @@ pub(super) fn pull_from_above<S: Simd, const HAS_ABOVE: bool>(
 
 /// Force of springs of the given stiffness between blocks and those above them.
 #[inline(always)]
-pub(super) fn coupling_force<S: Simd>(
+pub(crate) fn coupling_force<S: Simd>(
     simd: S,
     coupling: f64,
     above: Vec2x8<S>,

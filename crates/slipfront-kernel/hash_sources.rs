@@ -1,0 +1,1 @@
+../slipfront/hash_sources.rs

@@ -1,0 +1,85 @@
+//! Properties of a slider, about which the kernel asks when it lays out its arrays.
+
+use crate::lattice::Bond;
+use crate::layout::Layout;
+use crate::thresholds::ChangingLaw;
+use crate::upper_sheet::Sheet;
+
+/// The blocks of a slider. They have the indices of [`Layout::block`].
+pub trait Blocks: Sync {
+    /// Whether there is a block at this place of the lattice.
+    fn exists(&self, block: usize) -> bool;
+
+    /// Whether a block has no contact with the substrate.
+    fn is_textured(&self, block: usize) -> bool;
+
+    /// Static threshold `mu_s F_n`.
+    fn static_limit(&self, block: usize) -> f64;
+
+    /// Kinetic friction `mu_k F_n` at rest.
+    fn kinetic_force(&self, block: usize) -> f64;
+
+    /// Normal force `F_n` of the load.
+    fn normal_force(&self, block: usize) -> f64;
+
+    /// Mass over that of a plain block.
+    fn mass(&self, block: usize) -> f64;
+
+    /// Stiffness of the drive spring over `k_s`.
+    fn drive_spring(&self, block: usize) -> f64;
+
+    /// Dead load over that of [`Step`](crate::Step).
+    fn relative_dead_load(&self, block: usize) -> f64;
+
+    /// Stiffness of the spring from the block in a column and row to the one `offset` away over the stiffness
+    /// of its bond; 0 where there is none.
+    fn spring(&self, column_row: [usize; 2], offset: [isize; 2]) -> f64;
+
+    /// Displacement and velocity at the start; none at rest.
+    fn motion(&self, block: usize) -> Option<[[f64; 2]; 2]>;
+}
+
+/// Properties of a slider.
+pub struct Properties<'a> {
+    /// Properties of each block.
+    pub blocks: &'a dyn Blocks,
+    /// Whether springs, masses or loads differ from block to block.
+    pub blocks_differ: bool,
+    /// Whether dead loads differ from block to block.
+    pub dead_loads_differ: bool,
+    /// Whether some places of the lattice have no block.
+    pub has_gaps: bool,
+    /// Law by which thresholds change; none where they are constant.
+    pub changing: Option<ChangingLaw>,
+    /// Stiffness of the foundation of an interface; none where friction acts in the plane.
+    pub foundation: Option<f64>,
+    /// The sheets above the lowest one.
+    pub sheets: &'a [Sheet],
+    /// Change of velocity per force of a plain block, `dt/(m c+)`.
+    pub force_to_velocity: f64,
+}
+
+impl Properties<'_> {
+    /// Whether the springs of an element to the east, north, north-east and north-west exist.
+    pub(crate) fn has_springs(&self, layout: &Layout, element: isize) -> [bool; 4] {
+        if self.has_gaps {
+            // A spring to a place without a block has stiffness 0.
+            self.springs(layout, element).map(|factor| factor > 0.0)
+        } else {
+            layout.springs(element)
+        }
+    }
+
+    /// Stiffness of the springs of an element over the stiffness of their bonds; 0 for missing springs.
+    pub(crate) fn springs(&self, layout: &Layout, element: isize) -> [f64; 4] {
+        let mut springs = [0.0; 4];
+        if let Some(place) = layout.place(element) {
+            for ((spring, bond), present) in springs.iter_mut().zip(Bond::ALL).zip(layout.springs(element)) {
+                if present {
+                    *spring = self.blocks.spring(place, bond.offset);
+                }
+            }
+        }
+        springs
+    }
+}
