@@ -110,7 +110,7 @@ mod tests {
         } = offline;
         drop(session);
         // Nothing is sent: the channel closes when the last working thread has ended.
-        let ended = all_work.recv_timeout(Duration::from_secs(5));
+        let ended = all_work.recv_timeout(Duration::from_secs(60));
         assert_eq!(ended, Err(RecvTimeoutError::Disconnected));
     }
 

@@ -47,12 +47,12 @@ pub(crate) struct Time {
 }
 
 impl Time {
-    /// Time of most checks: more than twice what was measured of the slowest long input, and ten times that
-    /// of most, so that a busy machine does not come near. Time that grows with the square of the length, at
-    /// a nanosecond for each pair of bytes, takes ten times this for the long inputs.
+    /// Time of most checks: eight times what was measured of the slowest long input, since processor time
+    /// doubles where cores share their units, and again on a slow machine. Time that grows with the square of
+    /// the length, at a nanosecond for each pair of bytes, takes more than twice this for the long inputs.
     pub(crate) const READING: Self = Self {
-        seconds: 2.0,
-        us_per_byte: 25.0,
+        seconds: 8.0,
+        us_per_byte: 100.0,
     };
 
     /// Time of checks that read pictures several times: 2^28 pixels at most, however few bytes hold them.

@@ -522,6 +522,7 @@ fn calibrations(folder: &Path) {
                 y = 'force_n'\nnoise = 0.01\nruns = 1000\nfiner_runs = 200\n\
                 unknowns = { 'friction.mu_static' = [0.3, 0.9], 'drive.stiffness_star' = [0.3, 0.9] }\n";
     let file = CalibrationFile::parse(text, "fit.toml", "fit", Path::new("")).unwrap();
+    let mut most = 0.0_f64;
     for threads in [1, 2] {
         let out = folder.join("calibration");
         let before = LIVE.load(Ordering::Relaxed) as f64;
@@ -533,11 +534,13 @@ fn calibrations(folder: &Path) {
             })
             .unwrap()
         });
+        // Two threads, of which one has to wait, take as much as one alone, and otherwise more.
+        most = most.max(taken - before);
         let said = file.memory(&file.read(&records).unwrap()).unwrap().of(threads);
         assert_honest(
             &format!("a calibration on {threads} threads"),
             said,
-            taken - before,
+            most,
             FIXED_WITHOUT_PICTURES,
         );
         std::fs::remove_dir_all(out).unwrap();

@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::support::process::{send, stderr, stdout};
 use crate::support::workspace::Workspace;
 
-/// A case with these lines in its table `[drive]`. It takes around a second: long enough to be stopped.
+/// A case with these lines in its table `[drive]`. It takes half a second: long enough to be stopped.
 fn case(drive: &str) -> String {
     format!("[slider]\nblocks = [60, 50]\n[drive]\nv_star = 1\n{drive}\n[time]\nduration_star = 500\n")
 }
@@ -55,9 +55,9 @@ fn a_file_attaches_as_an_edge_does() {
     assert_eq!(series("whole"), series("unit"));
 
     let child = workspace.start_run("run file.toml -o stopped");
-    sleep(Duration::from_millis(60));
+    sleep(Duration::from_millis(20));
     send(&child, "-INT");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     workspace.remove("edge.npy");
     workspace.succeed("run --resume stopped");

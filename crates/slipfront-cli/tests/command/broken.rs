@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use crate::fixtures::RUN_FILES;
-use crate::support::process::{program, send, stderr, wait_for};
+use crate::support::process::{Running, program, send, stderr, unset, wait_for};
 use crate::support::workspace::Workspace;
 
 /// The step is just below the limit of the linear lattice, and the strains stiffen its springs beyond it.
@@ -21,6 +22,22 @@ fn a_run_that_diverges_says_where_and_leaves_no_results() {
     assert!(workspace.files("a").is_empty());
 }
 
+/// A command that does not end would stop all tests.
+#[cfg(unix)]
+#[test]
+fn what_hangs_is_killed_and_its_words_are_told() {
+    let mut process = unset("sh");
+    process
+        .args(["-c", "echo begun; exec sleep 1000"])
+        .stdout(Stdio::piped());
+    let hang = Running::start(&mut process).ended_within(Duration::from_millis(300));
+    let said = hang.unwrap_err();
+    assert!(
+        said.contains("sleep 1000") && said.ends_with("300ms:\nbegun\n"),
+        "{said}"
+    );
+}
+
 /// A reader such as `head -1` that closes the pipe early.
 #[test]
 fn a_closed_pipe_is_no_failure() {
@@ -33,13 +50,9 @@ fn a_closed_pipe_is_no_failure() {
         "--help",
     ] {
         let mut process = workspace.process(line);
-        let mut child = process
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = Running::start(process.stdout(Stdio::piped()).stderr(Stdio::piped()));
         drop(child.stdout.take());
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         let said = stderr(&output);
         assert!(
             output.status.success() && said.is_empty(),
@@ -191,8 +204,10 @@ fn threads_that_cannot_be_had_are_done_without() {
     if !workspace.shell(&format!("{as_other} true")).status.success() {
         return;
     }
-    // That user may have no access to the folder of the program.
-    std::fs::copy(program(), workspace.path("slipfront")).unwrap();
+    // That user may have no access to the folder of the program. If this process wrote the copy, another
+    // thread could start a process that holds it open, and it could not be run.
+    let copy = format!("cp '{}' slipfront", program());
+    assert!(workspace.shell(&copy).status.success());
     for (line, status) in [
         ("plot of-anyone -o drawn-by-one", 0),
         ("verify of-anyone", 0),
@@ -225,9 +240,9 @@ fn an_interrupt_ends_the_run_and_leaves_it_incomplete() {
         assert!(child.try_wait().unwrap().is_none(), "the run has ended");
         workspace.exists("a")
     });
-    std::thread::sleep(std::time::Duration::from_millis(100));
+    std::thread::sleep(Duration::from_millis(100));
     send(&child, "-INT");
-    let status = child.wait().unwrap();
+    let status = child.ended().status;
     // A shell shows a death by signal as 128 + its number.
     let seen = status.code().or(status.signal().map(|signal| 128 + signal));
     assert_eq!(seen, Some(130));

@@ -202,7 +202,7 @@ fn a_signal_keeps_what_was_run() {
     let has_runs = || workspace.exists("found/runs.jsonl") && !workspace.read("found/runs.jsonl").is_empty();
     wait_for("some runs", has_runs);
     send(&child, "-INT");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     assert!(
         !output.status.success() && stderr(&output).contains("the same command resumes"),
         "{}",

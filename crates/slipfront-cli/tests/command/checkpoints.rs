@@ -11,12 +11,14 @@ use std::time::Duration;
 use test_case::test_case;
 
 use crate::broken::DIVERGING;
-use crate::support::process::{ignores_hangup, program, send, stderr, try_send, wait_for_signal_handlers};
+use crate::support::process::{
+    Running, ignores_hangup, program, send, stderr, try_send, unset, wait_for_signal_handlers,
+};
 use crate::support::workspace::{Files, Workspace};
 
-/// Takes around a second: long enough to be stopped several times.
+/// Takes around a second, and long enough to be stopped several times also on a fast machine.
 const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.01\n\
-                    [friction]\ncorrelation_length = '2.5 um'\n[[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
+                    [time]\nduration_star = 3200\n[friction]\ncorrelation_length = '2.5 um'\n[[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
 /// Uses the general kernel, with frequent snapshots.
 const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[friction]\nlaw = 'reversal'\n\
@@ -70,7 +72,7 @@ fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
         let child = workspace.start_run(&line);
         sleep(Duration::from_millis(60));
         send(&child, "-INT");
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
         line = format!("run --resume {folder}");
     }
@@ -89,9 +91,9 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(case: &str, signal: &str
     loop {
         // Each call uses a different number of threads.
         let child = workspace.start_run(&format!("{line} --threads {}", 1 + stops % 3));
-        sleep(Duration::from_millis(40 + 37 * (stops % 4)));
+        sleep(Duration::from_millis(20 + 20 * (stops % 4)));
         try_send(&child, signal);
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         if output.status.success() {
             break;
         }
@@ -102,6 +104,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(case: &str, signal: &str
             stderr(&output)
         );
         stops += 1;
+        assert!(stops < 1000, "it does not get on");
         line = "run --resume stopped".to_owned();
     }
     assert!(stops >= 2, "it was stopped {stops} times only");
@@ -117,7 +120,7 @@ fn a_warning_of_the_queue_stops_it(signal: &str, status: i32) {
     let workspace = slow_workspace();
     let child = workspace.start_run("run slow.toml -o warned");
     send(&child, signal);
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
     assert!(
         stderr(&output).contains("`slipfront run --resume warned` resumes the run"),
@@ -135,12 +138,12 @@ fn a_second_signal_ends_it_at_once() {
     let workspace = Workspace::small();
     let pipe = Command::new("mkfifo").arg(workspace.path("pipe.toml")).status();
     assert!(pipe.unwrap().success());
-    let mut child = workspace.start("check pipe.toml");
+    let child = workspace.start("check pipe.toml");
     wait_for_signal_handlers(&child);
     for signal in ["-INT", "-TERM"] {
         send(&child, signal);
     }
-    let status = child.wait().unwrap().code();
+    let status = child.ended().status.code();
     // The second signal may overtake the first.
     assert!(matches!(status, Some(130 | 143)), "{status:?}");
 }
@@ -154,16 +157,17 @@ fn what_cannot_be_said_is_no_failure() {
     let full = || File::options().write(true).open("/dev/full").unwrap();
     let start = |line: &str| {
         let mut process = workspace.process(line);
-        process.stdout(Stdio::null()).stderr(full()).spawn().unwrap()
+        Running::start(process.stdout(Stdio::null()).stderr(full()))
     };
     let status = |line: &str, signal: Option<&str>| {
-        let mut child = start(line);
+        let child = start(line);
         if let Some(signal) = signal {
-            workspace.wait_for("mute/case.toml");
+            // A signal that comes while inputs are copied leaves nothing to resume.
+            workspace.wait_for("mute/inputs/spot.png");
             wait_for_signal_handlers(&child);
             send(&child, signal);
         }
-        child.wait().unwrap().code()
+        child.ended().status.code()
     };
     assert_eq!(status("run nowhere.toml", None), Some(2));
     assert_eq!(status("run slow.toml -o mute", Some("-TERM")), Some(143));
@@ -178,7 +182,7 @@ fn a_signal_saves_and_the_run_goes_on() {
     let child = workspace.start("run slow.toml -o saved");
     workspace.wait_for("saved/case.toml");
     send(&child, "-USR1");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     assert!(output.status.success());
     assert!(
         stderr(&output).contains("saved a checkpoint of step "),
@@ -207,7 +211,7 @@ fn by_the_clock_it_saves_now_and_then() {
     assert!(lines.any(|line| line.contains("no checkpoint is saved")));
     send(&child, "-INT");
     assert!(lines.any(|line| line.contains("nothing is saved")));
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(child.ended().status.code(), Some(130));
     assert!(!workspace.exists("off/.slipfront/checkpoint.bin"));
     for wrong in ["soon", "-5min", "5"] {
         let said = workspace.fail(&format!("run small.toml --checkpoint={wrong}"), 2);
@@ -295,8 +299,10 @@ fn an_interrupted_run_is_not_begun_again_by_mistake() {
 #[test]
 fn one_process_at_a_time_goes_on_with_a_run() {
     let workspace = slow_workspace();
-    let mut child = workspace.start("run slow.toml -o busy");
+    let child = workspace.start("run slow.toml -o busy");
     workspace.wait_for("busy/case.toml");
+    // However long the others take, it has not ended.
+    send(&child, "-STOP");
     for line in [
         "run --quiet --resume busy",
         "run slow.toml --quiet -o busy --force",
@@ -307,7 +313,8 @@ fn one_process_at_a_time_goes_on_with_a_run() {
             "{said}"
         );
     }
-    assert!(child.wait().unwrap().success());
+    send(&child, "-CONT");
+    assert!(child.ended().status.success());
 }
 
 /// Gives a changed checkpoint a valid checksum.
@@ -388,7 +395,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let before = workspace.read("halted/.slipfront/checkpoint-previous.bin");
     let child = workspace.start_run("run --resume halted --previous");
     send(&child, "-INT");
-    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+    assert_eq!(child.ended().status.code(), Some(130));
     assert!(workspace.read("halted/.slipfront/checkpoint-previous.bin") == before);
     workspace.succeed("run --resume halted");
     workspace.assert_same_run("whole", "halted");
@@ -443,7 +450,7 @@ fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
         let path = format!("edited/{file}");
         let before = workspace.read(&path);
         workspace.write(&path, [&before[..], b"\n# more"].concat());
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         let changed = format!("{path} was changed during the run");
         assert!(stderr(&output).contains(&changed), "{}", stderr(&output));
@@ -465,7 +472,7 @@ fn a_terminal_that_closes_loses_nothing() {
     wait_for_signal_handlers(&child);
     workspace.wait_for("halted/inputs/spot.png");
     send(&child, "-HUP");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     if !ignores_hangup() {
         assert_eq!(output.status.code(), Some(129), "{}", stderr(&output));
         assert!(
@@ -476,18 +483,18 @@ fn a_terminal_that_closes_loses_nothing() {
         workspace.succeed("run --resume halted");
     }
     workspace.assert_same_run("whole", "halted");
-    let child = Command::new("nohup")
+    let mut nohup = unset("nohup");
+    nohup
         .arg(program())
         .args("run slow.toml --quiet -o ignored".split(' '))
         .current_dir(workspace.path(""))
         .stderr(Stdio::piped())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+        .stdout(Stdio::null());
+    let child = Running::start(&mut nohup);
     wait_for_signal_handlers(&child);
     workspace.wait_for("ignored/inputs/spot.png");
     send(&child, "-HUP");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     assert!(output.status.success(), "{}", stderr(&output));
     workspace.assert_same_run("whole", "ignored");
 }
@@ -502,7 +509,7 @@ fn a_stop_that_saves_nothing_is_a_failure() {
     workspace.wait_for("gone/inputs/spot.png");
     std::fs::remove_dir_all(workspace.path("gone")).unwrap();
     send(&child, "-TERM");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(
         stderr(&output).contains("the state cannot be saved in gone")

@@ -166,7 +166,7 @@ fn a_signal_keeps_the_best() {
         "{beside_it}"
     );
     send(&child, "-INT");
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     let said = unwrapped(&stderr(&output));
     assert_eq!(output.status.code(), Some(130), "{said}");
     assert!(

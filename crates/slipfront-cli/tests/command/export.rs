@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use crate::support::process::{stderr, stdout};
+use crate::support::process::{output, stderr, stdout};
 use crate::support::workspace::Workspace;
 use crate::verify::verified;
 
@@ -273,10 +273,7 @@ fn any_name_can_be_cited() {
     ] {
         std::fs::rename(workspace.path("plain"), workspace.path(name)).unwrap();
         let mut process = workspace.process("export --bibtex --author");
-        let output = process
-            .args([name.replace('\n', " "), name.to_owned()])
-            .output()
-            .unwrap();
+        let output = output(process.args([name.replace('\n', " "), name.to_owned()]));
         let bibtex = stdout(&output);
         assert!(output.status.success(), "{name}: {}", stderr(&output));
         let entries = entries(&bibtex);

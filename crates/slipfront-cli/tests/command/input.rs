@@ -87,7 +87,7 @@ fn a_signal_ends_the_reading_of_any_file() {
             let child = workspace.start(command);
             wait_for_signal_handlers(&child);
             send(&child, "-INT");
-            let output = child.wait_with_output().unwrap();
+            let output = child.ended();
             assert_eq!(
                 output.status.code(),
                 Some(130),
@@ -274,12 +274,13 @@ fn a_limit_of_the_process_is_refused_in_a_sentence() {
     // including its threads' stacks.
     for (blocks, status) in [("[1000,1000]", 0), ("[16000,1000]", 2)] {
         let output = workspace.shell(&format!(
-            "ulimit -v 2000000; RAYON_NUM_THREADS=2 exec {} check small.toml --set slider.blocks={blocks}",
+            "ulimit -v 2000000; exec {} check small.toml --set slider.blocks={blocks}",
             program()
         ));
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(status), "{said}");
-        assert!(status == 0 || said.contains("GiB are available"), "{said}");
+        // The threads of many cores leave less than a GiB.
+        assert!(status == 0 || said.contains("iB are available"), "{said}");
     }
 }
 

@@ -5,25 +5,21 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::CommandExt;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-use crate::support::process::{ignores_hangup, send, stderr, stdout, wait_for};
+use crate::support::process::{Running, ignores_hangup, output, send, stderr, stdout, wait_for};
 use crate::support::workspace::Workspace;
 
 /// Starts the command; returns it and the address that it prints.
-fn open(workspace: &Workspace, line: &str) -> (Child, String) {
+fn open(workspace: &Workspace, line: &str) -> (Running, String) {
     let mut process = workspace.process(line);
     fs::create_dir_all(workspace.path("temporary")).unwrap();
     start(process.env("TMPDIR", workspace.path("temporary")))
 }
 
 /// Starts a command; returns it and the address that it prints.
-fn start(process: &mut Command) -> (Child, String) {
-    let mut child = process
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+fn start(process: &mut Command) -> (Running, String) {
+    let mut child = Running::start(process.stdout(Stdio::piped()).stderr(Stdio::piped()));
     let mut printed = String::new();
     BufReader::new(child.stdout.as_mut().unwrap())
         .read_line(&mut printed)
@@ -35,12 +31,6 @@ fn start(process: &mut Command) -> (Child, String) {
         .unwrap_or_else(|| panic!("no address in {printed:?}"))
         .to_owned();
     (child, address)
-}
-
-/// Waits for the end of a process after a signal.
-fn ended(mut child: Child) -> Output {
-    wait_for("end of the laboratory", || child.try_wait().unwrap().is_some());
-    child.wait_with_output().unwrap()
 }
 
 /// The host and the token of an address.
@@ -80,7 +70,7 @@ fn it_serves_its_page_until_a_signal() {
             signal
         };
         send(&child, signal);
-        let output = ended(child);
+        let output = child.ended();
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
     }
 }
@@ -174,7 +164,7 @@ fn no_other_user_can_read_the_token() {
         None => eprintln!("skipped: only root can look as another user does"),
     }
     send(&child, "-TERM");
-    let output = ended(child);
+    let output = child.ended();
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
     assert_eq!(fs::read_dir(&temporary).unwrap().count(), 0);
 }
@@ -188,7 +178,7 @@ fn a_browser_that_cannot_read_the_page_is_not_started() {
         change(&mut process);
         let (child, _) = start(&mut process);
         send(&child, "-TERM");
-        let output = ended(child);
+        let output = child.ended();
         assert_eq!(output.status.code(), Some(0));
         stderr(&output)
     };
@@ -248,7 +238,7 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
             .env("TMPDIR", workspace.path("tmp"))
             .stdout(log)
             .stderr(Stdio::piped());
-        let child = process.spawn().unwrap();
+        let child = Running::start(process);
         let printed = || workspace.read_text("log");
         wait_for("address", || printed().ends_with('\n'));
         let shown = printed().split_whitespace().last().unwrap().to_owned();
@@ -266,7 +256,7 @@ fn the_address_is_not_printed_into_a_file_that_others_can_read() {
             assert_eq!(in_temporary(), 1);
         }
         send(&child, signal);
-        let output = ended(child);
+        let output = child.ended();
         let said = stderr(&output);
         assert_eq!(
             said.contains("other users can read this output"),
@@ -303,7 +293,7 @@ fn the_files_of_a_case_are_kept_in_memory() {
     let (child, _) = open(&workspace, "lab --no-open masked.toml");
     assert_eq!(fs::read_dir(workspace.path("temporary")).unwrap().count(), 0);
     send(&child, "-TERM");
-    assert_eq!(ended(child).status.code(), Some(0));
+    assert_eq!(child.ended().status.code(), Some(0));
 }
 
 #[test]
@@ -327,7 +317,7 @@ fn what_cannot_be_opened_is_refused() {
             "choose another one with --port",
         ),
     ] {
-        let output = workspace.process(line).output().unwrap();
+        let output = output(&mut workspace.process(line));
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{line}: {said}");
         assert!(

@@ -4,7 +4,9 @@
 use std::process::Stdio;
 
 use crate::fixtures::list_as_written;
-use crate::support::process::{send, stderr, stdout, wait_for, wait_for_signal_handlers};
+use crate::support::process::{
+    Running, output, program, send, stderr, stdout, unset, wait_for, wait_for_signal_handlers,
+};
 use crate::support::workspace::Workspace;
 use crate::verify::verified;
 
@@ -202,20 +204,19 @@ fn a_read_only_folder_is_verified_by_everybody() {
         let mut process = workspace.process("verify out");
         process.env("TMPDIR", &temporary);
         if is_root {
-            assert!(
-                workspace
-                    .shell("chmod a+rx . && chmod u+w temporary")
-                    .status
-                    .success()
+            // If this process wrote the copy, another thread could start a process that holds it open, and it
+            // could not be run.
+            let script = format!(
+                "chmod a+rx . && chmod u+w temporary && cp '{}' temporary/slipfront",
+                program()
             );
+            assert!(workspace.shell(&script).status.success());
             chown(&temporary, Some(NOBODY), Some(NOBODY)).unwrap();
-            let program = workspace.path("temporary/slipfront");
-            std::fs::copy(crate::support::process::program(), &program).unwrap();
-            process = std::process::Command::new(program);
+            process = unset(workspace.path("temporary/slipfront").to_str().unwrap());
             process.args(["verify", "out"]).current_dir(workspace.path("."));
             process.env("TMPDIR", &temporary).uid(NOBODY).gid(NOBODY);
         }
-        let output = process.output().unwrap();
+        let output = output(&mut process);
         assert!(
             output.status.success(),
             "{line}: {}{}",
@@ -240,21 +241,20 @@ fn a_signal_leaves_no_copy_behind() {
     workspace.write(
         "wish.toml",
         WISH.replace("[8, 8]", "[40, 40]")
-            .replace("runs = 40", "runs = 4000"),
+            .replace("runs = 40", "runs = 200"),
     );
-    workspace.succeed("design wish.toml -o out --time 1s --quiet");
+    workspace.succeed("design wish.toml -o out --quiet");
     workspace.write("out/design.jsonl", "");
     std::fs::create_dir(workspace.path("temporary")).unwrap();
     let names = || std::fs::read_dir(workspace.path("temporary")).unwrap().count();
     for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
         let mut process = workspace.process("verify out --threads 1");
         process.env("TMPDIR", workspace.path("temporary"));
-        process.stdout(Stdio::null()).stderr(Stdio::piped());
-        let child = process.spawn().unwrap();
+        let child = Running::start(process.stdout(Stdio::null()).stderr(Stdio::piped()));
         wait_for_signal_handlers(&child);
         wait_for("a copy", || names() > 0);
         send(&child, signal);
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         let ignored = signal == "-HUP" && crate::support::process::ignores_hangup();
         if !ignored {
             assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
@@ -345,5 +345,5 @@ fn waiting_for_training_runs_leaves_no_folder() {
     assert!(said.contains("another slipfront is running in runs"), "{said}");
     assert!(!workspace.exists("two"));
     send(&child, "-INT");
-    child.wait_with_output().unwrap();
+    child.ended();
 }

@@ -23,7 +23,7 @@ fn a_signal_ends_a_texture_that_takes_long() {
         let child = workspace.start(command);
         wait_for_signal_handlers(&child);
         send(&child, "-INT");
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         assert_eq!(output.status.code(), Some(130), "{command}: {}", stderr(&output));
         assert_eq!(
             stderr(&output),

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::process::Stdio;
 
 use crate::fixtures::{RUN_FILES, unwrapped};
-use crate::support::process::{send, wait_for};
+use crate::support::process::{Running, output, send, wait_for};
 use crate::support::workspace::Workspace;
 
 /// Runs `verify`; returns the status, stdout and stderr.
 pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, String) {
-    let output = workspace.process(&format!("verify {line}")).output().unwrap();
+    let output = workspace.output(&format!("verify {line}"));
     let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
     assert!(!err.contains("panicked"), "{err}");
     (output.status.code().unwrap(), unwrapped(&out), err)
@@ -394,7 +394,7 @@ fn rerun(workspace: &Workspace, folder: &str) -> (i32, String) {
     let temporary = workspace.path("temporary");
     std::fs::create_dir_all(&temporary).unwrap();
     let mut command = workspace.process(&format!("verify --rerun {folder}"));
-    let output = command.env("TMPDIR", &temporary).output().unwrap();
+    let output = output(command.env("TMPDIR", &temporary));
     let left = std::fs::read_dir(&temporary).unwrap().count();
     assert_eq!(left, 0, "something is left behind");
     let said = String::from_utf8(output.stdout).unwrap();
@@ -465,7 +465,6 @@ fn a_repeated_run_may_write_less() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_repetition_leaves_nothing_behind() {
-    use crate::support::process::{send, wait_for};
     use std::process::Stdio;
     let workspace = Workspace::small();
     workspace.succeed("run small.toml -o a");
@@ -478,13 +477,13 @@ fn an_interrupted_repetition_leaves_nothing_behind() {
     std::fs::create_dir(&temporary).unwrap();
     let mut process = workspace.process("verify --rerun --quiet a");
     process.env("TMPDIR", &temporary).stdout(Stdio::null());
-    let mut child = process.stderr(Stdio::null()).spawn().unwrap();
+    let child = Running::start(process.stderr(Stdio::null()));
     wait_for("folder of the run", || {
         std::fs::read_dir(&temporary).unwrap().next().is_some()
     });
     std::thread::sleep(std::time::Duration::from_millis(100));
     send(&child, "-INT");
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(child.ended().status.code(), Some(130));
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
 }
 
@@ -513,7 +512,7 @@ fn a_run_is_repeated_twice_at_once() {
     };
     // On a busy machine it may have ended before the signal arrives.
     let stopped_on_the_way = |_| {
-        let mut first = repetition().spawn().unwrap();
+        let first = Running::start(&mut repetition());
         // A folder without a file may not be locked yet: it would be taken for a leftover and replaced.
         wait_for("file in the folder to work in", has_begun);
         send(&first, "-STOP");
@@ -521,13 +520,13 @@ fn a_run_is_repeated_twice_at_once() {
             return Some(first);
         }
         send(&first, "-CONT");
-        assert!(first.wait().unwrap().success());
+        assert!(first.ended().status.success());
         None
     };
-    let mut first = (0..10).find_map(stopped_on_the_way).unwrap();
-    assert!(repetition().status().unwrap().success());
+    let first = (0..10).find_map(stopped_on_the_way).unwrap();
+    assert!(output(&mut repetition()).status.success());
     assert_eq!(in_temporary(), 1);
     send(&first, "-CONT");
-    assert!(first.wait().unwrap().success());
+    assert!(first.ended().status.success());
     assert_eq!(in_temporary(), 0);
 }

@@ -1,12 +1,130 @@
 //! Processes of the command: starting, signalling and waiting.
 
-use std::process::{Child, Command, Output};
-use std::thread::sleep;
+use std::io::Read;
+use std::ops::{Deref, DerefMut};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{Sender, channel};
+use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
+
+/// Time limit of a process: the longest take half a minute, and only a hang takes this long.
+pub(crate) const MAX_TIME: Duration = Duration::from_secs(300);
+
+/// Variables of the environment that change what the command does or prints. The tests may themselves run in
+/// a Slurm task.
+const SETTINGS: [&str; 6] = [
+    "CLICOLOR_FORCE",
+    "COLUMNS",
+    "SLIPFRONT_SIMD",
+    "SLURM_ARRAY_TASK_COUNT",
+    "SLURM_ARRAY_TASK_ID",
+    "SLURM_ARRAY_TASK_MIN",
+];
 
 /// The path of the command under test.
 pub(crate) fn program() -> &'static str {
-    env!("CARGO_BIN_EXE_slipfront")
+    // In tests/long, the program of that package.
+    option_env!("CARGO_BIN_EXE_slipfront")
+        .or(option_env!("CARGO_BIN_EXE_slipfront-under-test"))
+        .expect("cargo builds the program of the package")
+}
+
+/// A process without the settings in the environment of the tests.
+pub(crate) fn unset(program: &str) -> Command {
+    let mut process = Command::new(program);
+    for name in SETTINGS {
+        process.env_remove(name);
+    }
+    process
+}
+
+/// A process that is killed if its test fails before its end.
+pub(crate) struct Running {
+    child: Child,
+    /// The command line, for messages.
+    line: String,
+}
+
+impl Running {
+    pub(crate) fn start(command: &mut Command) -> Self {
+        let (child, line) = (command.spawn().unwrap(), format!("{command:?}"));
+        Self { child, line }
+    }
+
+    /// Waits for the end of the process, which must come within [`MAX_TIME`].
+    pub(crate) fn ended(self) -> Output {
+        self.ended_within(MAX_TIME)
+            .unwrap_or_else(|hang| panic!("{hang}"))
+    }
+
+    /// Waits for the end of the process. After this time, it is killed, and what it has printed is the error.
+    pub(crate) fn ended_within(mut self, limit: Duration) -> Result<Output, String> {
+        let (sender, pieces) = channel();
+        forward(0, self.stdout.take(), sender.clone());
+        forward(1, self.stderr.take(), sender);
+        let until = Instant::now() + limit;
+        let left = || until.saturating_duration_since(Instant::now());
+        let mut printed = [Vec::new(), Vec::new()];
+        while let Ok((stream, piece)) = pieces.recv_timeout(left()) {
+            printed[stream].extend::<Vec<u8>>(piece);
+        }
+        let [stdout, stderr] = printed;
+        loop {
+            if let Some(status) = self.try_wait().unwrap() {
+                return Ok(Output {
+                    status,
+                    stdout,
+                    stderr,
+                });
+            }
+            if left().is_zero() {
+                let said = [stdout, stderr].concat();
+                let said = String::from_utf8_lossy(&said);
+                return Err(format!("{} has not ended after {limit:?}:\n{said}", self.line));
+            }
+            sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+impl Deref for Running {
+    type Target = Child;
+
+    fn deref(&self) -> &Child {
+        &self.child
+    }
+}
+
+impl DerefMut for Running {
+    fn deref_mut(&mut self) -> &mut Child {
+        &mut self.child
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // There is nothing to kill after its end.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Sends what comes from a stream, with the number of the stream, until it ends.
+fn forward(number: usize, stream: Option<impl Read + Send + 'static>, to: Sender<(usize, Vec<u8>)>) {
+    spawn(move || {
+        let mut bytes = [0; 1 << 14];
+        let mut stream = stream?;
+        while let Ok(count @ 1..) = stream.read(&mut bytes) {
+            to.send((number, bytes[..count].to_vec())).ok()?;
+        }
+        Some(())
+    });
+}
+
+/// Runs a command to its end.
+pub(crate) fn output(command: &mut Command) -> Output {
+    let piped = command.stdin(Stdio::null()).stdout(Stdio::piped());
+    Running::start(piped.stderr(Stdio::piped())).ended()
 }
 
 /// Text printed by a process to stderr.
@@ -21,7 +139,7 @@ pub(crate) fn stdout(output: &Output) -> String {
 
 /// Runs a command, and asserts that it ends with this status.
 pub(crate) fn ended_with(command: &mut Command, status: i32) -> Output {
-    let output = command.output().unwrap();
+    let output = output(command);
     let said = format!("{command:?}\n{}{}", stdout(&output), stderr(&output));
     assert_eq!(output.status.code(), Some(status), "{said}");
     output
@@ -40,11 +158,11 @@ pub(crate) fn try_send(child: &Child, signal: &str) -> bool {
     kill.unwrap().status.success()
 }
 
-/// Waits until a condition holds, and fails after a minute.
+/// Waits until a condition holds, and fails after two minutes.
 pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
     let began = Instant::now();
     while !holds() {
-        assert!(began.elapsed() < Duration::from_secs(60), "no {what}");
+        assert!(began.elapsed() < Duration::from_secs(120), "no {what}");
         sleep(Duration::from_millis(1));
     }
 }

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
+use std::sync::LazyLock;
 
 use slipfront_base::machine::free_disk;
 use tempfile::TempDir;
 
-use super::process::{ended_with, program, stderr, stdout, wait_for};
+use super::process::{Running, ended_with, output, program, stderr, stdout, unset, wait_for};
 
 /// Contents of files, by file name.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
@@ -24,6 +25,17 @@ const IN_MEMORY: &str = "/dev/shm";
 /// Smallest number of bytes that must be free in memory: all tests together use less than a tenth of it.
 const ROOM: f64 = 4e9;
 
+/// Whether programs can be started from [`IN_MEMORY`], which the system may forbid: some tests do.
+static STARTS_PROGRAMS: LazyLock<bool> = LazyLock::new(|| {
+    let script = "printf '#!/bin/sh\n' > program && chmod 700 program && ./program";
+    let starts = |folder: &TempDir| {
+        let mut shell = Command::new("sh");
+        let output = shell.args(["-c", script]).current_dir(folder).output();
+        output.is_ok_and(|output| output.status.success())
+    };
+    TempDir::new_in(IN_MEMORY).is_ok_and(|folder| starts(&folder))
+});
+
 /// A temporary folder. File names are relative to it, and commands run in it.
 pub(crate) struct Workspace {
     folder: TempDir,
@@ -32,7 +44,7 @@ pub(crate) struct Workspace {
 impl Workspace {
     pub(crate) fn new() -> Self {
         let has_room = free_disk(Path::new(IN_MEMORY)).is_some_and(|free| free > ROOM);
-        let folder = if has_room && std::env::var_os("TMPDIR").is_none() {
+        let folder = if has_room && std::env::var_os("TMPDIR").is_none() && *STARTS_PROGRAMS {
             TempDir::new_in(IN_MEMORY)
         } else {
             TempDir::new()
@@ -99,20 +111,16 @@ impl Workspace {
 
     /// The command, with its arguments given in one line.
     pub(crate) fn process(&self, line: &str) -> Command {
-        let mut process = Command::new(program());
+        let mut process = unset(program());
         process
             .args(line.split_whitespace())
             .current_dir(self.folder.path());
-        // The tests may themselves run in a Slurm task.
-        for name in ["ID", "COUNT", "MIN"] {
-            process.env_remove(format!("SLURM_ARRAY_TASK_{name}"));
-        }
         process
     }
 
     /// Runs the command.
     pub(crate) fn output(&self, line: &str) -> Output {
-        self.process(line).output().unwrap()
+        output(&mut self.process(line))
     }
 
     /// Runs the command and asserts that it succeeds; returns its stdout.
@@ -133,18 +141,16 @@ impl Workspace {
     }
 
     /// Starts the command; its stderr can be read, and its stdout is discarded.
-    pub(crate) fn start(&self, line: &str) -> Child {
+    pub(crate) fn start(&self, line: &str) -> Running {
         let mut process = self.process(line);
-        process.stdout(Stdio::null()).stderr(Stdio::piped());
-        process.spawn().unwrap()
+        Running::start(process.stdout(Stdio::null()).stderr(Stdio::piped()))
     }
 
     /// Starts `run` and waits until it prints the physics of its case: from then on, when meshing is
     /// complete, a signal stops it with a checkpoint.
-    pub(crate) fn start_run(&self, line: &str) -> Child {
+    pub(crate) fn start_run(&self, line: &str) -> Running {
         let mut process = self.process(line);
-        process.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = process.spawn().unwrap();
+        let mut child = Running::start(process.stdout(Stdio::piped()).stderr(Stdio::piped()));
         let mut first = [0];
         child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
         child
@@ -152,9 +158,7 @@ impl Workspace {
 
     /// Runs a shell script.
     pub(crate) fn shell(&self, script: &str) -> Output {
-        let mut shell = Command::new("sh");
-        shell.args(["-c", script]).current_dir(self.folder.path());
-        shell.output().unwrap()
+        output(unset("sh").args(["-c", script]).current_dir(self.folder.path()))
     }
 }
 

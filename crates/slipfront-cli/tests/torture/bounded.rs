@@ -1,14 +1,13 @@
 //! The command with limits on its time and memory, and checks of its exit.
 
-use std::process::{Child, Command, Output, Stdio};
-use std::sync::mpsc;
+use std::process::{Output, Stdio};
 use std::time::Duration;
 
-use crate::support::process::{program, stderr, stdout};
+use crate::support::process::{Running, program, stderr, stdout, unset};
 use crate::support::workspace::{Files, Workspace};
 
 /// Time limit of a command: all of these end within a second on an idle machine.
-const MAX_SECONDS: u64 = 120;
+const MAX_TIME: Duration = Duration::from_secs(120);
 /// Limit on the address space of a command, KiB: 1 GiB, of which its threads reserve the larger part without
 /// using it.
 const MAX_MEMORY_KIB: u64 = 1 << 20;
@@ -25,12 +24,12 @@ impl Workspace {
     /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a
     /// message are findings.
     pub(crate) fn run_bounded(&self, line: &str) -> Result<ExitedProcess, String> {
-        inspect(line, &self.bounded(&[], line))
+        inspect(line, &self.bounded(&[], line)?)
     }
 
     /// Runs a line under a watcher, which may kill it; none if it was killed.
     pub(crate) fn run_watched(&self, watcher: &[&str], line: &str) -> Result<Option<ExitedProcess>, String> {
-        let output = self.bounded(watcher, line);
+        let output = self.bounded(watcher, line)?;
         match output.status.code() {
             None if output.stderr.is_empty() => Ok(None),
             _ => inspect(line, &output).map(Some),
@@ -47,11 +46,10 @@ impl Workspace {
     }
 
     /// Starts a line that will be killed.
-    pub(crate) fn start_silent(&self, line: &str) -> Child {
+    pub(crate) fn start_silent(&self, line: &str) -> Running {
         let mut process = self.process(line);
         process.env("TMPDIR", self.path("temporary"));
-        process.stdout(Stdio::null()).stderr(Stdio::null());
-        process.spawn().unwrap()
+        Running::start(process.stdout(Stdio::null()).stderr(Stdio::null()))
     }
 
     /// Every file below a folder, with its contents; empty if there is no folder.
@@ -64,32 +62,20 @@ impl Workspace {
     }
 
     /// Runs a line of slipfront under `watcher`, with limits on memory and time.
-    fn bounded(&self, watcher: &[&str], line: &str) -> Output {
-        let child = Command::new("sh")
+    fn bounded(&self, watcher: &[&str], line: &str) -> Result<Output, String> {
+        let mut process = unset("sh");
+        process
             .args(["-c", &format!("ulimit -v {MAX_MEMORY_KIB} && exec \"$@\""), "sh"])
             .args(watcher)
             .arg(program())
             .args(line.split_whitespace())
             .current_dir(self.path(""))
             .env("TMPDIR", self.path("temporary"))
-            .env_remove("SLURM_ARRAY_TASK_ID")
             .env("RUST_BACKTRACE", "0")
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let id = child.id().to_string();
-        let (ended, end) = mpsc::channel::<()>();
-        let guard = std::thread::spawn(move || {
-            if end.recv_timeout(Duration::from_secs(MAX_SECONDS)) == Err(mpsc::RecvTimeoutError::Timeout) {
-                Command::new("kill").args(["-KILL", &id]).status().unwrap();
-            }
-        });
-        let output = child.wait_with_output().unwrap();
-        drop(ended);
-        guard.join().unwrap();
-        output
+            .stderr(Stdio::piped());
+        Running::start(&mut process).ended_within(MAX_TIME)
     }
 }
 

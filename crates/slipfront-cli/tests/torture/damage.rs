@@ -533,12 +533,25 @@ fn of_a_paper() {
 /// Leaves a run that was stopped after it had saved two checkpoints.
 fn stopped(workspace: &Workspace) -> Files {
     let mut child = workspace.start_silent(JOBS[3].line);
+    let has_both = || {
+        let mut names = ["checkpoint", "checkpoint-previous"].iter();
+        names.all(|name| workspace.exists(&format!("out/.slipfront/{name}.bin")))
+    };
     wait_for("two checkpoints", || {
         assert!(child.try_wait().unwrap().is_none(), "no checkpoints were saved");
         if workspace.exists("out/case.toml") {
             try_send(&child, "-USR1");
         }
-        workspace.exists("out/.slipfront/checkpoint-previous.bin")
+        if !has_both() {
+            return false;
+        }
+        // A stopped process can neither end nor replace a checkpoint before it is killed.
+        try_send(&child, "-STOP");
+        let is_between = !has_both();
+        if is_between {
+            try_send(&child, "-CONT");
+        }
+        !is_between
     });
     child.kill().unwrap();
     child.wait().unwrap();

@@ -111,7 +111,7 @@ snapshots = [30, 50]
 series = 1
 "#;
 
-/// Takes some tenths of a second, in which checkpoints are saved.
+/// Takes some tenths of a second, also on a fast machine, in which checkpoints are saved.
 const SLOW: &str = r#"
 [slider]
 blocks = [40, 30]
@@ -121,7 +121,7 @@ v_star = 0.05
 shape = "mask"
 file = "mask.png"
 [time]
-duration_star = 600
+duration_star = 2400
 [output]
 snapshots = [30, 500]
 series = 5

@@ -27,7 +27,7 @@ fn kill_and_look(
         }
     }
     child.kill().unwrap();
-    match child.wait().unwrap().code() {
+    match child.ended().status.code() {
         None => job.expect_honest(workspace, whole).map(|()| "killed"),
         Some(0) => expect_all(&workspace.files_if_any("out"), whole).map(|()| "had ended"),
         Some(status) => Err(format!("`{line}` ends with status {status} by itself")),
@@ -162,11 +162,11 @@ fn a_killed_export_leaves_no_crate() {
     for signal in ["-KILL", "-KILL", "-TERM", "-INT"] {
         for _ in 0..cases(3, 100) {
             workspace.remove("crate");
-            let mut child = workspace.start_silent(line);
+            let child = workspace.start_silent(line);
             let after = takes.mul_f64(chance.below(1000) as f64 / 1000.0);
             std::thread::sleep(after);
             try_send(&child, signal);
-            let had_ended = child.wait().unwrap().success();
+            let had_ended = child.ended().status.success();
             let now = made(&workspace);
             let ended = match now.iter().position(|name| name == "crate") {
                 Some(_) if files() != whole => Err("half of a crate has its name".to_owned()),
@@ -200,11 +200,11 @@ fn what_a_signal_stops_leaves_nothing_behind() {
         for signal in ["-INT", "-TERM"] {
             for _ in 0..cases(5, 100) {
                 job.prepare(&workspace);
-                let mut child = workspace.start_silent(job.line);
+                let child = workspace.start_silent(job.line);
                 let after = takes.mul_f64(chance.below(1000) as f64 / 1000.0);
                 std::thread::sleep(after);
                 try_send(&child, signal);
-                let ended = match child.wait().unwrap().code() {
+                let ended = match child.ended().status.code() {
                     None | Some(130 | 143) => Ok("stopped"),
                     Some(0) => Ok("had ended"),
                     Some(status) => Err(format!("`{}` ends with status {status}", job.line)),

@@ -4,7 +4,7 @@
 //! By default, a sample of the cases is tried. All cases, with the numbers of cases tried:
 //!
 //! ```console
-//! $ SLIPFRONT_TORTURE=long cargo test --release -p slipfront-cli --test torture -- --nocapture
+//! $ SLIPFRONT_TORTURE=long cargo test -p slipfront-long-tests --test torture -- --nocapture
 //! ```
 //!
 //! A number in place of `long`, such as 0.1, takes that share of them. The random choices follow from a seed,
@@ -25,7 +25,7 @@ mod faults;
 mod full_disk;
 mod jobs;
 mod kills;
-// This test reads from /proc how much memory a process has used.
+// Memory is counted in the unit of Linux.
 #[cfg(target_os = "linux")]
 mod soak;
 mod tally;

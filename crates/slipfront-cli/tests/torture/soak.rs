@@ -4,14 +4,21 @@
 //! `cargo test` runs a million steps. Up to 10^8 steps, with the measured figures:
 //!
 //! ```console
-//! $ SLIPFRONT_SOAK=long cargo test --release -p slipfront-cli --test torture soak -- --nocapture
+//! $ SLIPFRONT_SOAK=long cargo test -p slipfront-long-tests --test torture soak -- --nocapture
 //! ```
 
 use std::collections::BTreeMap;
-use std::thread::sleep;
-use std::time::Duration;
+use std::process::Stdio;
 
+use crate::support::process::{MAX_TIME, Running, program, stdout, unset};
 use crate::support::workspace::Workspace;
+
+/// A Python program that runs a command and prints the peak of its memory in KiB, as Linux counts it to the
+/// end: the peak comes while the pictures are drawn, shortly before it.
+const PRINT_PEAK: &str = "import resource, subprocess, sys
+status = subprocess.call(sys.argv[1:])
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+sys.exit(status)";
 
 /// Time, memory, disk space and energy error of a run.
 struct Soaked {
@@ -25,22 +32,16 @@ fn soak(workspace: &Workspace, duration_star: f64) -> Soaked {
     let out = format!("{duration_star:e}");
     // On one thread the peak is reproducible to a hundredth. On two threads, one run in four took a fifth
     // less, depending on which thread drew which picture.
-    let mut child = workspace.start(&format!(
+    let line = format!(
         "run --quiet --threads 1 --set slider.blocks=[6,5] --set drive.v_star=0.1 --set time.duration_star={duration_star} --out {out}"
-    ));
-    let mut peak_kib = 0;
-    let status = loop {
-        // The peak comes while the pictures are drawn, for some tenths of a second at the end.
-        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let peak = peak.and_then(|peak| peak.trim().trim_end_matches(" kB").parse().ok());
-        peak_kib = peak_kib.max(peak.unwrap_or(0));
-        if let Some(status) = child.try_wait().unwrap() {
-            break status;
-        }
-        sleep(Duration::from_millis(1));
-    };
-    assert!(status.success(), "{status}");
+    );
+    let mut python = unset("python3");
+    python.args(["-c", PRINT_PEAK, program()]).args(line.split(' '));
+    python.current_dir(workspace.path("")).stdout(Stdio::piped());
+    // The shortest run takes less than a second.
+    let limit = MAX_TIME.mul_f64(duration_star / 1e4);
+    let output = Running::start(&mut python).ended_within(limit).unwrap();
+    assert!(output.status.success(), "{}", output.status);
     let summary = workspace.read(&format!("{out}/summary.json"));
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
     let files = std::fs::read_dir(workspace.path(&out)).unwrap().map(|entry| {
@@ -50,7 +51,7 @@ fn soak(workspace: &Workspace, duration_star: f64) -> Soaked {
     });
     Soaked {
         steps: summary["steps"].as_u64().unwrap(),
-        peak_kib,
+        peak_kib: stdout(&output).trim().parse().unwrap(),
         energy_error: summary["energy_error"].as_f64().unwrap(),
         files: files.collect(),
     }

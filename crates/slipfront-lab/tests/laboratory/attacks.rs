@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 use tungstenite::Message;
 
-use crate::laboratory::Served;
+use crate::laboratory::{Served, TIMEOUT};
 use crate::page::{NONCE, Page, TAB, proof, protocols, try_connect};
 
 const SMALL: &str = "slider.blocks = [8, 8]\n";
@@ -267,10 +267,7 @@ fn a_fifth_page_is_refused_until_one_is_closed() {
     pages.pop();
     let began = Instant::now();
     while try_connect(&lab, &lab.token, &[]).is_err() {
-        assert!(
-            began.elapsed() < Duration::from_secs(10),
-            "its place was not given free"
-        );
+        assert!(began.elapsed() < TIMEOUT, "its place was not given free");
         std::thread::sleep(Duration::from_millis(20));
     }
 }

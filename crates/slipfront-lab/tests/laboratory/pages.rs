@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::laboratory::Served;
+use crate::laboratory::{Served, TIMEOUT};
 use crate::page::Page;
 
 const CIRCLE: &str = "slider.blocks = [20, 20]\nfriction.sigma_static_star = 0\ntime.duration_star = 200\n[[texture]]\nshape = 'cavity'\n\
@@ -231,7 +231,7 @@ fn a_hidden_page_costs_nothing() {
     let began = Instant::now();
     // Only messages under way may still arrive: one picture and its replies.
     while page.read().is_ok() {
-        assert!(began.elapsed() < Duration::from_secs(5), "messages do not end");
+        assert!(began.elapsed() < TIMEOUT, "messages do not end");
     }
     assert!(page.pictures <= pictures + 1);
 }

@@ -1,11 +1,11 @@
 //! A study that is killed, stopped or out of disk space loses nothing and repeats nothing.
 
-use std::process::{Child, Output};
+use std::process::Output;
 use std::thread::sleep;
 use std::time::Duration;
 
 use super::results::{SMALL, SMALL_RUNS};
-use crate::support::process::{program, send, stderr};
+use crate::support::process::{Running, program, send, stderr};
 use crate::support::workspace::Workspace;
 
 /// Long enough to be interrupted: 90 runs of some ten milliseconds.
@@ -27,7 +27,7 @@ list = [0.4, 0.5, 0.6]
 "#;
 const LONG_RUNS: usize = 90;
 
-fn start(workspace: &Workspace, out: &str) -> Child {
+fn start(workspace: &Workspace, out: &str) -> Running {
     workspace.start(&format!("study study.toml --quiet --out {out}"))
 }
 
@@ -75,7 +75,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
         for signal in ["-USR1", signal] {
             send(&child, signal);
         }
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
         assert!(
             stderr(&output).contains("resumes from there"),
@@ -137,12 +137,13 @@ fn what_the_system_does_not_give_is_refused_before_it_begins() {
 
 #[test]
 fn two_processes_do_not_share_a_folder() {
-    let workspace = Workspace::with_study(LONG);
-    let mut first = start(&workspace, "shared");
+    let workspace = Workspace::with_study(&LONG.replace("replicates = 5", "replicates = 100"));
+    let first = start(&workspace, "shared");
     workspace.results("shared").wait_for_runs(1);
+    // However long the second one takes, the first one has not ended.
+    send(&first, "-STOP");
     let second = workspace.output("study study.toml -o shared");
-    first.kill().unwrap();
-    first.wait().unwrap();
+    drop(first);
     assert_eq!(second.status.code(), Some(2));
     assert!(
         stderr(&second).contains("another slipfront is running"),

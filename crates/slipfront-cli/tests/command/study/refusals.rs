@@ -1,7 +1,7 @@
 //! Errors that are reported before any run.
 
 use super::results::SMALL;
-use crate::support::process::stderr;
+use crate::support::process::{output, stderr};
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -197,11 +197,7 @@ fn errors_of_the_base_show_the_lines_of_the_study_file() {
 fn keys_of_axes_are_not_set() {
     let workspace = Workspace::with_study(SMALL);
     for key in ["drive.v_star=0.2", "drive.speed=1 mm/s"] {
-        let output = workspace
-            .process("study study.toml -o out --set")
-            .arg(key)
-            .output()
-            .unwrap();
+        let output = output(workspace.process("study study.toml -o out --set").arg(key));
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{said}");
         assert_eq!(
