@@ -14,6 +14,7 @@ use slipfront_case::case_file::{
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
+use test_case::test_case;
 
 /// Quantities of many sizes, some in a user's notation and some printed from their value.
 fn quantity<K: Kind + 'static>(
@@ -667,6 +668,24 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
                 }
             },
         )
+}
+
+/// Cases that were once printed wrongly: a field of coefficients without a ratio, the longest wave of a body,
+/// and grades with contact springs.
+#[test_case("[friction]\nmu_kinetic_field = 'a.npy'\nmu_static_field = 'b.npy'"; "fields in place of a ratio")]
+#[test_case("[slider]\nbody = 'bulk'\nlongest_wave = '50 um'"; "the longest wave of a body")]
+#[test_case(
+    "[slider]\nstiffness_grade = { along = 'x', from = 1e-6, to = 1e-6 }\n\
+     density_grade = { along = 'x', from = 1e-6, to = 1e-6 }\n\
+     [friction]\ncontact = 'springs'\ncontact_stiffness_star = 1e-6";
+    "grades with contact springs"
+)]
+fn a_case_that_was_printed_wrongly_is_read_again(text: &str) {
+    let case = CaseFile::parse(text, "printed", &[]).unwrap();
+    let printed = case.to_toml().unwrap();
+    let read = CaseFile::parse(&printed, "printed", &[]).unwrap();
+    assert_eq!(read.to_toml().unwrap(), printed);
+    assert_eq!(read, case);
 }
 
 proptest! {

@@ -2,14 +2,12 @@
 //! somewhere, every `unsafe` is listed, and no number depends on the system's mathematical library.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use slipfront_case::case_file::CaseFile;
 use slipfront_session::Document;
 
-use crate::printed::without_machine;
-use crate::support::book::{blocks, pages, repository};
-use crate::support::process::program;
+use crate::support::book::{blocks, pages, repository, without_machine};
+use crate::support::process::{output, program, unset};
 use crate::support::workspace::Workspace;
 
 /// Splits a shell line into words, up to a pipe, a redirection or a comment.
@@ -34,14 +32,14 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Arguments in the `$` lines of the console blocks: of `slipfront`, of `cargo run --release --`, and of
+/// Arguments in the `$` lines of the console blocks: of `slipfront`, of `cargo run --`, and of
 /// `slipfront-mpi` with any launcher, because its `run` takes the same options.
 fn commands(page: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let consoles = blocks(page).into_iter().filter(|(info, _)| info == "console");
     let lines: Vec<String> = consoles.flat_map(|(_, lines)| lines).collect();
     for line in lines.iter().filter_map(|line| line.strip_prefix("$ ")) {
-        let arguments = ["slipfront ", "cargo run --release -- "]
+        let arguments = ["slipfront ", "cargo run -- "]
             .iter()
             .find_map(|program| line.strip_prefix(program))
             .or_else(|| line.split_once(" slipfront-mpi ").map(|(_, arguments)| arguments));
@@ -102,11 +100,7 @@ fn every_command_in_the_book_is_understood() {
         for arguments in commands(&std::fs::read_to_string(&page).unwrap()) {
             // With --help at its end, a line is parsed but nothing is run, and errors before --help are
             // reported first.
-            let parsed = Command::new(program())
-                .args(&arguments)
-                .arg("--help")
-                .output()
-                .unwrap();
+            let parsed = output(unset(program()).args(&arguments).arg("--help"));
             let message = String::from_utf8_lossy(&parsed.stderr);
             assert!(
                 parsed.status.success(),

@@ -29,7 +29,6 @@ mod looks;
 mod output;
 mod paper;
 mod plot;
-mod printed;
 mod reference;
 mod repetition;
 mod result_files;

@@ -50,3 +50,29 @@ pub(crate) fn blocks(page: &str) -> Vec<(String, Vec<String>)> {
     assert!(open.is_none(), "a fence is left open");
     blocks
 }
+
+/// Part of a line that is the same on every machine.
+pub(crate) fn without_machine(line: &str) -> String {
+    // There is a thread per core.
+    if let Some((before, after)) = line.split_once(" thread") {
+        let before = before.trim_end_matches(|c: char| c.is_ascii_digit());
+        without_machine(&format!("{before}{}", after.trim_start_matches('s')))
+    } else if line.starts_with("cost ") {
+        line.split(',').next().unwrap_or_default().to_owned()
+    } else if line.starts_with("memory ") {
+        line.replace(|c: char| c.is_ascii_digit() || ".KMGT".contains(c), "")
+    } else if ["second", "minute", "hour"]
+        .iter()
+        .any(|unit| line.contains(unit))
+    {
+        let is_of_time = |word: &&str| {
+            let word = word.trim_end_matches([';', 's']);
+            ["le", "than", "a", "about", "to", "second", "minute", "hour"].contains(&word)
+                || word.parse::<u32>().is_ok_and(|number| number < 100)
+        };
+        let others: Vec<&str> = line.split_whitespace().filter(|word| !is_of_time(word)).collect();
+        others.join(" ")
+    } else {
+        line.trim_end().to_owned()
+    }
+}

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use proptest::test_runner::{TestCaseError, TestCaseResult, TestRunner};
+use proptest::test_runner::{TestCaseError, TestCaseResult, TestRunner, contextualize_config};
 use slipfront::communicator::Alone;
 use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, CurveRow, Scheduled};
@@ -688,11 +688,11 @@ fn compare_sums(row: &CurveRow, reference: &Reference, tolerance: &Tolerance) ->
 fn kernels_agree_with_the_reference() {
     let reached = RefCell::new(BTreeMap::<&str, usize>::new());
     let seen = RefCell::new(Seen::default());
-    let config = ProptestConfig {
+    // With the seed and the number of cases of the environment, as `proptest!` has them.
+    let config = contextualize_config(ProptestConfig {
         cases: 600,
-        failure_persistence: None,
         ..ProptestConfig::default()
-    };
+    });
     let outcome = TestRunner::new(config).run(&(slider(), options()), |(slider, options)| {
         let Some(setting) = Setting::new(&slider, &options) else {
             return Err(TestCaseError::reject("nothing is in contact"));

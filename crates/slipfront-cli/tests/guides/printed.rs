@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::support::book::{blocks, repository};
+use crate::support::book::{blocks, repository, without_machine};
 use crate::support::process::{program, stderr, stdout};
 use crate::support::workspace::Workspace;
 
@@ -13,7 +13,7 @@ const OTHER_TEXTS: [(&str, &str); 8] = [
         "experiment.md",
         "block   textured   static_reduction_percent   static_friction_star   kinetic",
     ),
-    // Tested by `the_guides_have_the_reductions_of_their_studies` in `study/answers.rs`.
+    // Tested by `the_guides_have_the_reductions_of_their_studies` in `studies.rs`.
     (
         "experiment.md",
         "block   textured   static_reduction_percent   static_friction_star\n",
@@ -41,28 +41,6 @@ fn commands(lines: &[String]) -> Vec<(String, Vec<String>)> {
         }
     }
     commands
-}
-
-/// Part of a line that is the same on every machine.
-pub(crate) fn without_machine(line: &str) -> String {
-    if line.starts_with("cost ") {
-        line.split(',').next().unwrap_or_default().to_owned()
-    } else if line.starts_with("memory ") {
-        line.replace(|c: char| c.is_ascii_digit() || ".KMGT".contains(c), "")
-    } else if ["second", "minute", "hour"]
-        .iter()
-        .any(|unit| line.contains(unit))
-    {
-        let is_of_time = |word: &&str| {
-            let word = word.trim_end_matches([';', 's']);
-            ["le", "than", "a", "about", "to", "second", "minute", "hour"].contains(&word)
-                || word.parse::<u32>().is_ok_and(|number| number < 100)
-        };
-        let others: Vec<&str> = line.split_whitespace().filter(|word| !is_of_time(word)).collect();
-        others.join(" ")
-    } else {
-        line.trim_end().to_owned()
-    }
 }
 
 /// Whether printed lines agree with the lines shown, in which a line `...` matches any lines.

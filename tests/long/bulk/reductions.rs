@@ -117,7 +117,7 @@ const ON_BLOCKS: [(usize, f64); 4] = [(16, 32.5), (24, 34.1), (32, 34.8), (48, 3
 fn three_blocks_in_the_critical_size_are_enough() {
     let finest = ON_BLOCKS[3].1;
     let [coarse, .., last] = ON_BLOCKS.map(|(_, reduction)| reduction);
-    let page = include_str!("../../../../docs/validation/measures.md");
+    let page = include_str!("../../../docs/validation/measures.md");
     let (one, two) = (ON_BLOCKS[1].1, ON_BLOCKS[2].1);
     let line = format!("reductions of {coarse}, {one}, {two} and {last} % on");
     assert!(page.contains(&line), "docs/validation/measures.md lacks {line}");

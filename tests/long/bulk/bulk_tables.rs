@@ -2,7 +2,7 @@
 //! on the sheets and stacks with which the product models it.
 //!
 //! ```console
-//! $ cargo run --release -p slipfront-bulk-tests --example bulk_tables
+//! $ cargo run --release -p slipfront-long-tests --example bulk_tables
 //! ```
 //!
 //! Dimples are half a pitch wide, R* = 0.5. Prints reductions in % over `w p (1 - nu)/G`, with the weakening
