@@ -30,7 +30,7 @@ pub trait Communicator: Debug + Send + Sync {
 /// The lowest rank on which `is_so` is true, returned on all ranks; none if it is true on none.
 ///
 /// ```
-/// use slipfront::communicator::{Alone, lowest_rank};
+/// use slipfront_kernel::communicator::{Alone, lowest_rank};
 ///
 /// assert_eq!([true, false].map(|is_so| lowest_rank(&Alone, is_so)), [Some(0), None]);
 /// ```

@@ -57,7 +57,7 @@ pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
 /// Stiffness of the springs between neighbouring blocks, in units of `E h`.
 ///
 /// ```
-/// use slipfront::lattice::{K_DIAGONAL, K_STRAIGHT, SpringStiffness};
+/// use slipfront_kernel::lattice::{K_DIAGONAL, K_STRAIGHT, SpringStiffness};
 /// let SpringStiffness { straight, diagonal } = SpringStiffness::with_ratio(3.0);
 /// assert_eq!([straight, diagonal], [K_STRAIGHT, K_DIAGONAL]);
 /// ```
@@ -249,8 +249,8 @@ impl Lattice {
     /// lowest.
     ///
     /// ```
-    /// use slipfront::Lattice;
-    /// use slipfront::communicator::Alone;
+    /// use slipfront_kernel::lattice::Lattice;
+    /// use slipfront_kernel::communicator::Alone;
     /// assert_eq!(Lattice::free(5, 7).rows_of(&Alone), 0..7);
     /// ```
     pub fn rows_of(&self, rank: &dyn Communicator) -> Range<usize> {
@@ -357,7 +357,7 @@ impl Bond {
     /// nearly equal lengths, so that small displacements lose no digits.
     ///
     /// ```
-    /// use slipfront::lattice::Bond;
+    /// use slipfront_kernel::lattice::Bond;
     /// // Small strain: only the part of e along the spring counts.
     /// assert_eq!(Bond::EAST.force([2.0, 5.0], 0.0), [0.75 * 2.0, 0.0]);
     /// ```
@@ -380,7 +380,7 @@ impl Bond {
     /// `e`, `epsilon`: as for [`Bond::force`]; `w`: velocity of the neighbour less that of the block.
     ///
     /// ```
-    /// use slipfront::lattice::Bond;
+    /// use slipfront_kernel::lattice::Bond;
     /// // Only the part of the velocity along the spring counts.
     /// assert_eq!(Bond::NORTH.damper_force([0.0, 0.0], [5.0, 2.0], 0.0), [0.0, 0.75 * 2.0]);
     /// ```

@@ -5,8 +5,8 @@
 //! advances one tile after the other by a step ([`Band`]): displacements, springs, friction and all sums,
 //! eight blocks at a time (`blocks.rs`), each spring once. Spring forces are computed from a series where
 //! this is as exact as the square root (`springs.rs`). A tile at rest with nothing moving around it is
-//! skipped until one of its blocks can slip (`rest.rs`). Every thread sweeps a band of tiles. Sheets above the lowest
-//! one are swept tile by tile with it (`sheets.rs`).
+//! skipped until one of its blocks can slip (`rest.rs`). Every thread sweeps a band of tiles. Sheets above
+//! the lowest one are swept tile by tile with it (`sheets.rs`).
 //!
 //! A step must read displacement, velocity and two thresholds of every block and write displacement and
 //! velocity: 80 bytes. This bounds the speed on a lattice larger than the cache. Spring forces pass through a
