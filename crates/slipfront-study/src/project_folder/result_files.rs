@@ -114,7 +114,8 @@ impl ResultFiles {
         matches!(is_one_of(&self.folder, &file.name, [file]), Ok(Some(true)))
     }
 
-    /// Gives hidden files their names, and removes others.
+    /// Removes files, and then gives hidden files their names: a kill in between leaves no table of another
+    /// study beside the new one.
     fn rename_and_remove(
         &self,
         to_place: Vec<(TempPath, ManifestFile)>,
@@ -124,22 +125,26 @@ impl ResultFiles {
             let path = path.to_owned();
             |source| StudyError::Write { path, source }
         };
+        let sync = |mut changed: Vec<PathBuf>| {
+            changed.sort();
+            changed.dedup();
+            let mut folders = changed.iter();
+            folders.try_for_each(|folder| sync_folder(folder).map_err(failed(folder)))
+        };
+        let mut changed = Vec::new();
+        for name in gone {
+            let path = self.folder.join(name);
+            remove_if_there(&path).map_err(failed(&path))?;
+            changed.push(folder_of(&path).to_owned());
+        }
+        sync(changed)?;
         let mut changed = vec![self.folder.clone()];
         for (file, ManifestFile { name, .. }) in to_place {
             let path = self.folder.join(name);
             file.persist(&path).map_err(|error| failed(&path)(error.error))?;
             changed.push(folder_of(&path).to_owned());
         }
-        for name in gone {
-            let path = self.folder.join(name);
-            remove_if_there(&path).map_err(failed(&path))?;
-            changed.push(folder_of(&path).to_owned());
-        }
-        changed.sort();
-        changed.dedup();
-        changed
-            .iter()
-            .try_for_each(|folder| sync_folder(folder).map_err(failed(folder)))
+        sync(changed)
     }
 
     fn refuse(&self, names: Vec<String>) -> Result<(), StudyError> {
