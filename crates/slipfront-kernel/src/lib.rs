@@ -57,7 +57,7 @@ pub use blocks::Sums;
 pub use integrator::{Integrator, SMALLEST_VELOCITY};
 pub use layout::{Layout, TILE, VECTORS};
 pub use motion_bounds::MotionBounds;
-pub use properties::{Blocks, Properties};
+pub use properties::{Blocks, Properties, Sheet};
 pub use quanta::Quanta;
 pub use schedule::SweepConditions;
 pub use springs::{SeriesNumbers, SquareRoot};
@@ -67,7 +67,7 @@ pub use stress::{OfTile, Stress, StressReader};
 #[cfg(not(test))]
 pub use sweep::{Springs, measure_displacements, sweep};
 pub use thresholds::{ChangingLaw, FallWithSlip, FallWithSpeed, Thresholds};
-pub use upper_sheet::{Sheet, UpperSheet};
+pub use upper_sheet::UpperSheet;
 pub use variations::LargestFactors;
 pub use vector::LANES;
 

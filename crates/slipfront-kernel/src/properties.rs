@@ -3,7 +3,17 @@
 use crate::lattice::Bond;
 use crate::layout::Layout;
 use crate::thresholds::ChangingLaw;
-use crate::upper_sheet::Sheet;
+
+/// A sheet above the lowest one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// Thickness `h_k` over that of the lowest sheet: the stiffness of the springs between its blocks and the
+    /// mass of its blocks, relative to the lowest sheet.
+    pub thickness: f64,
+    /// Stiffness `g_k` of the spring between each of its blocks and the block below, in units of `E h` with
+    /// the thickness h of the lowest sheet.
+    pub coupling: f64,
+}
 
 /// The blocks of a slider. They have the indices of [`Layout::block`].
 pub trait Blocks: Sync {

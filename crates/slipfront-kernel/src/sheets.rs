@@ -22,9 +22,10 @@ use super::pull::{Above, coupling_force, pull_from_above};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
-use super::upper_sheet::{Sheet, UpperSheet};
+use super::upper_sheet::UpperSheet;
 use super::vector::{Chunks, ChunksMut, add, load, load_vec2, or_zero_below, scale, splat, square, subtract};
 use crate::integrator::SMALLEST_VELOCITY;
+use crate::properties::Sheet;
 
 impl Band {
     /// Moves the first tiles of the sheets above, and computes the springs of the row before them; then

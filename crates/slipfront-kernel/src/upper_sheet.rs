@@ -4,17 +4,7 @@ use super::aligned::{Vectors, chunks};
 use super::blocks::Sums;
 use super::pull::Above;
 use super::scratch::Scratch;
-
-/// A sheet above the lowest one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet {
-    /// Thickness `h_k` over that of the lowest sheet: the stiffness of the springs between its blocks and the
-    /// mass of its blocks, relative to the lowest sheet.
-    pub thickness: f64,
-    /// Stiffness `g_k` of the spring between each of its blocks and the block below, in units of `E h` with
-    /// the thickness h of the lowest sheet.
-    pub coupling: f64,
-}
+use crate::properties::Sheet;
 
 /// The elements of a band in a sheet above the lowest one.
 #[derive(Debug)]
