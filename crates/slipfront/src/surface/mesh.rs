@@ -382,7 +382,7 @@ mod tests {
     #[test]
     fn a_turned_circle_covers_the_same_blocks() {
         let lattice = Lattice::free(12, 12);
-        for rotate in [0.0, 37.2, 200.13624746953943, 359.0] {
+        for rotate in [0.0, 37.2, 163.52934363286016, 200.13624746953943, 359.0] {
             for (s, across) in [(1, false), (1, true), (4, false)] {
                 let circle = Cavity {
                     center: [5.5, 6.0],

@@ -32,19 +32,22 @@ prop_compose! {
 /// edge.
 type IsInside = Box<dyn Fn([isize; 2]) -> bool>;
 
-/// Eq. 17 as printed, for one cavity: the formula of an ellipse, or the crossings of a polygon of 4096
-/// vertices with the row of the block: a centre is inside if an odd number of them lies to its left.
+/// Eq. 17 as printed, for one cavity: the formula of a circle, which no rotation changes, or of an ellipse, or
+/// the crossings of a polygon of 4096 vertices with the row of the block: a centre is inside if an odd number
+/// of them lies to its left.
 fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> IsInside {
     let Cavity { lambda, w, .. } = *cavity;
     let s = f64::from(cavity.s);
     let axis = Drive::at_angle(1.0, cavity.rotate).direction;
     let swap = |p: [f64; 2]| if cavity.across { [p[1], p[0]] } else { p };
-    if cavity.s == 1 || w == 0.0 {
-        let [a, b] = if w == 0.0 {
-            [lambda; 2]
-        } else {
-            swap([lambda * (1.0 + w), lambda * (1.0 - w)])
-        };
+    if w == 0.0 {
+        return Box::new(move |[column, row]| {
+            let (dx, dy) = (column as f64 + 0.5 - x, row as f64 + 0.5 - y);
+            (dx / lambda).powi(2) + (dy / lambda).powi(2) < 1.0
+        });
+    }
+    if cavity.s == 1 {
+        let [a, b] = swap([lambda * (1.0 + w), lambda * (1.0 - w)]);
         return Box::new(move |[column, row]| {
             let (dx, dy) = (column as f64 + 0.5 - x, row as f64 + 0.5 - y);
             let turned = [dx * axis[0] + dy * axis[1], dy * axis[0] - dx * axis[1]];
