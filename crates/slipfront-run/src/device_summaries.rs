@@ -106,7 +106,7 @@ mod tests {
     use crate::run_summary::run_summary;
 
     fn case(text: &str) -> Arc<Case> {
-        let text = format!("slider.blocks = [20, 12]\n{text}");
+        let text = format!("slider.blocks = [12, 8]\n{text}");
         Arc::new(Case::parse(&text, "case", "", &[]).unwrap())
     }
 

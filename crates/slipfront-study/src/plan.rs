@@ -666,7 +666,7 @@ mod tests {
     fn large_cases_are_planned_on_any_number_of_threads() {
         // Some large cases, unevenly spread over 16 rows, so that threads run out of rows at different times.
         let blocks = (0..16 * POINTS_OF_A_BASE).map(|point| match (point * 7919 / 13) % 97 {
-            7 => format!("[600, {}]", 2000 + point),
+            7 => format!("[300, {}]", 900 + point),
             _ => format!("[{}, 2]", 2 + point),
         });
         let blocks = blocks.collect::<Vec<_>>().join(", ");

@@ -135,7 +135,7 @@ fn a_limit_of_addresses_ends_nothing_in_an_abort() {
     workspace.write(
         "study.toml",
         "base.slider.blocks = [2, 2]\nbase.time.stop = 'after_onset'\n[[axes]]\nkey = 'drive.v_star'\n\
-         linspace = [0.1, 0.2, 20]\n[[axes]]\nkey = 'drive.direction'\nlinspace = [0, 45, 15]\n",
+         linspace = [0.1, 0.2, 8]\n[[axes]]\nkey = 'drive.direction'\nlinspace = [0, 45, 6]\n",
     );
     workspace.succeed("run small.toml -o a");
     workspace.succeed("study study.toml --quiet -o whole");

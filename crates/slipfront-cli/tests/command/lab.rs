@@ -1,7 +1,7 @@
 //! Start and end of the laboratory.
 
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::CommandExt;
@@ -20,10 +20,7 @@ fn open(workspace: &Workspace, line: &str) -> (Running, String) {
 /// Starts a command; returns it and the address that it prints.
 fn start(process: &mut Command) -> (Running, String) {
     let mut child = Running::start(process.stdout(Stdio::piped()).stderr(Stdio::piped()));
-    let mut printed = String::new();
-    BufReader::new(child.stdout.as_mut().unwrap())
-        .read_line(&mut printed)
-        .unwrap();
+    let printed = child.first_line();
     let address = printed
         .split_whitespace()
         .find(|word| word.starts_with("http://"));

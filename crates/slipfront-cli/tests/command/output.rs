@@ -384,7 +384,7 @@ fn shown(bytes: &[u8]) -> ([u16; 2], usize, u32) {
 #[test]
 fn a_movie_shows_every_snapshot() {
     let workspace = Workspace::small();
-    workspace.succeed("run small.toml -o run --set output.snapshots.every=5");
+    workspace.succeed("run small.toml -o run --set output.snapshots.every=20");
     workspace.succeed("movie run");
     let snapshots = fields(&workspace, "run").frames.len();
     let bytes = workspace.read("run/movie.gif");
@@ -457,19 +457,19 @@ fn a_movie_has_a_hundred_snapshots() {
     let workspace = Workspace::small();
     workspace.succeed("run small.toml -o run");
     let before = workspace.files("run");
-    workspace.succeed("movie run -o usual.gif");
+    workspace.succeed("movie run --size 400x200 -o usual.gif");
     let (_, usual, _) = shown(&workspace.read("usual.gif"));
     // The start and the instants are added to the hundred.
     assert!((100..=108).contains(&usual), "{usual}");
     // Fields that the run has not kept can also be shown.
-    let told = workspace.succeed("movie run --frames 30 --field velocity_x -o few.gif");
+    let told = workspace.succeed("movie run --frames 30 --field velocity_x --size 400x200 -o few.gif");
     let (_, few, _) = shown(&workspace.read("few.gif"));
     assert!(
         (30..=38).contains(&few) && told.starts_with(&format!("{few} pictures")),
         "{told}"
     );
     // The snapshots that the run has kept are sufficient.
-    workspace.succeed("movie run --frames 1 -o kept.gif");
+    workspace.succeed("movie run --frames 1 --size 400x200 -o kept.gif");
     assert!(shown(&workspace.read("kept.gif")).1 <= 6);
     assert!(workspace.files("run") == before);
     let said = workspace.fail("movie run --frames 994 -o none.gif", 2);

@@ -51,6 +51,23 @@ impl Running {
         Self { child, line }
     }
 
+    /// Waits for the first line that the process prints, which must come within [`MAX_TIME`].
+    pub(crate) fn first_line(&mut self) -> String {
+        let mut stream = self.stdout.take().unwrap();
+        let (sender, printed) = channel();
+        spawn(move || {
+            let bytes = stream.by_ref().bytes().map_while(Result::ok);
+            let line: Vec<u8> = bytes.take_while(|byte| *byte != b'\n').collect();
+            // The test may have ended.
+            let _ = sender.send((line, stream));
+        });
+        let (line, stream) = printed
+            .recv_timeout(MAX_TIME)
+            .unwrap_or_else(|_| panic!("{} has printed no line after {MAX_TIME:?}", self.line));
+        self.stdout = Some(stream);
+        String::from_utf8(line).unwrap()
+    }
+
     /// Waits for the end of the process, which must come within [`MAX_TIME`].
     pub(crate) fn ended(self) -> Output {
         self.ended_within(MAX_TIME)

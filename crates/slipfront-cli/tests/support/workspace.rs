@@ -1,7 +1,6 @@
 //! A temporary folder in which the command runs.
 
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
@@ -151,8 +150,7 @@ impl Workspace {
     pub(crate) fn start_run(&self, line: &str) -> Running {
         let mut process = self.process(line);
         let mut child = Running::start(process.stdout(Stdio::piped()).stderr(Stdio::piped()));
-        let mut first = [0];
-        child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
+        child.first_line();
         child
     }
 

@@ -260,9 +260,9 @@ mod tests {
     #[test]
     fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
         for text in [
-            "slider.blocks = [14, 13]\ndrive.v_star = 0.02\ntime.duration_star = 300\noutput.stride = 2\n",
-            "slider.blocks = [12, 11]\nload.shear_star = 0.6\ndrive.v_star = 0.1\ntime.duration_star = 60\noutput.snapshots = { every = 4.0 }\n",
-            "slider.blocks = [12, 11]\ndrive.v_star = 0.1\ntime.duration_star = 100\noutput = { events = true, snapshots = [] }\n",
+            "slider.blocks = [14, 13]\ndrive.v_star = 0.02\ntime.duration_star = 100\noutput.stride = 2\n",
+            "slider.blocks = [12, 11]\nload.shear_star = 0.6\ndrive.v_star = 0.1\ntime.duration_star = 40\noutput.snapshots = { every = 4.0 }\n",
+            "slider.blocks = [12, 11]\ndrive.v_star = 0.1\ntime.duration_star = 60\noutput = { events = true, snapshots = [] }\n",
         ] {
             let parsed = || CaseFile::parse(text, "case", &[]).unwrap();
             let alone = tempfile::tempdir().unwrap();
@@ -275,7 +275,7 @@ mod tests {
                 let started = Timestamp::from_nanosecond(communicator.rank() as i128).unwrap();
                 let mut checkpoints = Checkpoints::new(folder, case, started);
                 let mut files = Vec::new();
-                while running.advance(97).unwrap().is_none() {
+                while running.advance(41).unwrap().is_none() {
                     checkpoints.save(&running, &*communicator).unwrap();
                     files.push(latest(folder));
                 }

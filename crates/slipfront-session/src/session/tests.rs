@@ -348,7 +348,7 @@ fn curves_are_whole_after_any_order_of_requests() {
         (random >> 16) % bound
     };
     let (mut ends_with_twin, mut ends_with_legs) = (0, 0);
-    for _ in 0..200 {
+    for _ in 0..60 {
         let mut tried = Tried::new();
         let mut drawn = DrawnCurves::default();
         drawn.take(&tried.ask(open(json!({ "toml": one }))));
@@ -377,7 +377,7 @@ fn curves_are_whole_after_any_order_of_requests() {
         ends_with_legs += usize::from(session.twin.as_ref().is_some_and(|twin| twin.live.leg > 0));
     }
     assert!(
-        ends_with_twin > 50 && ends_with_legs > 5,
+        ends_with_twin > 15 && ends_with_legs > 1,
         "{ends_with_twin} {ends_with_legs}"
     );
 }
