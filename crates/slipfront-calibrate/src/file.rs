@@ -433,7 +433,7 @@ impl CalibrationFile {
                     }
                     let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
                     if steps > MAX_STEPS {
-                        return Err(self.too_long(&case, steps).into());
+                        return Err(self.too_long(&case, steps, &conditions.grid).into());
                     }
                 }
             }
@@ -537,7 +537,18 @@ impl CalibrationFile {
     }
 
     /// The error of a record that takes too many steps.
-    fn too_long(&self, case: &Case, steps: u64) -> CaseError {
+    fn too_long(&self, case: &Case, steps: u64, grid: &SamplePoints) -> CaseError {
+        let begin = grid.begin();
+        if begin > 0.5 * grid.end() {
+            let sentence = format!(
+                "a record begins at {begin} {0} and ends at {1} {0}, while the drive begins at 0: `shift = \"{2} {0}\"`, besides the shift \
+                 that it may have, begins it at 0",
+                grid.along().unit(),
+                grid.end(),
+                -begin
+            );
+            return self.project.error("x", sentence);
+        }
         let sentence = format!(
             "a record takes {steps} steps of the case, more than {MAX_STEPS}: a step lasts {}. For slow rigs compare against \
              displacement, with a drive that stops while blocks slide: `against = \"displacement\"` and `drive.loading = \

@@ -106,6 +106,11 @@ impl SamplePoints {
         }
     }
 
+    /// The first place.
+    pub(crate) fn begin(&self) -> f64 {
+        self.x[0]
+    }
+
     /// The last place.
     pub fn end(&self) -> f64 {
         self.x.last().copied().unwrap_or(f64::NAN)

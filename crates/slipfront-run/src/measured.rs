@@ -149,6 +149,7 @@ impl MeasuredRecord {
             return Ok(record);
         }
         let layout = TableLayout::find(&head, options).map_err(failed)?;
+        layout.check_names().map_err(failed)?;
         let mut record = Self {
             took: layout
                 .took()
@@ -233,6 +234,13 @@ impl MeasuredRecord {
                     first.line
                 ));
             }
+        }
+        if let [first, .., last] = record.x[..]
+            && first == last
+            && first_fall.is_none()
+        {
+            let path = path.to_owned();
+            return Err(MeasuredError::NoLength { path, at: first });
         }
         if let Some((line, before, value)) = first_fall {
             record.average_over_noise().ok_or_else(|| MeasuredError::Falls {
@@ -438,19 +446,31 @@ fn factor(
         _ => None,
     };
     let found = in_table.and_then(|unit| measure.factor(unit).or_else(|| of_name(unit)));
-    found.ok_or_else(|| MeasuredError::NoUnit {
-        path: path.to_owned(),
-        column: shown(),
-        axis,
-        example: match measure {
-            Measure::Time => "ms",
-            Measure::Displacement => "um",
-            Measure::Force if is_coefficient(&column.name) || is_coefficient(&shown()) => "1",
-            // Gram-force, as written by instruments, and not a mass.
-            Measure::Force if in_table == Some("g") => "gf",
-            Measure::Force if in_table == Some("kg") => "kgf",
-            Measure::Force => "N",
-            Measure::Coefficient => "1",
+    found.ok_or_else(|| match in_table {
+        Some(unit) if !unit.is_empty() => MeasuredError::OtherUnit {
+            path: path.to_owned(),
+            column: shown(),
+            unit: truncated(unit),
+            quantity: measure.name(),
+            axis,
+            example: match (measure, unit) {
+                // Gram-force, as written by instruments, and not a mass.
+                (Measure::Force, "g") => Some("gf"),
+                (Measure::Force, "kg") => Some("kgf"),
+                _ => None,
+            },
+        },
+        _ => MeasuredError::NoUnit {
+            path: path.to_owned(),
+            column: shown(),
+            axis,
+            example: match measure {
+                Measure::Time => "ms",
+                Measure::Displacement => "um",
+                Measure::Force if is_coefficient(&column.name) || is_coefficient(&shown()) => "1",
+                Measure::Force => "N",
+                Measure::Coefficient => "1",
+            },
         },
     })
 }
@@ -589,6 +609,36 @@ mod tests {
     fn units_may_be_given() {
         let record = read("0 500\n2 1000\n", ["1", "2"], [Some("ms"), Some("mN")]).unwrap();
         assert_eq!((record.x, record.y), (vec![0.0, 0.002], vec![0.5, 1.0]));
+    }
+
+    #[test]
+    fn units_that_are_not_known_are_named() {
+        for (unit, sentence) in [
+            (
+                "N*m",
+                "has the unit `N*m`, which is none of a force that is known here",
+            ),
+            ("kg", "with --y-unit, such as `--y-unit kgf`"),
+            ("s", "has the unit `s`"),
+        ] {
+            let text = format!("t (s),F ({unit})\n0,1\n1,2\n");
+            let error = read(&text, ["t", "F"], [None; 2]).unwrap_err().to_string();
+            assert!(error.contains(sentence), "{error}");
+        }
+        // Standard gravity and the pound of 0.45359237 kg; rounding of the product.
+        let record = read("t (hours),F (lb)\n0,1\n1,2\n", ["t", "F"], [None; 2]).unwrap();
+        assert_eq!(record.x, [0.0, 3600.0]);
+        assert!((record.y[0] / (0.453_592_37 * 9.806_65) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn times_that_are_all_equal_are_refused() {
+        let error = read("t (s),F (N)\n3,1\n3,2\n3,2\n", ["t", "F"], [None; 2]);
+        let error = error.unwrap_err().to_string();
+        assert!(
+            error.contains("the same time or displacement, 3 in SI units"),
+            "{error}"
+        );
     }
 
     #[test_case("t (s),mu (1)\n0,0.5\n2,1\n", None; "header")]

@@ -60,6 +60,19 @@ impl MeasuredColumns {
                 "column `{column}` of {} has no unit: give it as a key, such as {axis}_unit = \"{example}\"",
                 path.display()
             ),
+            MeasuredError::OtherUnit {
+                column,
+                unit,
+                quantity,
+                axis,
+                example,
+                ..
+            } => format!(
+                "column `{column}` of {} has the unit `{unit}`, which is none of a {quantity} that is known here: convert the column, \
+                 or give the unit that its numbers have as a key, {axis}_unit{}",
+                path.display(),
+                example.map_or(String::new(), |unit| format!(" = \"{unit}\""))
+            ),
             error => error.to_string(),
         }
     }

@@ -20,6 +20,17 @@ pub enum TableError {
         found: usize,
         remedy: &'static str,
     },
+    #[error(
+        "has {names} names in line {header} and {found} fields in line {line}: {remedy}; mend the names, or use none \
+         (`header_line` = 0) and give columns by their numbers"
+    )]
+    TooManyNames {
+        header: u64,
+        names: usize,
+        line: u64,
+        found: usize,
+        remedy: &'static str,
+    },
     #[error("can be read in two ways: {0}")]
     Ambiguous(String),
     #[error(

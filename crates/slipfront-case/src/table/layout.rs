@@ -1,6 +1,7 @@
 //! Layout of a table: the lines with its names, units and numbers, and their format.
 
 use std::borrow::Cow;
+use std::cmp::Reverse;
 
 use serde::{Deserialize, Serialize};
 use slipfront_base::number_format::count;
@@ -117,26 +118,103 @@ pub struct TableLayout {
     pub columns: usize,
     /// Lines above the names that are neither blank nor comments: their number, and the text of the first.
     above: Option<(usize, String)>,
+    /// Whether the names stand in a comment.
+    in_comment: bool,
+    /// Line and number of fields of the widest row, which counts empty fields at its end.
+    widest: Option<(u64, usize)>,
     /// First line of the matrix, which has mostly numbers; the number of lines above it that are neither
     /// blank nor comments; and the text of the first of these.
     above_numbers: Option<(u64, usize, String)>,
 }
 
-/// A line of the head that is neither blank nor a comment.
+/// A line of the head. Line breaks within quotation marks, as spreadsheets write them in names, are blanks.
 struct Line<'t> {
+    /// Number of the line where it begins, from 1.
     number: u64,
-    text: &'t str,
-    fields: Vec<Cow<'t, str>>,
+    /// Number of the line where it ends.
+    last: u64,
+    text: Cow<'t, str>,
+    /// Fields without the empty ones at the end.
+    fields: Vec<String>,
+    /// Number of fields with the empty ones at the end.
+    width: usize,
     /// Number of fields that are numbers.
     numbers: usize,
 }
 
-impl Line<'_> {
-    /// Whether at least half of the fields are numbers.
+impl<'t> Line<'t> {
+    /// All lines of a text that are not blank.
+    fn all(text: &'t str, separator: char, is_number: &dyn Fn(&str) -> bool) -> Vec<Self> {
+        let mut physical = text.lines().zip(1..).peekable();
+        let mut lines = Vec::new();
+        while let Some((first, number)) = physical.next() {
+            let (mut text, mut last) = (Cow::Borrowed(first), number);
+            // A quotation mark that is never closed is one of its line alone.
+            let mut rest = physical.clone();
+            while fields(&text, separator).is_err() && last < number + MAX_BREAKS {
+                let Some((next, at)) = rest.next() else { break };
+                (text, last) = (Cow::Owned(format!("{text} {next}")), at);
+            }
+            if fields(&text, separator).is_ok() {
+                physical = rest;
+            } else {
+                (text, last) = (Cow::Borrowed(first), number);
+            }
+            if text.trim().is_empty() || number == 1 && sep_line(&text).is_some() {
+                continue;
+            }
+            let all = fields(without_mark(&text), separator).unwrap_or_default();
+            let width = all.len();
+            let fields: Vec<String> = trimmed(all).iter().map(ToString::to_string).collect();
+            let numbers = fields.iter().filter(|field| is_number(field)).count();
+            lines.push(Self {
+                number,
+                last,
+                fields,
+                width,
+                numbers,
+                text,
+            });
+        }
+        lines
+    }
+
+    fn is_comment(&self) -> bool {
+        without_mark(&self.text).len() < self.text.len()
+    }
+
+    /// Number of fields that are neither numbers nor empty.
+    fn texts(&self) -> usize {
+        self.fields.iter().filter(|field| !field.is_empty()).count() - self.numbers
+    }
+
+    /// Whether at least half of the fields that are not empty are numbers.
     fn is_row(&self) -> bool {
-        2 * self.numbers >= self.fields.len()
+        self.numbers > 0 && self.numbers >= self.texts()
+    }
+
+    /// The fields of a line of names. With blanks between fields, names of several words are told apart by
+    /// two blanks, if that gives a name for each column.
+    fn names(&self, separator: char, columns: usize) -> Vec<String> {
+        if separator == ' ' && self.fields.len() > columns {
+            let parts = without_mark(&self.text).split("  ").map(str::trim);
+            let wide: Vec<&str> = parts.filter(|name| !name.is_empty()).collect();
+            if wide.len() == columns {
+                return wide.into_iter().map(str::to_owned).collect();
+            }
+        }
+        self.fields.clone()
     }
 }
+
+/// The text of a comment without its mark; any other line as it is.
+fn without_mark(line: &str) -> &str {
+    let comment = line.trim_start().strip_prefix('#');
+    comment.map_or(line, |rest| rest.trim_start_matches('#'))
+}
+
+/// Largest number of line breaks within the quotation marks of one line of names.
+const MAX_BREAKS: u64 = 8;
 
 /// A possible reading of a table.
 struct Reading {
@@ -195,7 +273,7 @@ impl TableLayout {
     pub fn took(&self) -> Option<String> {
         let mut took = Vec::new();
         match &self.names {
-            Some(names) if self.above.is_some() => {
+            Some(names) if self.above.is_some() && !self.in_comment => {
                 took.push(format!(
                     "line {} names {}",
                     names.line,
@@ -206,6 +284,9 @@ impl TableLayout {
                 took.push(format!("rows of numbers begin in line {}", self.first_line));
             }
             _ => {}
+        }
+        if let Some(names) = self.names.as_ref().filter(|_| self.in_comment) {
+            took.push(format!("names from the comment in line {}", names.line));
         }
         if let Some(units) = &self.units {
             took.push(format!(
@@ -252,6 +333,32 @@ impl TableLayout {
         }
     }
 
+    /// Refuses a line with more names than any row has fields: the columns behind a name that was taken for
+    /// two would have the names of others. The name `Comment` of LabVIEW needs no field.
+    ///
+    /// # Errors
+    /// When there are more names than fields.
+    pub fn check_names(&self) -> Result<(), TableError> {
+        let (Some(names), Some((line, found))) = (&self.names, self.widest) else {
+            return Ok(());
+        };
+        let count = names.texts.len();
+        let is_comment = |name: &String| name.eq_ignore_ascii_case("comment");
+        if count <= found || count == found + 1 && names.texts.last().is_some_and(is_comment) {
+            return Ok(());
+        }
+        Err(TableError::TooManyNames {
+            header: names.line,
+            names: count,
+            line,
+            found,
+            remedy: match self.separator {
+                ' ' => "a name of several words was taken for several names",
+                _ => "a name with a separator in it was taken for several names, or a name has no column",
+            },
+        })
+    }
+
     /// Drops empty fields at the end of a row, and refuses a row with more fields than there are names.
     pub(super) fn fit(&self, line: u64, fields: &mut Vec<Cow<'_, str>>) -> Result<(), TableError> {
         let Some(names) = &self.names else { return Ok(()) };
@@ -284,24 +391,10 @@ impl Reading {
         [separator, decimal]: [char; 2],
         options: TableOptions,
     ) -> Result<Self, TableError> {
-        let is_number =
-            |field: &Cow<'_, str>| number(field, decimal).is_some() || clock_time(field).is_some();
-        let lines: Vec<Line> = text
-            .lines()
-            .zip(1..)
-            .filter(|(text, _)| !text.trim().is_empty() && !text.trim_start().starts_with('#'))
-            .filter(|(line, number)| *number > 1 || sep_line(line).is_none())
-            .map(|(text, number)| {
-                let fields = trimmed(fields(text, separator).unwrap_or_default());
-                Line {
-                    number,
-                    text,
-                    numbers: fields.iter().filter(|field| is_number(field)).count(),
-                    fields,
-                }
-            })
-            .filter(|line| !line.fields.is_empty())
-            .collect();
+        let is_number = |field: &str| number(field, decimal).is_some() || clock_time(field).is_some();
+        let lines = Line::all(text, separator, &is_number).into_iter();
+        let lines = lines.filter(|line| !line.fields.is_empty());
+        let (comments, lines): (Vec<Line>, Vec<Line>) = lines.partition(Line::is_comment);
         // Rows are the longest sequence of lines with equal numbers of fields, at least half of them numeric.
         let sequences = lines.chunk_by(|a, b| a.is_row() && b.is_row() && a.fields.len() == b.fields.len());
         let rows = sequences.filter(|lines| lines[0].is_row()).rev();
@@ -331,12 +424,13 @@ impl Reading {
         let score = lines[first..]
             .iter()
             .filter(|line| line.fields.len() == columns)
-            .map(|line| 2 * line.numbers as i64 - line.fields.len() as i64)
+            .map(|line| line.numbers as i64 - line.texts() as i64)
             .sum();
 
         let n_lines = text.lines().count() as u64;
         let names = match options.header_line {
             Some(0) => None,
+            Some(wanted) if comments.iter().any(|line| line.number == wanted) => None,
             Some(wanted) => Some(lines.iter().position(|line| line.number == wanted).ok_or({
                 TableError::NoHeader {
                     wanted,
@@ -359,8 +453,7 @@ impl Reading {
             let line = lines.get(at)?;
             // Quantities of an instrument may have units that are not known here, such as those of
             // temperatures.
-            let is_short =
-                |field: &Cow<'_, str>| field.chars().take(UNIT_MAX_CHARS + 1).count() <= UNIT_MAX_CHARS;
+            let is_short = |field: &String| field.chars().take(UNIT_MAX_CHARS + 1).count() <= UNIT_MAX_CHARS;
             let are_units = line.numbers == 0
                 && line.fields.len() <= columns.max(1)
                 && line.fields.iter().all(is_short)
@@ -379,16 +472,27 @@ impl Reading {
             Some(at) => (Some(at), has_units(at + 1)),
             None => (None, None),
         };
-        let named = |at: usize| NamedLine {
-            line: lines[at].number,
-            texts: lines[at].fields.iter().map(ToString::to_string).collect(),
+        let named = |line: &Line| NamedLine {
+            line: line.number,
+            texts: line.names(separator, columns),
         };
         let last = units.or(names);
         let first_line = match last {
-            Some(at) => lines[at].number + 1,
+            Some(at) => lines[at].last + 1,
             None => lines.get(first).map_or(1, |line| line.number),
         };
         let above = &lines[..names.unwrap_or(first)];
+        // Programs write names in the last comment above the numbers.
+        let in_comment = || match options.header_line {
+            Some(wanted) => comments.iter().find(|line| line.number == wanted),
+            None => {
+                let line = comments.iter().rfind(|line| line.number < first_line)?;
+                let names = line.names(separator, columns);
+                (columns > 1 && names.len() == columns && line.numbers == 0).then_some(line)
+            }
+        };
+        let commented = if names.is_none() { in_comment() } else { None };
+        let names = names.map(|at| named(&lines[at])).or(commented.map(named));
         // Lines of an instrument above a matrix have fewer fields, or fewer numbers.
         let is_of_matrix =
             |line: &Line| 2 * line.numbers > line.fields.len() && 2 * line.fields.len() >= columns;
@@ -397,14 +501,20 @@ impl Reading {
             encoding,
             separator,
             decimal,
-            columns: names.map_or(columns, |at| lines[at].fields.len()),
-            names: names.map(named),
-            units: units.map(named),
+            columns: names.as_ref().map_or(columns, |names| names.texts.len()),
+            names,
+            units: units.map(|at| NamedLine {
+                line: lines[at].number,
+                texts: lines[at].fields.clone(),
+            }),
             first_line,
-            above: above.first().map(|line| (above.len(), truncated(line.text))),
+            above: above.first().map(|line| (above.len(), truncated(&line.text))),
+            in_comment: commented.is_some(),
+            widest: { longest.iter().map(|line| (line.number, line.width)) }
+                .max_by_key(|(line, width)| (*width, Reverse(*line))),
             above_numbers: (first_of_matrix > 0).then(|| {
                 let line = lines[first_of_matrix].number;
-                (line, first_of_matrix, truncated(lines[0].text))
+                (line, first_of_matrix, truncated(&lines[0].text))
             }),
         };
         Ok(Self { layout, score })
@@ -579,6 +689,32 @@ mod tests {
     #[test_case("t;F\n12:00:01;0,5\n12:00:02;0,6\n", (';', ',', [Some(1), None], 2); "time of the day")]
     fn layouts_are_found(text: &str, wanted: (char, char, [Option<u64>; 2], u64)) {
         assert_eq!(found(text), wanted);
+    }
+
+    #[test_case("# written by hand\n# t  F\n0 1\n1 2\n", &["t", "F"], 3; "a comment as numpy.savetxt writes it")]
+    #[test_case("# t = 3 s\n0 1\n1 2\n", &[], 2; "a comment that is none")]
+    #[test_case("\"t\n(s)\",\"F\nin\nN\"\n0,1\n1,2\n", &["t (s)", "F in N"], 5; "line breaks in quotation marks")]
+    #[test_case("Time (s)  F\n0  1\n1  2\n", &["Time (s)", "F"], 2; "two blanks between names")]
+    #[test_case("Steps:\t1\na\tb\tc\td\te\tf\tg\n1\t2\t\t\t\t\t3\n2\t2\t\t\t\t\t3\n", &["a", "b", "c", "d", "e", "f", "g"], 3; "more gaps than numbers")]
+    fn names_are_found(text: &str, names: &[&str], first_line: u64) {
+        let layout = find(text).unwrap();
+        assert_eq!(layout.names.as_ref().map_or(&[][..], |line| &line.texts), names);
+        assert_eq!(layout.first_line, first_line);
+        layout.check_names().unwrap();
+    }
+
+    #[test_case("Time (s) F\n0 1\n1 2\n", "has 3 names in line 1 and 2 fields in line 2: a name of several words"; "blanks")]
+    #[test_case("t,Force, x,F\n0,1,2\n1,2,3\n", "has 4 names in line 1 and 3 fields in line 2: a name with a separator"; "commas")]
+    #[test_case("t\tT\tF\n0\t1\n1\t2\n", "or a name has no column"; "tabs")]
+    fn more_names_than_fields_are_refused(text: &str, sentence: &str) {
+        let error = find(text).unwrap().check_names().unwrap_err().to_string();
+        assert!(error.contains(sentence), "{error}");
+    }
+
+    #[test_case("t,F,x\n0,1,\n1,2,\n"; "empty fields at the end")]
+    #[test_case("X\tF\tComment\n0\t1\n1\t2\n"; "comments of LabVIEW have no field")]
+    fn names_without_values_are_names(text: &str) {
+        assert_eq!(find(text).unwrap().check_names().ok(), Some(()));
     }
 
     #[test_case("t;F\n1;997\n2;1,050\n", "\"1,050\" in line 3 is 1050 with a comma between thousands and 1.050 with a decimal comma"; "thousands")]

@@ -41,8 +41,8 @@ pub(crate) struct CalibrateCommand {
     #[arg(long, value_name = "PLACE", requires = "dry_run", conflicts_with = "records")]
     until: Option<String>,
     /// Number of values of the planned record
-    #[arg(long, value_name = "N", requires = "until", default_value_t = 400)]
-    values: usize,
+    #[arg(long, value_name = "N", requires = "until", default_value_t = 400, value_parser = clap::value_parser!(u32).range(40..=1_000_000))]
+    values: u32,
     /// Folder for the results [default: results/NAME with the name of the calibration]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -109,7 +109,7 @@ impl CalibrateCommand {
     /// Prints what planned records would determine.
     fn plan(&self, file: &CalibrationFile) -> Result<(), Failure> {
         let grids = match &self.until {
-            Some(until) => file.planned(until, self.values),
+            Some(until) => file.planned(until, self.values as usize),
             None => {
                 let records = file.read(&self.records);
                 records.map(|records| records.iter().map(SampledRecord::places).collect())

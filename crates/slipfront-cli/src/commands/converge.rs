@@ -8,6 +8,7 @@ use slipfront_study::converge::{MAX_LEVELS, MIN_LEVELS, MeshStudy, text, write};
 use slipfront_study::{CostLimits, StudyFolder};
 
 use super::study::{dry_run, run_all};
+use crate::bounds::within;
 use crate::case_args::CaseArgs;
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
@@ -50,7 +51,7 @@ pub(crate) struct ConvergeCommand {
     #[command(flatten)]
     device: DeviceArgs,
     /// Refuse to run if all runs together need more memory, in GB
-    #[arg(long, value_name = "GB")]
+    #[arg(long, value_name = "GB", value_parser = gigabytes)]
     max_memory: Option<f64>,
     /// Refuse to run if the estimated time is longer, such as 30min or 2h
     #[arg(long, value_name = "TIME")]
@@ -64,6 +65,11 @@ pub(crate) struct ConvergeCommand {
     /// Print only the comparison to stdout, as JSON
     #[arg(long, conflicts_with = "dry_run")]
     json: bool,
+}
+
+/// Parses a size of memory in GB.
+fn gigabytes(text: &str) -> Result<f64, String> {
+    within(text, 0.001, 1e6, "GB")
 }
 
 impl ConvergeCommand {

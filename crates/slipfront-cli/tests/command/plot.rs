@@ -426,11 +426,32 @@ fn the_place_of_a_record_is_found_or_asked_for() {
     let said = workspace.fail("plot a --data slow.csv --x t --y F --shift 1 -o none", 2);
     assert!(
         said.contains(
-            "slow.csv and the curve of a run overlap too little, by less than a tenth of the shorter one: after the shift the \
+            "slow.csv and the curve of a run overlap too little, by less than a tenth of the shorter one or of the points of the record: after the shift the \
              record covers 1 s to 1 s, and a covers 0 s to "
         ),
         "{said}"
     );
+    // Times of a calendar are not those of a test, and picoseconds not the times of a run.
+    let at = |times: [&str; 3]| format!("t (s),F (N)\n{},1\n{},2\n{},3\n", times[0], times[1], times[2]);
+    workspace.write("unix.csv", at(["1706695471", "1706695471.1", "1706695471.2"]));
+    let said = workspace.fail("plot a --data unix.csv --x t --y F -o none", 2);
+    assert!(
+        said.contains("begins at 1706695471 s") && said.contains("`--shift -1706695471` begins it at 0"),
+        "{said}"
+    );
+    workspace.write("short.csv", at(["0", "1e-20", "2e-20"]));
+    let said = workspace.fail("plot a --data short.csv --x t --y F --shift 0 -o none", 2);
+    assert!(said.contains("short.csv lasts 0.02 as, and a lasts "), "{said}");
+    for bound in [
+        "--y-factor nan",
+        "--y-factor 0",
+        "--y-factor inf",
+        "--y-offset nan",
+        "--shift inf",
+    ] {
+        let said = workspace.fail(&format!("plot a --data short.csv --x t --y F {bound} -o none"), 2);
+        assert!(said.contains("invalid value"), "{said}");
+    }
     // The record is shifted to the last twentieth of its own curve, and then to the last fifth.
     let times = column(&workspace, "slow", "time_s");
     let end = times.last().unwrap();

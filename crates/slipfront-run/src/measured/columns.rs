@@ -59,7 +59,10 @@ pub fn columns_of(bytes: &[u8], path: &Path) -> Result<Vec<TableColumn>, Measure
         })?;
         return columns_of(sheet.text.as_bytes(), path);
     }
-    let layout = TableLayout::find(head, TableOptions::default());
+    let layout = TableLayout::find(head, TableOptions::default()).and_then(|layout| {
+        layout.check_names()?;
+        Ok(layout)
+    });
     let layout = layout.map_err(|source| MeasuredError::Table {
         path: path.to_owned(),
         source,

@@ -40,6 +40,20 @@ pub enum MeasuredError {
         axis: &'static str,
         example: &'static str,
     },
+    #[error(
+        "column `{column}` of {} has the unit `{unit}`, which is none of a {quantity} that is known here: convert the column, or \
+         give the unit that its numbers have with --{axis}-unit{}",
+        display_path(path),
+        such_as(axis, example)
+    )]
+    OtherUnit {
+        path: PathBuf,
+        column: String,
+        unit: String,
+        quantity: &'static str,
+        axis: &'static str,
+        example: Option<&'static str>,
+    },
     #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
     Unit {
         path: PathBuf,
@@ -72,4 +86,14 @@ pub enum MeasuredError {
         display_path(path)
     )]
     TooShort { path: PathBuf, found: usize },
+    #[error(
+        "{} has the same time or displacement, {at} in SI units, in all lines: choose another column",
+        display_path(path)
+    )]
+    NoLength { path: PathBuf, at: f64 },
+}
+
+/// The end of a sentence on a unit that is missing: an example of an option.
+fn such_as(axis: &str, example: &Option<&str>) -> String {
+    example.map_or(String::new(), |unit| format!(", such as `--{axis}-unit {unit}`"))
 }

@@ -16,7 +16,7 @@ pub enum Measure {
 }
 
 /// Units as instruments write them in words, and their sizes in SI units.
-const UNIT_WORDS: [(Measure, &str, f64); 22] = [
+const UNIT_WORDS: [(Measure, &str, f64); 36] = [
     (Measure::Time, "sec", 1.0),
     (Measure::Time, "secs", 1.0),
     (Measure::Time, "second", 1.0),
@@ -27,13 +27,27 @@ const UNIT_WORDS: [(Measure, &str, f64); 22] = [
     (Measure::Time, "min", 60.0),
     (Measure::Time, "minutes", 60.0),
     (Measure::Time, "h", 3600.0),
+    (Measure::Time, "hr", 3600.0),
+    (Measure::Time, "hrs", 3600.0),
+    (Measure::Time, "hour", 3600.0),
+    (Measure::Time, "hours", 3600.0),
+    (Measure::Time, "d", 86_400.0),
+    (Measure::Time, "days", 86_400.0),
+    (Measure::Time, "Sekunden", 1.0),
     (Measure::Displacement, "micron", 1e-6),
     (Measure::Displacement, "microns", 1e-6),
     (Measure::Displacement, "inch", 0.0254),
     // Standard gravity, 9.80665 m/s^2.
     (Measure::Force, "gf", 9.80665e-3),
     (Measure::Force, "kgf", 9.80665),
+    (Measure::Force, "kp", 9.80665),
     (Measure::Force, "lbf", 4.448_221_615_260_5),
+    (Measure::Force, "lb", 4.448_221_615_260_5),
+    (Measure::Force, "lbs", 4.448_221_615_260_5),
+    (Measure::Force, "ozf", 0.278_013_850_953_781_25),
+    (Measure::Force, "Newton", 1.0),
+    (Measure::Force, "daN", 10.0),
+    (Measure::Force, "dyn", 1e-5),
     (Measure::Coefficient, "1", 1.0),
     (Measure::Coefficient, "-", 1.0),
     (Measure::Coefficient, "\u{2013}", 1.0),
@@ -43,6 +57,16 @@ const UNIT_WORDS: [(Measure, &str, f64); 22] = [
 ];
 
 impl Measure {
+    /// Name of the quantity.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Displacement => "displacement",
+            Self::Force => "force",
+            Self::Coefficient => "coefficient",
+        }
+    }
+
     /// SI unit of the quantity.
     pub fn unit(self) -> &'static str {
         match self {

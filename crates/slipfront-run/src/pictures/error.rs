@@ -58,7 +58,8 @@ pub enum RunPictureError {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum RecordError {
     #[error(
-        "{record} and the curve of a run overlap too little, by less than a tenth of the shorter one: after the shift the \
+        "{record} and the curve of a run overlap too little, by less than a tenth of the shorter one or of the points of the \
+        record: after the shift the \
         record covers {from} to {to}, and {} covers {start} to {end}; check the units, and give another shift with --shift, or \
         none",
         run.display()
@@ -70,6 +71,25 @@ pub enum RecordError {
         run: PathBuf,
         start: String,
         end: String,
+    },
+    #[error(
+        "{record} lasts {record_length}, and {} lasts {run_length}: check the unit of the record's times or displacements",
+        run.display()
+    )]
+    OtherLength {
+        record: String,
+        record_length: String,
+        run: PathBuf,
+        run_length: String,
+    },
+    #[error(
+        "{record} begins at {begin} {unit}, far from where runs begin: `--shift {}` begins it at 0",
+        -begin
+    )]
+    FarAway {
+        record: String,
+        begin: f64,
+        unit: &'static str,
     },
     #[error(
         "{record} fits {} best with a shift of {own}, but {} with {of_other}: give the shift with --shift",

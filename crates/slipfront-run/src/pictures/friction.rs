@@ -163,6 +163,13 @@ pub fn overlay(
     })
 }
 
+/// Largest ratio of the lengths of a record and of a run.
+const MOST_LENGTHS: f64 = 1e8;
+
+/// Distance of the beginning of a record from 0, over its length, at which its times are those of a calendar
+/// and not of a test.
+const FAR: f64 = 1e4;
+
 /// Draws the friction curves of run folders and a measured record over each other, in SI units. Curves that
 /// are the output of an instrument have no marks, because marks refer to friction itself.
 ///
@@ -192,8 +199,29 @@ pub fn overlay_measured(
     );
     let record = (&scaled.0[..], &scaled.1[..]);
     let in_units = |along_x: f64| with_si_prefix(along * along_x, measured.record.along.unit());
+    let [from, to] = ends(record.0);
+    let [start, end] = ends(&curves[0].x);
+    let lengths = [to - from, end - start];
+    if lengths[0] < lengths[1] / MOST_LENGTHS || lengths[0] > lengths[1] * MOST_LENGTHS {
+        let [record_length, run_length] = lengths.map(in_units);
+        return Err(Box::new(RecordError::OtherLength {
+            record: measured.label.clone(),
+            record_length,
+            run: folders[0].clone(),
+            run_length,
+        })
+        .into());
+    }
     let shift = match measured.shift {
         Some(shift) => shift / along,
+        None if from.abs() > FAR * lengths[0].max(lengths[1]) => {
+            return Err(Box::new(RecordError::FarAway {
+                record: measured.label.clone(),
+                begin: x.first().copied().unwrap_or_default(),
+                unit: measured.record.along.unit(),
+            })
+            .into());
+        }
         None => own_shift(record, &curves).map_err(|rival| {
             Box::new(match rival {
                 Rival::Other { run, own, of_run } => RecordError::ShiftsOfRuns {

@@ -21,9 +21,16 @@ pub struct Misfit {
     pub points: usize,
 }
 
-/// Least overlap of record and curve for a misfit, over the length of the shorter of both: a smaller overlap
-/// is not meaningful.
+/// Least overlap of record and curve for a misfit, over the length of the shorter of both, and least share of
+/// the points of the record within the curve, unless nearly the whole curve lies within the record: a smaller
+/// overlap is not meaningful.
 const LEAST_COMMON: f64 = 0.1;
+
+/// Share of a curve within the record that counts as the whole curve.
+const NEARLY_WHOLE: f64 = 0.9;
+
+/// Least number of points of the record within the curve.
+const LEAST_POINTS: usize = 3;
 
 /// Misfit relative to the least one, up to which another shift may also be the right one.
 const AS_GOOD: f64 = 2.0;
@@ -45,7 +52,8 @@ fn value_at((xs, ys): Points, x: f64) -> Option<f64> {
 /// they overlap too little.
 pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<Misfit> {
     let ([from, to], [start, end]) = (ends(xs).map(|x| x + shift), ends(curve.0));
-    if to.min(end) - from.max(start) < LEAST_COMMON * (to - from).min(end - start) {
+    let common = to.min(end) - from.max(start);
+    if common < LEAST_COMMON * (to - from).min(end - start) {
         return None;
     }
     let differences = xs
@@ -56,7 +64,9 @@ pub(super) fn misfit((xs, ys): Points, curve: Points, shift: f64) -> Option<Misf
     for difference in differences {
         (sum, points) = (sum + difference * difference, points + 1);
     }
-    (points > 0).then(|| Misfit {
+    let are_enough =
+        points as f64 >= LEAST_COMMON * xs.len() as f64 || common >= NEARLY_WHOLE * (end - start);
+    (are_enough && points >= LEAST_POINTS.min(xs.len())).then(|| Misfit {
         rms: (sum / points as f64).sqrt(),
         points,
     })
@@ -198,8 +208,28 @@ mod tests {
     #[test]
     fn a_long_record_may_go_beyond_the_curve() {
         let (xs, ys) = curve();
-        let at: Vec<f64> = (0..=200).map(f64::from).collect();
+        let at: Vec<f64> = (0..=800).map(|k| 0.25 * f64::from(k)).collect();
         let found = misfit((&at, &at), (&xs, &ys), -100.0).unwrap();
-        assert_eq!(found.points, 2);
+        assert_eq!(found.points, 5);
+        // Two points say nothing about a curve.
+        let at: Vec<f64> = (0..=200).map(f64::from).collect();
+        assert_eq!(misfit((&at, &at), (&xs, &ys), -100.0), None);
+    }
+
+    /// A record of which nearly all points lie far beyond the curve has the length of the curve and more in
+    /// common with it, and no misfit.
+    #[test]
+    fn a_few_points_within_the_curve_are_no_overlap() {
+        let (xs, ys) = curve();
+        let at: Vec<f64> = (0..100)
+            .map(|k| {
+                if k < 5 {
+                    0.2 * f64::from(k)
+                } else {
+                    1e6 + f64::from(k)
+                }
+            })
+            .collect();
+        assert_eq!(misfit((&at, &at), (&xs, &ys), 0.3), None);
     }
 }

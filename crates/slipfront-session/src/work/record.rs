@@ -118,6 +118,17 @@ impl Chosen {
                     "the table does not give the unit of column {column}: write it here, such as {example}"
                 )
             }
+            MeasuredError::OtherUnit {
+                column,
+                unit,
+                quantity,
+                ..
+            } => {
+                format!(
+                    "column {column} has the unit {unit}, which is none of a {quantity} that is known here: convert it, or write \
+                     the unit that its numbers have"
+                )
+            }
             error => error.to_string(),
         })
     }

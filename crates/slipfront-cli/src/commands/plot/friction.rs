@@ -11,6 +11,7 @@ use slipfront_run::pictures::friction::{
     Against, AxisUnits, Fit, FrictionLook, OverlaidRecord, Overlay, overlay, overlay_measured,
 };
 
+use crate::bounds::{factor, summand};
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::table_args::TableArgs;
@@ -59,6 +60,7 @@ pub(super) struct FrictionArgs {
         value_name = "NUMBER",
         requires = "data",
         default_value_t = 1.0,
+        value_parser = factor,
         allow_negative_numbers = true
     )]
     y_factor: f64,
@@ -68,12 +70,13 @@ pub(super) struct FrictionArgs {
         value_name = "NUMBER",
         requires = "data",
         default_value_t = 0.0,
+        value_parser = summand,
         allow_negative_numbers = true
     )]
     y_offset: f64,
     /// Number added to the times or displacements of the record, in s or m [default: the best fit to the
     /// first run, if it is unique]
-    #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", requires = "data", value_parser = summand, allow_negative_numbers = true)]
     shift: Option<f64>,
     /// Draw the curves as recorded by an instrument, and compare them with the record. The file, such as a
     /// calibration file, has a table `[instrument]`. Marks of instants and peaks of the true friction are
