@@ -66,11 +66,13 @@ pub(super) fn values(
 }
 
 /// Reads a table of any size row by row, below the header of an instrument, and returns its numbers of
-/// columns and rows. `take` gets each row, with its index and the column 0.
+/// columns and rows. `take` gets each row, with its index and the column 0. Where there may be `gaps`, fields
+/// without a digit, such as empty ones, `Bad` or `---`, are NaN.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     layout: &TableLayout,
+    gaps: bool,
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
     source.rewind().map_err(ArrayError::read(path))?;
@@ -80,7 +82,20 @@ pub(super) fn rows(
     while let Some((line, fields)) = lines.next_row().map_err(table_error(path))? {
         values.clear();
         for (column, field) in fields.iter().enumerate() {
-            values.push(number_at(path, field, layout.decimal, [row, column], line)?);
+            let is_gap = number(field, layout.decimal).is_none()
+                && !field.contains(|sign: char| sign.is_ascii_digit());
+            if is_gap && gaps {
+                values.push(f64::NAN);
+                continue;
+            }
+            let value = number_at(path, field, layout.decimal, [row, column], line);
+            values.push(value.map_err(|error| {
+                if is_gap {
+                    gap_error(path, field, [row, column], line)
+                } else {
+                    error
+                }
+            })?);
         }
         let wanted = *columns.get_or_insert(values.len());
         if values.len() != wanted {
@@ -133,6 +148,23 @@ fn number_at(path: &Path, field: &str, decimal: char, at: [usize; 2], line: u64)
         };
         value_error(path, &field, at, wanted)
     })
+}
+
+/// The error of a field without a digit in a map, in the row and column `at`.
+fn gap_error(path: &Path, field: &str, [row, column]: [usize; 2], line: u64) -> ArrayError {
+    let what = if field.is_empty() {
+        "an empty field".to_owned()
+    } else {
+        format!("`{}`", excerpt(field))
+    };
+    let remedy = if [row, column] == [0, 0] && field.is_empty() {
+        "remove this row and this column if they are coordinates, and give their spacing as `pixel_size`"
+    } else {
+        "if such fields are points that were not measured, omit them with `missing = \"nan\"`"
+    };
+    let problem =
+        format!("has {what} in line {line}, in row {row}, column {column} (both counted from 0): {remedy}");
+    contents_error(path, problem)
 }
 
 fn wrong_shape(path: &Path, found: &str, nx: usize, ny: usize) -> ArrayError {

@@ -119,7 +119,7 @@ fn blocks_over_a_plateau_have_its_height() {
     "gives no unit of height: add `height_unit`"
 )]
 #[test_case(
-    "map.gsf", HeightMapUnits { pixel: SIZE, ..OWN },
+    "map.gsf", HeightMapUnits { pixel: Some([0.6e-6; 2]), ..OWN },
     "gives a pixel size of 500 nm x 500 nm: leave out `pixel_size`"
 )]
 #[test_case("map.x3p", HeightMapUnits { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
@@ -448,7 +448,7 @@ fn no_line_of_a_table_is_skipped() {
             "has NaN in row 1, column 1",
             "has NaN in line 2, in row 1, column 1",
         ),
-        (",0.5", "has `` in line 2,", "has `` in line 2,"),
+        (",0.5", "has an empty field in line 2,", "has `` in line 2,"),
         ("0.5", "has 1 numbers in line 2", "1 numbers in line 2"),
         ("0.5,1,2", "has 3 numbers in line 2", "3 numbers in line 2"),
     ] {

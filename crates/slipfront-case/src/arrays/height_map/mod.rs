@@ -5,6 +5,7 @@
 
 mod averages;
 mod axis;
+mod extremes;
 mod grid;
 mod gsf;
 mod image;
@@ -21,6 +22,7 @@ pub use roughness::Roughness;
 
 use self::averages::Averages;
 use self::axis::FirstLines;
+use self::extremes::Extremes;
 use self::grid::{HeightGrid, Line, Take, points};
 use self::quantum::Quantum;
 use self::roughness::{HeightRange, Mean, Moments, Plane, PlaneSums};
@@ -29,7 +31,7 @@ use super::npy;
 use crate::table::TableOptions;
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
-/// Units of a height map that the case states, m; a unit that the file states too is refused.
+/// Units of a height map that the case states, m; one that differs from that of the file is refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightMapUnits {
     /// Height in m of the value 1 in the file.
@@ -83,12 +85,12 @@ pub struct HeightMap {
 /// Reads the height map called `path`, and averages it over the given blocks.
 ///
 /// The first row of an array, `.npy` or a text table, has the smallest y. The first row of every other file,
-/// and of the text export of Gwyddion, is the top row, at the largest y.
+/// of the text export of Gwyddion, of ESRI grids and of tables of Keyence, is the top row, at the largest y.
 ///
 /// # Errors
 /// [`ArrayError`] if the file has another format, more than 2^28 points or more than 2^20 along a side; if a
 /// point has no height and is not marked as missing; if a block has no measured point; if a unit is given
-/// neither in the file nor in `units`, or in both; or if the map does not have the aspect ratio of the
+/// neither in the file nor in `units`, or differs in both; or if the map does not have the aspect ratio of the
 /// blocks.
 pub fn height_map(
     path: &Path,
@@ -107,16 +109,17 @@ pub fn height_map(
         let found = of_all.filter(|(mean, range)| is_finite(*range) && mean.is_finite());
         found.ok_or_else(too_far_apart)
     };
-    let (mut mean, mut edges) = (Mean::default(), FirstLines::default());
+    let (mut mean, mut edges, mut extremes) = (Mean::default(), FirstLines::default(), Extremes::default());
     let grid = read(path, source, preparation, &mut |line| {
         mean.add(line.heights);
+        extremes.add(line.heights);
         edges.add(line);
         Ok(())
     })?;
     let (pixel, unit) = (pixel(path, &grid, units)?, height_unit(path, &grid, units)?);
     let points = grid.points;
     let size = [0, 1].map(|axis| points[axis] as f64 * pixel[axis]);
-    keep_aspect(path, size, room)?;
+    keep_aspect(path, size, room, edges.doubt())?;
     let n_missing = points[0] * points[1] - mean.count();
     let (mut middle, mut range) = range_of(&mean)?;
 
@@ -191,7 +194,14 @@ pub fn height_map(
             points[0] * points[1]
         ));
     }
-    notes.extend(doubts(&roughness, sums.plane().share, range, size, unit));
+    notes.extend(doubts(
+        &roughness,
+        sums.plane().share,
+        range,
+        size,
+        unit,
+        &extremes,
+    ));
     Ok(HeightMap {
         points,
         size,
@@ -208,6 +218,7 @@ fn doubts(
     range: HeightRange,
     size: [f64; 2],
     unit: f64,
+    extremes: &Extremes,
 ) -> Vec<String> {
     let mut doubts = Vec::new();
     if share_of_plane > LARGE_TILT {
@@ -216,19 +227,25 @@ fn doubts(
             four_digits(100.0 * share_of_plane)
         ));
     }
+    let marks = extremes.marks();
+    for (mark, points) in &marks {
+        doubts.push(format!(
+            "{} the height {mark} in the unit of the file, far from all others, which may mark points that were not measured: omit \
+             them with `missing = {mark}`",
+            if *points == 1 { "1 of its points has".to_owned() } else { format!("{points} of its points have") }
+        ));
+    }
     let height = (range.highest - range.lowest) * unit;
-    if height > size[0].max(size[1]) {
+    if marks.is_empty() && height > size[0].max(size[1]) {
         doubts.push(format!(
             "its heights range over {}, more than its width: check `height_unit` and `pixel_size`",
             with_si_prefix(height, "m")
         ));
     }
-    if height > FAR_OFF * roughness.sq {
+    if marks.is_empty() && height > FAR_OFF * roughness.sq {
         doubts.push(format!(
-            "a few of its heights are far from all others, from {lowest} to {highest} in the unit of the file, and may mark \
-             points that were not measured: omit them with `missing = {lowest}` or `missing = {highest}`",
-            lowest = range.lowest,
-            highest = range.highest
+            "a few of its heights are far from all others, within {} to {} in the unit of the file: check whether they are heights",
+            range.lowest, range.highest
         ));
     }
     doubts
@@ -276,7 +293,7 @@ fn read_file(
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
         "npy" => npy::rows(path, source, take_line)?,
-        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(path, source, preparation.table, take),
+        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(path, source, preparation, take),
         "gsf" => return gsf::read(path, source, take),
         "x3p" => return x3p::read(path, source, preparation.is_missing(f64::NAN), take),
         "png" => return image::read(path, source, take),
@@ -312,6 +329,9 @@ fn not_measured(path: &Path, height: f64, [row, column]: [usize; 2]) -> ArrayErr
 fn pixel(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<[f64; 2], ArrayError> {
     match (grid.pixel, units.pixel) {
         (Some(pixel), None) | (None, Some(pixel)) => Ok(pixel),
+        (Some(stated), Some(given)) if [0, 1].iter().all(|&axis| is_same(stated[axis], given[axis])) => {
+            Ok(stated)
+        }
         (Some([x, y]), Some(_)) => {
             let (x, y) = (with_si_prefix(x, "m"), with_si_prefix(y, "m"));
             let problem = format!("gives a pixel size of {x} x {y}: leave out `pixel_size`");
@@ -324,10 +344,16 @@ fn pixel(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<[f64;
     }
 }
 
+/// Whether a length in a file, which has some digits, is the one in the case.
+fn is_same(stated: f64, given: f64) -> bool {
+    (stated - given).abs() <= 1e-6 * stated.abs()
+}
+
 /// Height in m of the value 1 in the file, from the file or from the case.
 fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result<f64, ArrayError> {
     match (grid.height_unit, units.height) {
         (Some(unit), None) | (None, Some(unit)) => Ok(unit),
+        (Some(stated), Some(given)) if is_same(stated, given) => Ok(stated),
         (Some(unit), Some(_)) => {
             let unit = with_si_prefix(unit, "m");
             let problem = format!("gives its heights in units of {unit}: leave out `height_unit`");
@@ -340,9 +366,9 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
     }
 }
 
-/// Refuses a map if its aspect ratio differs from that of the blocks by more than half a block of the longer
+/// Refuses a map, with a doubt about its first lines, if its aspect ratio differs from that of the blocks by more than half a block of the longer
 /// side.
-fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayError> {
+fn keep_aspect(path: &Path, size: [f64; 2], room: &Room, doubt: Option<String>) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];
     let (longer, shorter, ratio) = if aspect >= 1.0 {
@@ -358,7 +384,7 @@ fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayErro
     right[longer] = wanted.round() as usize;
     let problem = format!(
         "is {} x {}, {} times as wide as high, and the {} x {} blocks {} are {} times as wide as high: cut the map, or take {} x {} blocks \
-         there",
+         there{}",
         with_si_prefix(size[0], "m"),
         with_si_prefix(size[1], "m"),
         four_digits(aspect),
@@ -371,7 +397,8 @@ fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayErro
         },
         four_digits(blocks[0] as f64 / blocks[1] as f64),
         right[0],
-        right[1]
+        right[1],
+        doubt.map_or(String::new(), |doubt| format!("; {doubt}"))
     );
     Err(contents_error(path, problem))
 }

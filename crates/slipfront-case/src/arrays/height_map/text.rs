@@ -7,22 +7,25 @@ use std::path::Path;
 use slipfront_base::number_format::with_si_prefix;
 use slipfront_base::text::truncated;
 
+use super::Preparation;
 use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, contents_error};
 use crate::arrays::head::length_and_head;
 use crate::arrays::table;
 use crate::quantity::Length;
-use crate::table::{Encoding, HEAD_BYTES, TableLayout, TableOptions};
+use crate::table::{Encoding, HEAD_BYTES, TableLayout};
 
 pub(super) fn read(
     path: &Path,
     source: &mut (impl BufRead + Seek),
-    options: TableOptions,
+    preparation: &Preparation,
     take: &mut Take,
 ) -> Result<HeightGrid, ArrayError> {
     let (_, head) = length_and_head(path, source, HEAD_BYTES)?;
     let stated = Stated::of(path, &head)?;
-    let layout = table::layout_of_map(path, &head, options)?;
+    let layout = table::layout_of_map(path, &head, preparation.table)?;
+    // Words and empty fields are such points, too.
+    let gaps = preparation.is_missing(f64::NAN);
     let mut notes = Vec::from_iter(layout.took());
     if let Some((pixel, unit)) = stated.pixel.zip(stated.height_unit) {
         let [pixel, unit] = [pixel, unit].map(|length| with_si_prefix(length, "m"));
@@ -31,11 +34,11 @@ pub(super) fn read(
         ));
     }
     if layout.columns == 3
-        && let Some(list) = PointList::of(path, source, &layout)?
+        && let Some(list) = PointList::of(path, source, &layout, gaps)?
     {
         let [nx, ny] = list.points();
         let mut is_seen = vec![false; nx * ny];
-        table::rows(path, source, &layout, |_, point| {
+        table::rows(path, source, &layout, gaps, |_, point| {
             let [column, row] = [0, 1].map(|axis| list.place(axis, point[axis]));
             let is_second = is_seen.get_mut(row * nx + column);
             if is_second.is_none_or(|seen| std::mem::replace(seen, true)) {
@@ -67,8 +70,25 @@ pub(super) fn read(
             notes,
         });
     }
-    let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
-    let [nx, ny] = table::rows(path, source, &layout, take_line)?;
+    let take_line = |[row, column]: [usize; 2], heights: &[f64]| {
+        if let Some(mark) = stated.mark.filter(|mark| !preparation.is_missing(*mark))
+            && heights.contains(&mark)
+        {
+            let problem = format!(
+                "has points with its NODATA_value, {mark}, which were not measured: omit them with `missing = {mark}`"
+            );
+            return Err(contents_error(path, problem));
+        }
+        take(&Line { row, column, heights })
+    };
+    let [nx, ny] = table::rows(path, source, &layout, gaps, take_line)?;
+    if nx <= WIDTH_OF_LISTS && ny >= LENGTH_OF_LISTS {
+        let problem = format!(
+            "has {nx} numbers in each of {ny} lines, like a list of points or a profile: a list x, y, z must lie on a regular grid \
+             with every point once; interpolate it onto one, or write a matrix of heights"
+        );
+        return Err(contents_error(path, problem));
+    }
     let points = points(path, "table", nx, ny)?;
     let of_size = stated
         .size
@@ -93,6 +113,8 @@ struct Stated {
     pixel: Option<f64>,
     /// Height of the value 1, m.
     height_unit: Option<f64>,
+    /// Value of points that were not measured.
+    mark: Option<f64>,
 }
 
 impl Stated {
@@ -104,6 +126,9 @@ impl Stated {
     /// # Height: 5.00 um              data unit=rad
     /// # Value units: nm              height conversion factor (-> m)=6.3e-008
     /// ```
+    ///
+    /// ESRI grids (`ncols`, `nrows`, `cellsize`, `NODATA_value`) have the top row first and a cell without a unit,
+    /// Keyence tables (`"XY Calibration","500","nm/pixel"`) the top row first and a pixel.
     ///
     /// The comments on the left are from Gwyddion, which writes all names but the last in the language of its
     /// user; the lines on the right are from a microscope.
@@ -138,6 +163,37 @@ impl Stated {
                 ..Self::default()
             });
         }
+        if text.trim_start().starts_with("Zygo XYZ Data File") {
+            let problem = "is an XYZ file of Zygo, which is not read: save the map as a matrix or as .x3p, as Gwyddion does";
+            return Err(contents_error(path, problem.to_owned()));
+        }
+        let beginning = || text.lines().take(STATEMENTS_MAX);
+        if text.trim_start().to_lowercase().starts_with("ncols") {
+            let mark = beginning().find_map(|line| {
+                let (name, value) = line.trim().split_once(char::is_whitespace)?;
+                name.eq_ignore_ascii_case("nodata_value")
+                    .then(|| value.trim().parse().ok())?
+            });
+            return Ok(Self {
+                top_first: true,
+                mark,
+                ..Self::default()
+            });
+        }
+        let calibration = beginning().find_map(|line| {
+            let mut fields = line.split(',').map(|field| field.trim().trim_matches('"'));
+            let name = fields.next()?;
+            let (number, unit) = (fields.next()?, fields.next()?.strip_suffix("/pixel")?);
+            name.eq_ignore_ascii_case("xy calibration")
+                .then(|| format!("{number} {unit}"))
+        });
+        if let Some(pixel) = calibration {
+            return Ok(Self {
+                top_first: true,
+                pixel: Some(length("XY calibration", &pixel)?),
+                ..Self::default()
+            });
+        }
         let stated = |name: &str| {
             let lines = text
                 .lines()
@@ -157,6 +213,11 @@ impl Stated {
     }
 }
 
+/// Most numbers of a line of a list of points or a profile, which may have an index or a brightness.
+const WIDTH_OF_LISTS: u64 = 5;
+/// Least number of lines by which a table with so few columns is no map.
+const LENGTH_OF_LISTS: u64 = 64;
+
 /// Number of lines that are searched for statements.
 const STATEMENTS_MAX: usize = 64;
 
@@ -173,10 +234,11 @@ impl PointList {
         path: &Path,
         source: &mut (impl BufRead + Seek),
         layout: &TableLayout,
+        gaps: bool,
     ) -> Result<Option<Self>, ArrayError> {
         let (mut axes, mut n_points) = ([Vec::new(), Vec::new()], 0_usize);
         let mut is_list = true;
-        table::rows(path, source, layout, |_, point| {
+        table::rows(path, source, layout, gaps, |_, point| {
             n_points += 1;
             for (axis, &coordinate) in axes.iter_mut().zip(point) {
                 let place = axis.partition_point(|other: &f64| *other < coordinate);
@@ -232,7 +294,7 @@ mod tests {
         let grid = read(
             Path::new("m.csv"),
             &mut Cursor::new(text),
-            TableOptions::default(),
+            &Preparation::default(),
             &mut |line| {
                 let heights = line.heights.iter().enumerate();
                 points.extend(heights.map(|(k, &height)| (line.row, line.column + k, height)));
@@ -257,6 +319,79 @@ mod tests {
         let (grid, _) = read_text(text);
         assert!(grid.top_first);
         assert_eq!((grid.pixel, grid.height_unit), (Some([5e-6, 2.5e-6]), Some(1e-9)));
+    }
+
+    /// Reads a text as a map of no particular size.
+    fn refusal(text: &str, preparation: &Preparation) -> Option<String> {
+        let found = read(
+            Path::new("m.csv"),
+            &mut Cursor::new(text),
+            preparation,
+            &mut |_| Ok(()),
+        );
+        found.err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn grids_of_esri_begin_with_the_top_row_and_state_their_gaps() {
+        let text = "ncols 3\nnrows 2\nxllcorner 0.0\nyllcorner 0.0\ncellsize 0.5\nnodata_value -9999\n1 2 -9999\n3 4 5\n";
+        let (grid, _) = read_text(&text.replace("-9999\n3", "6\n3"));
+        assert_eq!((grid.points, grid.top_first, grid.pixel), ([3, 2], true, None));
+        let said = refusal(text, &Preparation::default()).unwrap();
+        assert!(said.contains("omit them with `missing = -9999`"), "{said}");
+        let missing = Preparation {
+            missing: Some(-9999.0),
+            ..Preparation::default()
+        };
+        assert_eq!(refusal(text, &missing), None);
+    }
+
+    #[test]
+    fn tables_of_keyence_begin_with_the_top_row_and_state_their_pixel() {
+        let (grid, _) = read_text("\"XY Calibration\",\"277.5\",\"nm/pixel\"\n\"Height\"\n1,2,3\n4,5,7\n");
+        assert_eq!((grid.points, grid.top_first), ([3, 2], true));
+        assert_eq!((grid.pixel, grid.height_unit), (Some([277.5e-9; 2]), None));
+    }
+
+    #[test]
+    fn words_and_empty_fields_are_gaps_if_gaps_are_left_out() {
+        let missing = Preparation {
+            missing: Some(f64::NAN),
+            ..Preparation::default()
+        };
+        for word in ["Bad", "***", "---", "", "No Data"] {
+            let text = format!("{word},1,2\n3,{word},5\n6,7,8\n");
+            assert_eq!(refusal(&text, &missing), None, "{word:?}");
+            let said = refusal(&text, &Preparation::default()).unwrap();
+            assert!(
+                said.contains("in row 0, column 0") && said.contains("remove this row") == word.is_empty(),
+                "{said}"
+            );
+            assert!(word.is_empty() || said.contains("`missing = \"nan\"`"), "{said}");
+        }
+        // A number that is written in another way is none.
+        let said = refusal("1,2,3\n3,4x,5\n6,7,8\n", &missing).unwrap();
+        assert!(said.contains("`4x` in line 2"), "{said}");
+    }
+
+    #[test]
+    fn lists_that_are_no_grid_are_told_from_maps() {
+        let list = |rows: usize, columns: usize| {
+            let row = |k: usize| {
+                (0..columns)
+                    .map(|column| format!("{}", (k * 7 + column * 3) % 11))
+                    .collect::<Vec<_>>()
+                    .join(",")
+            };
+            (0..rows).map(|k| row(k) + "\n").collect::<String>()
+        };
+        for columns in 2..=5 {
+            let said = refusal(&list(64, columns), &Preparation::default()).unwrap();
+            assert!(said.contains("like a list of points or a profile"), "{said}");
+            assert_eq!(refusal(&list(20, columns), &Preparation::default()), None);
+        }
+        let said = refusal("Zygo XYZ Data File - Format 2\n1 2 3\n", &Preparation::default()).unwrap();
+        assert!(said.contains("is an XYZ file of Zygo"), "{said}");
     }
 
     #[test]
