@@ -275,3 +275,26 @@ fn weaken<S: Simd>(
         (at_rest - lost * of_load).store_array(&mut weakened[c]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The work of the fall up to a slip is the area between the strength and its level there, and all of it
+    /// is done after the length of the fall.
+    #[test]
+    fn the_work_of_the_fall_is_the_area_below_it() {
+        let law = FallWithSlip {
+            length: 0.4,
+            healing_time: None,
+        };
+        for slip in [0.0, 0.1, 0.25, 0.4, 3.0] {
+            // The area of the trapezium between no slip and this one, over that of the whole triangle.
+            let slipped = f64::min(slip, law.length);
+            let area = 0.5 * (1.0 + law.share_left(slip)) * slipped;
+            // Rounding of a few operations.
+            assert!((law.share_lost(slip) - 2.0 * area / law.length).abs() < 1e-15);
+        }
+        assert_eq!((law.share_lost(0.1), law.share_left(0.1)), (0.4375, 0.75));
+    }
+}

@@ -13,9 +13,26 @@ use slipfront::surface::{
 };
 use slipfront::{
     Communicator, Coulomb, DeadLoad, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Interface,
-    Lattice, Loading, Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface, VectorField,
-    Weakening, scales,
+    Kernel, Lattice, Loading, Model, Outline, Program, Simulation, SlipWeakening, State, Stop, Surface,
+    VectorField, Weakening, scales,
 };
+
+/// The fused kernel on one thread without skipping.
+pub(crate) fn fused() -> Execution {
+    Execution {
+        kernel: Kernel::Fused,
+        skips: false,
+        ..Execution::on_threads(1)
+    }
+}
+
+/// The general kernel on one thread.
+pub(crate) fn general() -> Execution {
+    Execution {
+        kernel: Kernel::General,
+        ..fused()
+    }
+}
 
 /// A slider at rest, stepped by the kernel under test.
 pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation {

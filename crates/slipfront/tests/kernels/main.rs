@@ -11,25 +11,10 @@ use std::convert::Infallible;
 
 use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 
+use self::common::{fused, general};
+
 /// The kernel of the simulations created by the common helpers.
 const KERNEL: Kernel = Kernel::Fused;
-
-/// The fused kernel on one thread without skipping.
-fn fused() -> Execution {
-    Execution {
-        kernel: Kernel::Fused,
-        skips: false,
-        ..Execution::on_threads(1)
-    }
-}
-
-/// The general kernel on one thread.
-fn general() -> Execution {
-    Execution {
-        kernel: Kernel::General,
-        ..fused()
-    }
-}
 
 /// Makes one step, or with `energies` steps until the drive has moved, including steps in which it stands
 /// still; then the stored energies are known.
@@ -94,7 +79,6 @@ mod executions;
 mod fields;
 mod general_divided;
 mod handed_over;
-mod kymograph;
 mod ranks;
 mod replay;
 mod rest_and_widths;

@@ -7,8 +7,8 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::SlipCycle;
 use slipfront::observe::{Event, Events, Observer, Precursors, Scheduled};
 use slipfront::{
-    Drive, Edge, Friction, Lattice, Loading, Model, RateAndState, Rotation, RunError, Simulation, Snapshot,
-    Stop, Surface,
+    Coulomb, Drive, Edge, Friction, FrictionLaw, Interface, Lattice, Loading, Model, RateAndState, Rotation,
+    RunError, Simulation, Snapshot, Stop, Surface,
 };
 use test_case::{test_case, test_matrix};
 
@@ -164,6 +164,8 @@ fn at_an_edge_the_events_are_the_precursors() {
 #[derive(Default)]
 struct ByBlock {
     events: Vec<Event>,
+    /// Whether motion along y is no slip.
+    along_x_alone: bool,
     /// Displacements at the beginning of the event, and the blocks that slide in it.
     event: Option<(Vec<[f64; 2]>, Vec<usize>)>,
 }
@@ -200,7 +202,10 @@ impl Observer for ByBlock {
         slid.dedup();
         let event = self.events.last_mut().unwrap();
         for b in &slipping {
-            let [x, y] = blocks[*b].velocity;
+            let [x, mut y] = blocks[*b].velocity;
+            if self.along_x_alone {
+                y = 0.0;
+            }
             event.speed_max = event.speed_max.max((x * x + y * y).sqrt());
         }
         event.blocks = slid.len();
@@ -219,14 +224,24 @@ impl Observer for ByBlock {
     }
 }
 
+/// Drive of the slider, or its friction along x alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Plain,
+    Turning,
+    Held,
+    Upright,
+}
+
 /// A rough slider with a cavity, in which blocks slip one after the other: driven at an angle, in rotation,
-/// under a held drive, and in a run that ends during its last event. Sums of the moment are rounded
-/// differently; everything else is equal.
-#[test_case(25.0, false, false, 0.004, 6.0)]
-#[test_case(0.0, true, false, 0.004, 6.0)]
-#[test_case(180.0, false, true, 0.05, 4.0)]
-#[test_case(0.0, false, false, 0.1, 2.0)]
-fn what_events_say_is_what_the_blocks_do(degrees: f64, turns: bool, held: bool, v_star: f64, until: f64) {
+/// under a held drive, in a run that ends during its last event, and as an upright sheet. Sums of the moment
+/// are rounded differently; everything else is equal.
+#[test_case(25.0, Kind::Plain, 0.004, 6.0)]
+#[test_case(0.0, Kind::Turning, 0.004, 6.0)]
+#[test_case(180.0, Kind::Held, 0.05, 4.0)]
+#[test_case(0.0, Kind::Plain, 0.1, 2.0)]
+#[test_case(0.0, Kind::Upright, 0.004, 6.0)]
+fn what_events_say_is_what_the_blocks_do(degrees: f64, kind: Kind, v_star: f64, until: f64) {
     let blocks = [12, 9];
     let slider = Slider {
         blocks,
@@ -236,7 +251,7 @@ fn what_events_say_is_what_the_blocks_do(degrees: f64, turns: bool, held: bool, 
         sigma_static_star: 0.2,
         omega_star: 0.3,
         dt_star: 0.2,
-        loading: if held {
+        loading: if kind == Kind::Held {
             Loading::Held { onset_steps: 1 }
         } else {
             Loading::Constant
@@ -244,12 +259,23 @@ fn what_events_say_is_what_the_blocks_do(degrees: f64, turns: bool, held: bool, 
         ..Slider::default()
     };
     let mut model = slider.model();
-    if turns {
+    if kind == Kind::Turning {
         let lattice = &model.lattice;
         let rotation = Rotation::about_centroid(lattice, &model.rows, model.slider(), &Alone);
         model.drive.rotation = Some(rotation);
     }
-    let (mut events, mut by_block) = (Events::new(&model), ByBlock::default());
+    if kind == Kind::Upright {
+        let interface = Some(Interface { foundation: 0.5 });
+        model.friction = Friction::Coulomb(Coulomb {
+            interface,
+            ..FrictionLaw::Projection.into()
+        });
+    }
+    let mut by_block = ByBlock {
+        along_x_alone: kind == Kind::Upright,
+        ..ByBlock::default()
+    };
+    let mut events = Events::new(&model);
     let mut simulation = at_rest(&model, slider.dt_star);
     let seen = &mut [Scheduled::always(&mut events), Scheduled::always(&mut by_block)];
     simulation.run(Stop::at_step(slider.steps(until)), seen).unwrap();

@@ -29,6 +29,7 @@ mod graded;
 mod growth;
 mod held;
 mod interface;
+mod kymograph;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;

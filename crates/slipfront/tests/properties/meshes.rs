@@ -32,9 +32,9 @@ prop_compose! {
 /// edge.
 type IsInside = Box<dyn Fn([isize; 2]) -> bool>;
 
-/// Eq. 17 as printed, for one cavity: the formula of a circle, which no rotation changes, or of an ellipse, or
-/// the crossings of a polygon of 4096 vertices with the row of the block: a centre is inside if an odd number
-/// of them lies to its left.
+/// Eq. 17 as printed, for one cavity: the formula of a circle, which no rotation changes, or of an ellipse,
+/// or the crossings of a polygon of 4096 vertices with the row of the block: a centre is inside if an odd
+/// number of them lies to its left.
 fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> IsInside {
     let Cavity { lambda, w, .. } = *cavity;
     let s = f64::from(cavity.s);

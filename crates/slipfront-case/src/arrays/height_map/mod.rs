@@ -90,8 +90,8 @@ pub struct HeightMap {
 /// # Errors
 /// [`ArrayError`] if the file has another format, more than 2^28 points or more than 2^20 along a side; if a
 /// point has no height and is not marked as missing; if a block has no measured point; if a unit is given
-/// neither in the file nor in `units`, or differs in both; or if the map does not have the aspect ratio of the
-/// blocks.
+/// neither in the file nor in `units`, or differs in both; or if the map does not have the aspect ratio of
+/// the blocks.
 pub fn height_map(
     path: &Path,
     source: &mut (impl BufRead + Seek),
@@ -366,8 +366,8 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
     }
 }
 
-/// Refuses a map, with a doubt about its first lines, if its aspect ratio differs from that of the blocks by more than half a block of the longer
-/// side.
+/// Refuses a map, with a doubt about its first lines, if its aspect ratio differs from that of the blocks by
+/// more than half a block of the longer side.
 fn keep_aspect(path: &Path, size: [f64; 2], room: &Room, doubt: Option<String>) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];

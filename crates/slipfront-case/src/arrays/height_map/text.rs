@@ -127,8 +127,8 @@ impl Stated {
     /// # Value units: nm              height conversion factor (-> m)=6.3e-008
     /// ```
     ///
-    /// ESRI grids (`ncols`, `nrows`, `cellsize`, `NODATA_value`) have the top row first and a cell without a unit,
-    /// Keyence tables (`"XY Calibration","500","nm/pixel"`) the top row first and a pixel.
+    /// Grids of ESRI (`ncols`, `nrows`, `cellsize`, `NODATA_value`) have the top row first and a cell without
+    /// a unit, tables of Keyence (`"XY Calibration","500","nm/pixel"`) the top row first and a pixel.
     ///
     /// The comments on the left are from Gwyddion, which writes all names but the last in the language of its
     /// user; the lines on the right are from a microscope.

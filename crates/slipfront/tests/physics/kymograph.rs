@@ -7,8 +7,7 @@ use slipfront::testing::Threads;
 use slipfront::{Edges, Execution, PositionBins, RunError, Simulation, Snapshot, Stop};
 use test_case::test_matrix;
 
-use crate::common::{Slider, cavity, varied};
-use crate::{fused, general};
+use crate::common::{Slider, cavity, fused, general, varied};
 
 /// The share of sliding blocks among those in contact, read from the field.
 #[derive(Default)]
@@ -169,6 +168,15 @@ fn memory_does_not_grow_with_the_run() {
             assert!((f64::from(share) - mean).abs() < 1e-7);
         }
     }
+    let (step, shares) = halved.rows().last().unwrap();
+    assert_eq!(step, full as f64);
+    // Each bin has three blocks, which slide or not.
+    assert!(
+        shares
+            .iter()
+            .all(|share| (3.0 * share - (3.0 * share).round()).abs() < 1e-6)
+    );
+    assert!(shares.iter().sum::<f32>() > 0.3, "{shares:?}");
     let long = run(&[5 * full + 3]);
     assert_eq!(long.rows().count(), 5 * Kymograph::MAX_ROWS / 8 + 1);
     assert_eq!(run(&[17, full - 1, full, 3 * full + 1, 5 * full + 3]), long);
