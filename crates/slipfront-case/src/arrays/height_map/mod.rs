@@ -9,6 +9,7 @@ mod extremes;
 mod grid;
 mod gsf;
 mod image;
+mod preparation;
 mod quantum;
 mod roughness;
 mod text;
@@ -18,6 +19,7 @@ mod x3p;
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
+pub use preparation::Preparation;
 pub use roughness::Roughness;
 
 use self::averages::Averages;
@@ -28,7 +30,6 @@ use self::quantum::Quantum;
 use self::roughness::{HeightRange, Mean, Moments, Plane, PlaneSums};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::npy;
-use crate::table::TableOptions;
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Units of a height map that the case states, m; one that differs from that of the file is refused.
@@ -38,24 +39,6 @@ pub struct HeightMapUnits {
     pub height: Option<f64>,
     /// Point spacing along x and along y.
     pub pixel: Option<[f64; 2]>,
-}
-
-/// Treatment of heights before they are averaged.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Preparation {
-    /// Value of unmeasured points, which are ignored; it may be NaN.
-    pub missing: Option<f64>,
-    /// Whether the least-squares plane is subtracted.
-    pub is_levelled: bool,
-    /// Format of a text table, where it is not to be detected.
-    pub table: TableOptions,
-}
-
-impl Preparation {
-    fn is_missing(&self, height: f64) -> bool {
-        self.missing
-            .is_some_and(|missing| height == missing || (height.is_nan() && missing.is_nan()))
-    }
 }
 
 /// Blocks that a height map covers.

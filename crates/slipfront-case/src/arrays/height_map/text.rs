@@ -7,8 +7,8 @@ use std::path::Path;
 use slipfront_base::number_format::with_si_prefix;
 use slipfront_base::text::truncated;
 
-use super::Preparation;
 use super::grid::{HeightGrid, Line, Take, points};
+use super::preparation::Preparation;
 use crate::arrays::error::{ArrayError, contents_error};
 use crate::arrays::head::length_and_head;
 use crate::arrays::table;
