@@ -175,6 +175,20 @@ mod tests {
     }
 
     #[test]
+    fn damaged_lines_of_all_shards_are_counted() {
+        let [all, one, two] = [(); 3].map(|()| tempfile::tempdir().unwrap());
+        for (shard, id) in [(&one, "b"), (&two, "c")] {
+            let mut lines = [to_line(&finished("a")), to_line(&finished(id))].concat();
+            lines[10] ^= 1;
+            std::fs::write(shard.path().join(RUN_JOURNAL), lines).unwrap();
+        }
+        let mut journal = RunJournal::open(all.path()).unwrap();
+        assert_eq!(journal.merge(one.path()).unwrap(), 1);
+        assert_eq!(journal.merge(two.path()).unwrap(), 1);
+        assert_eq!((journal.len(), journal.damaged), (2, 2));
+    }
+
+    #[test]
     fn one_process_at_a_time_and_no_foreign_file() {
         let folder = tempfile::tempdir().unwrap();
         let first = RunJournal::open(folder.path()).unwrap();

@@ -212,6 +212,20 @@ mod tests {
         Arc::new(Case::parse(text, "case", "", &[]).unwrap())
     }
 
+    /// The state of a run belongs to the files that its case reads, too.
+    #[test]
+    fn cases_that_read_other_bytes_have_other_hashes() {
+        let hash_with = |bytes: &str| {
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::write(folder.path().join("mu.csv"), bytes).unwrap();
+            let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'\n";
+            hash_of(&Case::parse(text, "case", folder.path(), &[]).unwrap())
+        };
+        let one = hash_with("0.5,0.6\n0.5,0.6\n");
+        assert_eq!(hash_with("0.5,0.6\n0.5,0.6\n"), one);
+        assert_ne!(hash_with("0.5,0.6\n0.5,0.7\n"), one);
+    }
+
     /// A run that has recorded some frames.
     fn advanced(case: &Arc<Case>) -> Running {
         let mut running = Running::start(case, None, Execution::default());
