@@ -216,6 +216,47 @@ fn set_and_seed_change_the_case() {
     assert_ne!(workspace.read("a/series.csv"), workspace.read("c/series.csv"));
 }
 
+/// A number behind a word in a text.
+fn number_after(text: &str, word: &str) -> f64 {
+    let (_, rest) = text
+        .split_once(word)
+        .unwrap_or_else(|| panic!("no {word:?} in {text}"));
+    let end = rest.find(|sign: char| !"0123456789.e-".contains(sign));
+    rest[..end.unwrap_or(rest.len())].parse().unwrap()
+}
+
+/// A slower drive over the same path takes as much longer, and the mass of a rigid block is its volume times
+/// its density.
+#[test]
+fn check_prints_numbers_of_its_case() {
+    let workspace = Workspace::small();
+    let said = workspace.succeed("check small.toml --set drive.v_star=0.1 --set time.duration_star=50");
+    let path = number_after(&said, "`drive.v_star = ") * number_after(&said, "`time.duration_star = ");
+    // Both numbers have some digits.
+    assert!((path / 5.0 - 1.0).abs() < 1e-2, "{said}");
+    workspace.write(
+        "rigid.toml",
+        "slider = { blocks = [1, 1], rigid = true, block_size = '40 mm', thickness = '12 mm', density = '1600 kg/m^3' }\n\
+         drive.total_stiffness = '168 N/m'\n",
+    );
+    let said = workspace.succeed("check rigid.toml");
+    assert!(said.contains("rigid, mass 30.72 g,"), "{said}");
+}
+
+/// The uncertainty of mu_k is that of mu_k*, times the mean static coefficient.
+#[test]
+fn coefficients_are_printed_with_their_uncertainty() {
+    let workspace = Workspace::small();
+    let line = "run small.toml -o run --set drive.v_star=0.1 --set time.duration_star=600 --set friction.mu_static=0.4";
+    let said = workspace.succeed(line);
+    let summary: serde_json::Value = serde_json::from_str(&workspace.read_text("run/summary.json")).unwrap();
+    let uncertainty = summary["kinetic_friction_star_uncertainty"].as_f64().unwrap();
+    let (_, of_mu) = said.split_once("   mu_k = ").unwrap();
+    // Two digits are printed.
+    let printed = number_after(of_mu, " \u{b1} ");
+    assert!((printed / (0.4 * uncertainty) - 1.0).abs() < 0.1, "{said}");
+}
+
 #[test]
 fn stop_after_onset_ends_the_run_there() {
     let workspace = Workspace::small();
