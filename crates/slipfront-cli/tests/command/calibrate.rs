@@ -84,7 +84,11 @@ fn a_planned_record_says_what_it_would_show() {
             2,
             "the end of the planned record: \"40\" has no unit",
         ),
-        ("--dry-run --until 40ns --values 39", 2, "at least 40 values"),
+        (
+            "--dry-run --until 40ns --values 39",
+            2,
+            "39 is not in 40..=1000000",
+        ),
         ("--until 40ns", 2, "--dry-run"),
     ] {
         let said = workspace.fail(&format!("calibrate fit.toml {line}"), status);

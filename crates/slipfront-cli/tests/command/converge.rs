@@ -204,7 +204,7 @@ fn what_cannot_be_put_on_meshes_is_refused() {
         ),
         ("--set texture.0.coverage=0.01", "no block is textured"),
         ("--max-memory 0.001", "more than --max-memory 0.001;"),
-        ("--max-memory nan", "more than --max-memory"),
+        ("--max-memory nan", "a number of GB from 0.001 to 1000000"),
         ("--max-time 1ns", "longer than --max-time"),
         ("--set drive.attach=left", "give `drive.total_stiffness`"),
         ("--levels 2", "2 is not in 3..=7"),
