@@ -56,8 +56,11 @@ impl Running {
         let mut stream = self.stdout.take().unwrap();
         let (sender, printed) = channel();
         spawn(move || {
-            let bytes = stream.by_ref().bytes().map_while(Result::ok);
-            let line: Vec<u8> = bytes.take_while(|byte| *byte != b'\n').collect();
+            // A buffer would keep what follows the line.
+            let (mut line, mut byte) = (Vec::new(), [0]);
+            while matches!(stream.read(&mut byte), Ok(1)) && byte != *b"\n" {
+                line.extend(byte);
+            }
             // The test may have ended.
             let _ = sender.send((line, stream));
         });

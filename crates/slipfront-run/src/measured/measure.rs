@@ -44,7 +44,7 @@ const UNIT_WORDS: [(Measure, &str, f64); 36] = [
     (Measure::Force, "lbf", 4.448_221_615_260_5),
     (Measure::Force, "lb", 4.448_221_615_260_5),
     (Measure::Force, "lbs", 4.448_221_615_260_5),
-    (Measure::Force, "ozf", 0.278_013_850_953_781_25),
+    (Measure::Force, "ozf", 0.278_013_850_953_781_2),
     (Measure::Force, "Newton", 1.0),
     (Measure::Force, "daN", 10.0),
     (Measure::Force, "dyn", 1e-5),
