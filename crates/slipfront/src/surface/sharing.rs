@@ -20,8 +20,9 @@ const MARKS: usize = u64::BITS as usize;
 /// ```
 ///
 /// `textured` and `exists` have a mark for every block of these rows, and `pressure` has their `p_i`; without
-/// `exists` all blocks exist, and without `pressure` it is uniform. All `ranks` of a lattice must call this
-/// together. Results have the same bits for any number of ranks.
+/// `exists` all blocks exist, and without `pressure` it is uniform. A block that does not exist bears no
+/// load, whether it is textured or not. All `ranks` of a lattice must call this together. Results have the
+/// same bits for any number of ranks.
 ///
 /// # Errors
 /// [`SurfaceError::NoContactNear`] if there is no block in contact near a textured block.
@@ -37,7 +38,7 @@ pub fn share_load(
     let own = lattice.blocks_of(rows);
     let n = lattice.n_blocks();
     let is_there = |b: usize| exists.is_none_or(|exists| exists[b]);
-    let contact = of_all_ranks(n, &own, |b| !textured[b], ranks);
+    let contact = of_all_ranks(n, &own, |b| !textured[b] && is_there(b), ranks);
     let lends = of_all_ranks(n, &own, |b| textured[b] && is_there(b), ranks);
     let pressures = pressure.map(|pressure| {
         let mut bits = vec![0; n];
