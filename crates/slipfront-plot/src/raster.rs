@@ -21,9 +21,7 @@ pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
     let mut bytes = ground.0.take();
     let pixels = bytes.len() / 4;
     for pixel in 0..pixels {
-        for channel in 0..3 {
-            bytes[3 * pixel + channel] = bytes[4 * pixel + channel];
-        }
+        bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
     }
     bytes.truncate(3 * pixels);
     Some(bytes)
