@@ -128,7 +128,7 @@ impl DesignFolder {
             }
         }
         text += &self.report(&mut batch).write_front(&front)?;
-        batch.place(Others::Go)?;
+        batch.place(Others::Go, vec![self.journal.listed()?])?;
         Ok(text)
     }
 

@@ -141,6 +141,11 @@ pub enum StudyError {
         of_others(*others)
     )]
     Missing { runs: usize, others: usize },
+    #[error(
+        "{path} is not the folder of the run that the journal names there: it was exchanged or replaced; put the \
+        original back"
+    )]
+    NotItsRun { path: PathBuf },
     #[error("{other} and {first} belong to different studies: merge only shards of the same study")]
     Foreign { first: PathBuf, other: PathBuf },
     #[error("invalid shard `{given}`: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]

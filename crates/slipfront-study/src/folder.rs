@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
+use crate::finished_run::mark_of;
 use crate::plan::{Plan, RunKey};
-use crate::project_folder::{Batch, Others, ResultFiles};
+use crate::project_folder::{Batch, Others, ProjectKind, ResultFiles};
 use crate::run_journal::RunJournal;
 use crate::study_file::{STUDIES, StudyFile};
 use crate::study_results::StudyResults;
@@ -15,8 +16,7 @@ use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited, read_limited};
 use slipfront_base::machine::free_disk;
 use slipfront_base::number_format::{byte_size, count};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::Manifest;
-use slipfront_run::names::{CASE, FIGURE_CACHE, RUNS, TABLES};
+use slipfront_run::names::{FIGURE_CACHE, RUNS, TABLES};
 use slipfront_run::run_copy::copy_run;
 
 const STUDY: &str = STUDIES.file;
@@ -94,16 +94,17 @@ impl StudyFolder {
             .collect()
     }
 
-    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard if they are
+    /// Copies complete run folders, and the cases of failed runs, from the folders of shards if they are
     /// missing here.
     ///
     /// # Errors
-    /// When the system refuses to read or to write, and after a stop.
+    /// When the folder of a run is not the one that the journal names; when the system refuses to read or to
+    /// write; after a stop.
     pub fn take_kept(
         &self,
         plan: &Plan,
         results: &StudyResults,
-        shard: &Path,
+        shards: &[PathBuf],
         stop: &AtomicBool,
     ) -> Result<(), StudyError> {
         for (run, result) in &results.runs {
@@ -111,14 +112,23 @@ impl StudyFolder {
                 return Err(StudyError::Interrupted);
             }
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match result {
-                // The run folder may be incomplete if the process was killed.
-                Ok(_) => Manifest::read(folder).is_ok(),
-                Err(_) => folder.join(CASE).is_file(),
-            };
-            let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
-            if is_whole(&from) && !is_whole(&to) {
-                copy_run(&from, &to)?;
+            let recorded = self.records.mark(&plan.identity(*run));
+            // The run folder may be incomplete if the process was killed.
+            let mark = |folder: &Path| mark_of(folder, result.is_ok());
+            let is_its = |mark: &String| recorded.as_ref().is_none_or(|recorded| recorded == mark);
+            let to = self.path.join(RUNS).join(&name);
+            if mark(&to).is_some_and(|mark| is_its(&mark)) {
+                continue;
+            }
+            let there = shards.iter().map(|shard| shard.join(RUNS).join(&name));
+            let there: Vec<_> = there.filter_map(|path| Some((mark(&path)?, path))).collect();
+            match there.iter().find(|(mark, _)| is_its(mark)) {
+                Some((_, from)) => copy_run(from, &to)?,
+                None if there.is_empty() => {}
+                None => {
+                    let path = there[0].1.clone();
+                    return Err(StudyError::NotItsRun { path });
+                }
             }
         }
         Ok(())
@@ -172,9 +182,19 @@ pub(crate) fn stage_pictures(
     })
 }
 
+/// Folders of `slipfront paper`.
+pub const PAPER: ProjectKind = ProjectKind {
+    name: "paper",
+    table: "paper",
+    file: "report.html",
+    journal: RunJournal::FILE,
+    given: &[],
+    found: &[],
+};
+
 /// Whether the folder is one of `slipfront paper`, which has records but no study file.
 pub fn is_of_figures(folder: &Path) -> bool {
-    folder.join(FIGURE_CACHE).is_dir() && !is_study(folder)
+    (folder.join(FIGURE_CACHE).is_dir() || PAPER.has_results_in(folder)) && !is_study(folder)
 }
 
 /// Whether the folder is the results folder of a study.

@@ -126,6 +126,6 @@ impl PicturesOf<'_> {
         })?;
         let mut batch = again.files.begin();
         stage_pictures(&plan, &results, &mut batch, stop)?;
-        Ok(batch.place(Others::Go)?)
+        Ok(batch.place(Others::Go, Vec::new())?)
     }
 }

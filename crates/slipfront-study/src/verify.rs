@@ -2,7 +2,7 @@
 //! pictures that follow from its recorded runs; compares the kept run folders with their manifests. Other
 //! folders are verified by their kind.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,14 +16,15 @@ use slipfront_run::verify::{Verdict, VerifyError, first_line, inspect, verify_ru
 use crate::converge;
 use crate::error::StudyError;
 use crate::execute::collect;
-use crate::folder::{StudyFolder, is_of_figures, stage, study_of};
-
-use crate::plan::Plan;
+use crate::finished_run::{FinishedRun, mark_of};
+use crate::folder::{PAPER, StudyFolder, is_of_figures, stage, study_of};
+use crate::plan::{Plan, folder_of_run};
 use crate::project_folder::verify::{differences_from, verify_project};
-use crate::project_folder::{Derivation, Extent, Others, VerifyStudyError, verify_checksums};
+use crate::project_folder::{
+    Derivation, Extent, Journal, Others, VerifyStudyError, verify_checksums, verify_complete,
+};
 use crate::run_journal::RunJournal;
 use crate::study_file::{RetainRuns, STUDIES};
-use crate::study_results::StudyResults;
 
 /// Whether a study has been run in the folder.
 pub fn has_records(folder: &Path) -> bool {
@@ -40,12 +41,12 @@ pub fn verify(
     extent: Extent,
     stop: &AtomicBool,
 ) -> Result<Verdict, VerifyStudyError> {
-    let verdict = if has_records(folder) {
+    let verdict = if STUDIES.has_results_in(folder) {
         verify_study(folder, extent, stop)?
-    } else if let Some(derivation) = others.iter().find(|other| other.kind.is_in(folder)) {
+    } else if let Some(derivation) = others.iter().find(|other| other.kind.has_results_in(folder)) {
         verify_project(folder, derivation, extent, stop)?
     } else if is_of_figures(folder) {
-        let (verdict, _) = verify_checksums(folder, &[RunJournal::FILE, FIGURE_CACHE], stop)?;
+        let verdict = verify_complete(folder, &PAPER, &[FIGURE_CACHE], stop)?;
         Verdict {
             not_derived: Some(format!(
                 "the figures in {} were not drawn again: `slipfront verify` draws them",
@@ -65,27 +66,21 @@ pub fn verify(
 /// Compares a study with its list, makes its tables and pictures again from its records, and compares its run
 /// folders with their manifests.
 fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[RunJournal::FILE, RUNS], stop)?;
-    let mut derived = None;
+    let (mut verdict, is_complete) = verify_checksums(folder, &STUDIES, &[RUNS], stop)?;
     if extent == Extent::Derived && verdict.differences.is_empty() {
-        derived = derive_study(folder, &mut verdict, stop)?;
+        derive_study(folder, &mut verdict, stop)?;
     }
     if verdict.differences.is_empty() && !is_complete {
         let (what, path) = ("study", folder.to_owned());
         return Err(VerifyStudyError::UnfinishedSearch { what, path });
     }
-    let kept = verify_kept(folder, derived.as_ref(), &mut verdict, stop)?;
+    let kept = verify_kept(folder, &mut verdict, stop)?;
     verdict.what += &format!(", {} as they were written", count(kept, "run folder"));
     Ok(verdict)
 }
 
-/// Makes tables and pictures of a study again from its records, and compares the folder with them. Returns
-/// the plan and the results of its runs, unless damaged lines have lost them.
-fn derive_study(
-    folder: &Path,
-    verdict: &mut Verdict,
-    stop: &AtomicBool,
-) -> Result<Option<(Plan, StudyResults)>, VerifyStudyError> {
+/// Makes tables and pictures of a study again from its records, and compares the folder with them.
+fn derive_study(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), VerifyStudyError> {
     let made = study_of(folder).and_then(|file| Ok((Plan::new(&file, None)?, file)));
     let (plan, file) = match made {
         Ok(made) => made,
@@ -93,7 +88,7 @@ fn derive_study(
             let (path, line) = (folder.join("study.toml"), first_line(&error));
             let difference = format!("{} is not a valid study for this version: {line}", path.display());
             verdict.differences.push(difference);
-            return Ok(None);
+            return Ok(());
         }
     };
     plan.check_memory(0)?;
@@ -112,7 +107,7 @@ fn derive_study(
         Err(StudyError::Missing { .. }) => {
             let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
             verdict.differences.push(damage);
-            return Ok(None);
+            return Ok(());
         }
         Err(error) => return Err(error.into()),
     };
@@ -121,7 +116,7 @@ fn derive_study(
     if converge::is_written(folder, &plan.axes) {
         converge::stage(&plan, &results, &mut batch)?;
     }
-    batch.place(Others::Go)?;
+    batch.place(Others::Go, Vec::new())?;
     let how = "follow from the records";
     verdict.differences = differences_from(temporary.path(), folder, how, stop)?;
     if damaged > 0 {
@@ -135,14 +130,13 @@ fn derive_study(
         "tables and pictures as its {} give them",
         count(again.records.len(), "recorded run")
     );
-    Ok(Some((plan, results)))
+    Ok(())
 }
 
-/// Verifies the run folders that a study has kept, and looks for those that it lacks if its plan and results
-/// are known; returns their number.
-fn verify_kept(
+/// Compares the run folders that a study has kept with the lines of its journal, and looks for those that it
+/// lacks; returns their number.
+pub(crate) fn verify_kept(
     folder: &Path,
-    derived: Option<&(Plan, StudyResults)>,
     verdict: &mut Verdict,
     stop: &AtomicBool,
 ) -> Result<usize, VerifyStudyError> {
@@ -153,37 +147,52 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error).into()),
     };
-    // For a failed run, only the case is kept.
-    let done = derived.map(|(plan, results)| {
-        let done = results.runs.iter().filter(|(_, result)| result.is_ok());
-        done.map(|(run, _)| plan.folder_name(*run)).collect()
-    });
-    let done: HashSet<String> = done.unwrap_or_default();
-    let (mut kept, mut missing) = (0, done.clone());
+    // Differences of the journal itself are told already.
+    let (lines, _) = Journal::read::<FinishedRun>(folder, RunJournal::FILE).unwrap_or_default();
+    let mut recorded: HashMap<String, (bool, Option<String>)> = lines
+        .into_iter()
+        .filter_map(|run| Some((folder_of_run(&run.id)?, (run.outcome.result().is_ok(), run.kept))))
+        .collect();
+    let mut kept = 0;
     for entry in entries.into_iter().flatten() {
-        let entry = entry.map_err(&unreadable)?;
-        let is_done = missing.remove(&*entry.file_name().to_string_lossy());
-        if !is_done && !entry.path().is_dir() {
+        let path = entry.map_err(&unreadable)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let Some((is_done, mark)) = recorded.remove(&*name) else {
+            verdict
+                .notes
+                .push(format!("{} is of no run in the journal", path.display()));
             continue;
-        }
-        match inspect(&entry.path()).and_then(|run| verify_run(&run, stop)) {
-            Ok(of_run) => {
-                verdict.differences.extend(of_run.differences);
-                verdict.notes.extend(of_run.notes);
-                kept += 1;
+        };
+        if is_done {
+            match inspect(&path).and_then(|run| verify_run(&run, stop)) {
+                Ok(of_run) => {
+                    verdict.differences.extend(of_run.differences);
+                    verdict.notes.extend(of_run.notes);
+                    kept += 1;
+                }
+                Err(error) => {
+                    verdict.differences.push(error.to_string());
+                    continue;
+                }
             }
-            Err(error) if is_done => verdict.differences.push(error.to_string()),
-            Err(_) => {}
+        }
+        if mark.is_some() && mark_of(&path, is_done) != mark {
+            verdict
+                .differences
+                .push(StudyError::NotItsRun { path }.to_string());
         }
     }
-    // They may have been removed on purpose, or the runs are older than the setting `keep`.
-    let keeps_all = derived.is_some_and(|(plan, _)| plan.settings.keep == RetainRuns::All);
-    if keeps_all && !missing.is_empty() {
-        verdict.notes.push(format!(
-            "{} of {} not in {}, where the study keeps all",
-            missing.len(),
-            are(done.len(), "run folder"),
-            runs.display()
+    let keep = study_of(folder).map_or(RetainRuns::All, |study| study.settings.keep);
+    let is_missing = |(is_done, mark): &&(bool, Option<String>)| {
+        mark.is_some() && (keep == RetainRuns::All || (keep == RetainRuns::Failed && !is_done))
+    };
+    let missing = recorded.values().filter(is_missing).count();
+    if missing > 0 {
+        verdict.differences.push(format!(
+            "{} missing in {}: put back what was removed, or set `study.keep = \"none\"` in {} and run it again",
+            are(missing, "run folder"),
+            runs.display(),
+            folder.join(STUDIES.file).display()
         ));
     }
     Ok(kept)

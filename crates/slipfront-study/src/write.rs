@@ -26,5 +26,5 @@ pub fn write(
     if converge::is_written(folder.path(), &plan.axes) && results.expect_no_failures(plan).is_ok() {
         converge::stage(plan, results, &mut batch)?;
     }
-    batch.place(Others::Go)
+    batch.place(Others::Go, vec![folder.records.listed()?])
 }

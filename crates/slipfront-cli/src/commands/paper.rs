@@ -77,7 +77,8 @@ impl PaperCommand {
                 Failure::running(error)
             }
         })?;
-        slipfront_paper::write(&paper, &files).map_err(|error| match error {
+        let sources = slipfront_paper::sources(&self.out, &records).map_err(Failure::running)?;
+        slipfront_paper::write(&paper, &files, sources).map_err(|error| match error {
             PaperError::Study(error) => Failure::of_results(&signals, error),
             error => Failure::running(error),
         })?;

@@ -34,7 +34,7 @@ pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
     let bytes = workspace.read(&format!("{folder}/{name}"));
     let mut batch = ResultFiles::new(&workspace.path(folder), "study", true).begin();
     batch.write(name, |to| to.write_all(&bytes)).unwrap();
-    batch.place(Others::Stay).unwrap();
+    batch.place(Others::Stay, Vec::new()).unwrap();
 }
 
 impl Workspace {

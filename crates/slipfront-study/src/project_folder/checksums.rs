@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use slipfront_base::disk::{TEXT_MAX_BYTES, found_at, json, read_limited, write_atomic};
 use slipfront_base::text::single_line;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::{ManifestFile, seal};
+use slipfront_run::manifest::{ManifestFile, is_sealed, seal};
 
 use crate::error::StudyError;
 
@@ -28,6 +28,9 @@ pub struct Checksums {
     pub files: Vec<ManifestFile>,
     /// Whether the results are complete, as opposed to those of unfinished work.
     pub is_complete: bool,
+    /// Files that complete results follow from, such as the journal of runs, as they were then.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<ManifestFile>,
     /// Files that were still to be replaced or removed when the list was written.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub replaced: Vec<ManifestFile>,
@@ -51,7 +54,7 @@ impl Checksums {
         };
         let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| damaged(&error.to_string()))?;
         let list: Self = serde_json::from_slice(&bytes).map_err(|error| damaged(&error.to_string()))?;
-        if seal(&bytes).as_ref() != Some(&list.seal) {
+        if !is_sealed(&bytes) {
             return Err(damaged("its seal is wrong: it was changed afterwards"));
         }
         // A list from elsewhere must not lead to files outside of its folder.
@@ -63,6 +66,7 @@ impl Checksums {
             .files
             .iter()
             .chain(&list.replaced)
+            .chain(&list.sources)
             .find(|file| !is_inside(file))
         {
             Some(file) => Err(damaged(&format!(
@@ -71,6 +75,16 @@ impl Checksums {
             ))),
             None => Ok(Some(list)),
         }
+    }
+
+    /// The content of a folder, such as `study`, by its list, which may be damaged; none if it has no list.
+    pub(crate) fn content(folder: &Path) -> Option<String> {
+        #[derive(Deserialize)]
+        struct Content {
+            of: String,
+        }
+        let bytes = read_limited(&folder.join(CHECKSUMS), TEXT_MAX_BYTES).ok()?;
+        Some(serde_json::from_slice::<Content>(&bytes).ok()?.of)
     }
 
     pub(super) fn write(mut self, folder: &Path) -> Result<(), StudyError> {

@@ -282,7 +282,7 @@ impl Batch {
     /// # Errors
     /// As for [`place`](Self::place).
     pub fn place_given(mut self, others: Others) -> Result<ResultFiles, StudyError> {
-        self.put(others, false)?;
+        self.put(others, None)?;
         Ok(ResultFiles {
             given: self.placed,
             ..self.files
@@ -294,20 +294,20 @@ impl Batch {
     /// # Errors
     /// As for [`place`](Self::place).
     pub fn place_so_far(&mut self, others: Others) -> Result<(), StudyError> {
-        self.put(others, false)
+        self.put(others, None)
     }
 
-    /// Gives all files their names, lists them with their checksums, and marks the results as complete.
-    /// Existing files with the same contents are left unchanged.
+    /// Gives all files their names, lists them with their checksums, and marks the results as complete, with
+    /// the `sources` that they follow from. Existing files with the same contents are left unchanged.
     ///
     /// # Errors
     /// When an existing file with one of these names, or a file of an earlier batch, was edited or is
     /// foreign, unless such files may be replaced; then nothing is changed. When the system refuses to write.
-    pub fn place(mut self, others: Others) -> Result<(), StudyError> {
-        self.put(others, true)
+    pub fn place(mut self, others: Others, sources: Vec<ManifestFile>) -> Result<(), StudyError> {
+        self.put(others, Some(sources))
     }
 
-    fn put(&mut self, others: Others, completes: bool) -> Result<(), StudyError> {
+    fn put(&mut self, others: Others, sources_of_all: Option<Vec<ManifestFile>>) -> Result<(), StudyError> {
         let Self {
             files,
             staged,
@@ -368,13 +368,19 @@ impl Batch {
                 replaced.push(file.clone());
             }
         }
+        let (is_complete, sources) = match sources_of_all {
+            Some(sources) => (true, sources),
+            None if before.is_complete && !changes => (true, before.sources.clone()),
+            None => (false, Vec::new()),
+        };
         let mut list = Checksums {
             of: files.of.to_owned(),
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),
             files: listed,
-            is_complete: completes || (before.is_complete && !changes),
+            is_complete,
+            sources,
             replaced,
             seal: String::new(),
         };
@@ -428,7 +434,7 @@ mod tests {
     }
 
     fn place(files: &ResultFiles, contents: &[(&str, &str)]) -> Result<(), StudyError> {
-        batch_of(files, contents).place(Others::Go)
+        batch_of(files, contents).place(Others::Go, Vec::new())
     }
 
     fn read(folder: &Path, name: &str) -> Option<String> {

@@ -4,11 +4,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, found_at, open_limited};
 use slipfront_base::number_format::{are, count};
+use slipfront_base::text::single_line;
 use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_plot::PictureLook;
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::ManifestFile;
 use slipfront_run::program;
 use slipfront_run::verify::{Verdict, VerifyError, description_in, differences, unlisted_files};
 use thiserror::Error;
@@ -73,21 +75,30 @@ pub struct Derivation {
 /// When the system cannot list the folder.
 pub fn verify_checksums(
     folder: &Path,
+    kind: &ProjectKind,
     others: &[&str],
     stop: &AtomicBool,
 ) -> Result<(Verdict, bool), StudyError> {
     let mut verdict = Verdict::default();
+    for (name, remedy) in [
+        (CHECKSUMS, "with this folder as --out"),
+        (kind.file, "with this folder as --out"),
+        (kind.journal, "with another --out, which repeats its runs"),
+    ] {
+        let path = folder.join(name);
+        if found_at(&path).map_err(FolderError::read(&path))?.is_none() {
+            verdict.differences.push(single_line(&format!(
+                "{} is missing in the folder of a {}: put it back, or run `slipfront {}` again {remedy}",
+                path.display(),
+                kind.name,
+                kind.table
+            )));
+        }
+    }
     let path = folder.join(CHECKSUMS);
     let list = match Checksums::read(folder) {
         Ok(Some(list)) => list,
-        Ok(None) => {
-            let sentence = format!(
-                "{} is missing: run the command of this folder again to write it",
-                path.display()
-            );
-            verdict.differences.push(sentence);
-            return Ok((verdict, false));
-        }
+        Ok(None) => return Ok((verdict, false)),
         Err(StudyError::Checksums { why, .. }) => {
             verdict
                 .differences
@@ -96,7 +107,21 @@ pub fn verify_checksums(
         }
         Err(error) => return Err(error),
     };
-    verdict.differences = differences(&list.files, folder, "were written", stop);
+    // A journal only grows: with more lines than the results follow from, these are no longer complete.
+    let has_grown = |file: &&ManifestFile| {
+        let length = std::fs::metadata(folder.join(&file.name)).map_or(0, |found| found.len());
+        file.name == kind.journal
+            && length > file.bytes
+            && ManifestFile::of_beginning(folder, &file.name, file.bytes, stop)
+                .is_ok_and(|found| found == **file)
+    };
+    let (grown, sources): (Vec<_>, Vec<_>) = list.sources.iter().partition(has_grown);
+    let is_key = |file: &&ManifestFile| file.name == kind.file || file.name == kind.journal;
+    let is_told = |file: &&ManifestFile| is_key(file) && !folder.join(&file.name).exists();
+    let compared = list.files.iter().chain(sources).filter(|file| !is_told(file));
+    verdict
+        .differences
+        .extend(differences(compared, folder, "were written", stop));
     if !list.replaced.is_empty() {
         let sentence = format!(
             "{}: the results were not completely written; run the command of this folder again to complete them",
@@ -113,12 +138,32 @@ pub fn verify_checksums(
     let known = list.files.iter().map(|file| file.name.as_str());
     let (described, outdated) = description_in(folder, &list.seal);
     let known = known
-        .chain([CHECKSUMS])
+        .chain([CHECKSUMS, kind.journal])
         .chain(described)
         .chain(others.iter().copied());
     verdict.notes = unlisted_files(folder, &known.collect(), is_left);
     verdict.notes.extend(outdated);
-    Ok((verdict, list.is_complete))
+    Ok((verdict, list.is_complete && grown.is_empty()))
+}
+
+/// Compares the files of a folder with its list, as [`verify_checksums`] does, and refuses unfinished
+/// results.
+///
+/// # Errors
+/// When all files are as they were written, but the project is not finished; when the system cannot list the
+/// folder.
+pub fn verify_complete(
+    folder: &Path,
+    kind: &ProjectKind,
+    others: &[&str],
+    stop: &AtomicBool,
+) -> Result<Verdict, VerifyStudyError> {
+    let (verdict, is_complete) = verify_checksums(folder, kind, others, stop)?;
+    if verdict.differences.is_empty() && !is_complete {
+        let (what, path) = (kind.name, folder.to_owned());
+        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+    }
+    Ok(verdict)
 }
 
 /// Compares the folder of a project with its list, then with the results that follow from the runs in its
@@ -129,15 +174,8 @@ pub(crate) fn verify_project(
     extent: Extent,
     stop: &AtomicBool,
 ) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[derivation.kind.journal], stop)?;
-    if !verdict.differences.is_empty() {
-        return Ok(verdict);
-    }
-    if !is_complete {
-        let (what, path) = (derivation.kind.name, folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
-    }
-    if extent == Extent::Derived {
+    let mut verdict = verify_complete(folder, derivation.kind, &[], stop)?;
+    if extent == Extent::Derived && verdict.differences.is_empty() {
         derive_from_runs(folder, derivation, &mut verdict, stop)?;
     }
     Ok(verdict)

@@ -56,11 +56,9 @@ impl Merge {
             ));
         }
         let results = collect(&plan, &folder.records).map_err(Failure::running)?;
-        for shard in &self.shards {
-            folder
-                .take_kept(&plan, &results, shard, &signals.stop)
-                .map_err(|error| Failure::of_results(&signals, error))?;
-        }
+        folder
+            .take_kept(&plan, &results, &self.shards, &signals.stop)
+            .map_err(|error| Failure::of_results(&signals, error))?;
         let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
         finish(&plan, &results, &folder, shown, &signals)?;
         results.expect_values(&plan).map_err(Failure::running)
