@@ -441,6 +441,13 @@ impl<'a> WrittenQuantity<'a> {
         let power = self.unit.power_of_ten - other.unit.power_of_ten;
         self.number.shifted(power).filter(|_| is_alike)
     }
+
+    /// The quantity in kilograms, metres and seconds, as a text that is equal for equal quantities.
+    pub fn in_base_units(&self) -> String {
+        // Neither too large a number nor one that vanishes has a value.
+        let value = self.number.shifted(self.unit.power_of_ten).unwrap_or(f64::NAN);
+        format!("{} {}", value + 0.0, self.unit.dimension)
+    }
 }
 
 /// A decimal number at the beginning of a text, not yet rounded.
