@@ -148,6 +148,15 @@ pub enum StudyError {
     NotItsRun { path: PathBuf },
     #[error("{other} and {first} belong to different studies: merge only shards of the same study")]
     Foreign { first: PathBuf, other: PathBuf },
+    #[error(
+        "{path} holds part {there} of this study, not part {part}: choose another folder with --out; with `--shard slurm`, submit \
+        the whole array again, or write the part in figures, such as --shard {there}"
+    )]
+    OtherPart {
+        path: PathBuf,
+        there: String,
+        part: String,
+    },
     #[error("invalid shard `{given}`: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard { given: String, why: String },
     #[error("cannot draw {name}: {source}")]

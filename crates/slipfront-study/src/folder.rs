@@ -7,8 +7,9 @@ use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
 use crate::finished_run::mark_of;
 use crate::plan::{Plan, RunKey};
-use crate::project_folder::{Batch, Others, ProjectKind, ResultFiles};
+use crate::project_folder::{Batch, Checksums, Others, ProjectKind, ResultFiles};
 use crate::run_journal::RunJournal;
+use crate::shard::Shard;
 use crate::study_file::{STUDIES, StudyFile};
 use crate::study_results::StudyResults;
 use crate::{pictures, tables};
@@ -37,13 +38,18 @@ pub struct StudyFolder {
 
 impl StudyFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process uses.
-    /// If the study has changed since then, its tables and pictures are removed: they can be made again from
+    /// It is for the points of a `part`, or for all. If the study has changed since then, its tables and pictures are removed: they can be made again from
     /// the records.
     ///
     /// # Errors
-    /// When the folder contains other things, or results that were edited afterwards, unless `force` is set;
-    /// when another process uses it, or it cannot be written to.
-    pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
+    /// When the folder contains other things or another part of the study, or results that were edited
+    /// afterwards, unless `force` is set; when another process uses it, or it cannot be written to.
+    pub fn open(
+        path: &Path,
+        study: &StudyFile,
+        part: Option<Shard>,
+        force: bool,
+    ) -> Result<Self, StudyError> {
         STUDIES.is_used(path)?;
         if is_of_figures(path) {
             return Err(STUDIES.other_things(path));
@@ -56,6 +62,18 @@ impl StudyFolder {
         };
         let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
         let changed = given.differs_in(&STUDIES, path);
+        if let (
+            Some(part),
+            Ok(Some(Checksums {
+                part: Some(there), ..
+            })),
+            false,
+        ) = (part, Checksums::read(path), changed)
+            && part.to_string() != there
+        {
+            let (path, part) = (path.to_owned(), part.to_string());
+            return Err(StudyError::OtherPart { path, there, part });
+        }
         // A user may change the study in the folder, and run that.
         let is_this = |before: &Vec<u8>| {
             let there = parse(&String::from_utf8_lossy(before)).ok();
@@ -65,6 +83,7 @@ impl StudyFolder {
         if before.is_some_and(|before| is_this(&before)) {
             batch.may_replace(STUDY);
         }
+        batch.is_of_part(part);
         let files = batch.place_given(if changed { Others::Go } else { Others::Stay })?;
         Ok(Self {
             path: path.to_owned(),
@@ -245,7 +264,7 @@ mod tests {
         let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
         let plan = Plan::new(&file, None).unwrap();
         let run = plan.runs(1).next().unwrap();
-        let out = StudyFolder::open(&folder.path().join("out"), &file, false).unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file, None, false).unwrap();
         std::fs::write(&original, table(0.8)).unwrap();
         let said = plan.case(run, &mut |_| true).unwrap_err().to_string();
         assert!(said.contains("was changed after the study began"), "{said}");

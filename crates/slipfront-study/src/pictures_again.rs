@@ -113,7 +113,7 @@ impl PicturesOf<'_> {
         let file = study_of(self.folder)?;
         let plan = Plan::new(&file, None)?;
         plan.check_memory(0)?;
-        let mut again = StudyFolder::open(other, &file, false)?;
+        let mut again = StudyFolder::open(other, &file, None, false)?;
         again.files = again.files.with_look(look.clone());
         again.records.merge(self.folder)?;
         let results = collect(&plan, &again.records).map_err(|error| match error {

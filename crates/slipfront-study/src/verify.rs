@@ -93,7 +93,7 @@ fn derive_study(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Resu
     };
     plan.check_memory(0)?;
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    let mut again = StudyFolder::open(temporary.path(), &file, false)?;
+    let mut again = StudyFolder::open(temporary.path(), &file, None, false)?;
     again.records.merge(folder)?;
     let records = folder.join(RunJournal::FILE);
     let (damaged, records) = (again.records.damaged, records.display());

@@ -94,7 +94,7 @@ impl ConvergeCommand {
         limits.check(&plan, threads).map_err(Failure::input)?;
         let device = self.device.open(None, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let folder = StudyFolder::open(&out, &file, None, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;

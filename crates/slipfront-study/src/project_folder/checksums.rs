@@ -18,6 +18,9 @@ pub const CHECKSUMS: &str = "checksums.json";
 pub struct Checksums {
     /// Content of the folder, such as `study`.
     pub of: String,
+    /// Part of the points of a study that the folder is for, such as `2/8`; none for all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
     /// Version of slipfront.
     pub version: String,
     /// The git commit from which the program was built; null outside of git.

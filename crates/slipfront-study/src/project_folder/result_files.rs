@@ -22,6 +22,7 @@ use tempfile::TempPath;
 use super::checksums::Checksums;
 use super::input_copies::Copy;
 use crate::error::StudyError;
+use crate::shard::Shard;
 
 /// Result files of a folder that only one process uses.
 #[derive(Clone, Debug)]
@@ -29,6 +30,8 @@ pub struct ResultFiles {
     folder: PathBuf,
     /// Content of the folder, such as `study`.
     of: &'static str,
+    /// Part of the points of a study that the folder is for.
+    part: Option<String>,
     /// Whether edited and foreign files are replaced.
     force: bool,
     /// Inputs of the results, which belong to every batch.
@@ -46,6 +49,7 @@ impl ResultFiles {
         Self {
             folder: folder.to_owned(),
             of,
+            part: None,
             force,
             given: Vec::new(),
             kept: Vec::new(),
@@ -242,6 +246,11 @@ impl Batch {
         Ok(())
     }
 
+    /// Marks the folder as that of a part of a study.
+    pub(crate) fn is_of_part(&mut self, part: Option<Shard>) {
+        self.files.part = part.map(|part| part.to_string());
+    }
+
     /// Lets a file be replaced although it was edited.
     pub fn may_replace(&mut self, name: &str) {
         self.replaceable = Some(name.to_owned());
@@ -375,6 +384,7 @@ impl Batch {
         };
         let mut list = Checksums {
             of: files.of.to_owned(),
+            part: files.part.clone(),
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),

@@ -42,7 +42,8 @@ impl Merge {
         plan.check_memory(0).map_err(Failure::input)?;
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let mut folder = StudyFolder::open(&self.out, &study, self.force).map_err(Failure::of_folder)?;
+        let mut folder =
+            StudyFolder::open(&self.out, &study, None, self.force).map_err(Failure::of_folder)?;
         let mut taken = 0;
         for shard in &self.shards {
             Failure::if_stopped(&signals)?;

@@ -97,7 +97,7 @@ impl StudyRun {
         refuse_to_replace(&path, file.has_base_file() || is_changed_unsaid, &out)?;
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let folder = StudyFolder::open(&out, &file, self.shard, self.force).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;
