@@ -4,14 +4,20 @@
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Component, Path};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use slipfront_base::disk::read_limited;
 use slipfront_base::number_format::{are, count};
-use slipfront_base::unfinished::TemporaryFolder;
+use slipfront_base::text::single_line;
+use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_run::export::folders_in;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::names::{FIGURE_CACHE, RUNS};
-use slipfront_run::verify::{Verdict, VerifyError, first_line, inspect, verify_run};
+use slipfront_run::manifest::Manifest;
+use slipfront_run::names::{FIGURE_CACHE, MANIFEST, RO_CRATE, RUNS};
+use slipfront_run::verify::{
+    DESCRIPTION_MAX_BYTES, Verdict, VerifyError, first_line, inspect, unlisted_files, verify_run,
+};
 
 use crate::converge;
 use crate::error::StudyError;
@@ -21,7 +27,7 @@ use crate::folder::{PAPER, StudyFolder, is_of_figures, stage, study_of};
 use crate::plan::{Plan, folder_of_run};
 use crate::project_folder::verify::{differences_from, verify_project};
 use crate::project_folder::{
-    Derivation, Extent, Journal, Others, VerifyStudyError, verify_checksums, verify_complete,
+    Checksums, Derivation, Extent, Journal, Others, VerifyStudyError, verify_checksums, verify_complete,
 };
 use crate::run_journal::RunJournal;
 use crate::study_file::{RetainRuns, STUDIES};
@@ -54,12 +60,66 @@ pub fn verify(
             )),
             ..verdict
         }
+    } else if !folder.join(MANIFEST).exists() && folder.join(RO_CRATE).is_file() {
+        verify_crate(folder, others, extent, stop)?
     } else {
         verify_run(&inspect(folder)?, stop)?
     };
     if stop.load(Ordering::Relaxed) {
         return Err(StudyError::Interrupted.into());
     }
+    Ok(verdict)
+}
+
+/// Verifies every folder of results in a crate that `slipfront export` has made.
+fn verify_crate(
+    folder: &Path,
+    others: &[Derivation],
+    extent: Extent,
+    stop: &AtomicBool,
+) -> Result<Verdict, VerifyStudyError> {
+    let path = folder.join(RO_CRATE);
+    let mut verdict = Verdict::default();
+    let description = read_limited(&path, DESCRIPTION_MAX_BYTES).map_err(FolderError::read(&path))?;
+    let names = folders_in(&description).unwrap_or_default();
+    if names.is_empty() {
+        let damage = format!("{} is damaged: it names no folder of results", path.display());
+        verdict.differences.push(damage);
+    }
+    for name in &names {
+        let part = folder.join(name);
+        let is_inside = Path::new(name)
+            .components()
+            .all(|part| matches!(part, Component::Normal(_)));
+        if !is_inside || !part.is_dir() {
+            verdict
+                .differences
+                .push(single_line(&format!("{} is missing", part.display())));
+            continue;
+        }
+        let of_part = verify(&part, others, extent, stop)?;
+        verdict.differences.extend(of_part.differences);
+        verdict.notes.extend(of_part.notes);
+        let seal = Checksums::read(&part).ok().flatten().map(|list| list.seal);
+        let seal = seal.or_else(|| Some(Manifest::read(&part).ok()?.checksum));
+        let is_described = |seal: String| {
+            description
+                .windows(seal.len())
+                .any(|text| text == seal.as_bytes())
+        };
+        if !seal.is_none_or(is_described) {
+            verdict.differences.push(single_line(&format!(
+                "{} has other results than {} describes: it was replaced; export the original again",
+                part.display(),
+                path.display()
+            )));
+        }
+    }
+    let known = names.iter().map(String::as_str).chain([RO_CRATE]).collect();
+    verdict
+        .notes
+        .extend(unlisted_files(folder, &known, is_unfinished));
+    verdict.what = format!("a crate of {}, unchanged", count(names.len(), "folder"));
     Ok(verdict)
 }
 
