@@ -15,6 +15,7 @@ mod commands;
 mod device;
 mod divided_override;
 mod failure;
+mod force;
 mod help;
 mod make_case;
 mod print;

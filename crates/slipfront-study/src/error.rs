@@ -86,7 +86,7 @@ pub enum StudyError {
     Changed { what: &'static str, path: PathBuf },
     #[error(
         "the folder {path} of a {of} contains files that were edited, or were not written by slipfront: {}; move them away, \
-        choose another folder with --out, or replace them with --force",
+        choose another folder with --out, or replace those that were edited with --force",
         single_line(&names.join(", "))
     )]
     Edited {

@@ -60,11 +60,6 @@ impl Checksums {
         if !is_sealed(&bytes) {
             return Err(damaged("its seal is wrong: it was changed afterwards"));
         }
-        // A list from elsewhere must not lead to files outside of its folder.
-        let is_inside = |file: &ManifestFile| {
-            let mut parts = Path::new(&file.name).components();
-            parts.all(|part| matches!(part, Component::Normal(_)))
-        };
         match list
             .files
             .iter()
@@ -80,14 +75,13 @@ impl Checksums {
         }
     }
 
-    /// The content of a folder, such as `study`, by its list, which may be damaged; none if it has no list.
-    pub(crate) fn content(folder: &Path) -> Option<String> {
-        #[derive(Deserialize)]
-        struct Content {
-            of: String,
-        }
+    /// The list of a folder even if it was changed since it was written; none if it is no list.
+    pub(super) fn unsealed(folder: &Path) -> Option<Self> {
         let bytes = read_limited(&folder.join(CHECKSUMS), TEXT_MAX_BYTES).ok()?;
-        Some(serde_json::from_slice::<Content>(&bytes).ok()?.of)
+        let mut list: Self = serde_json::from_slice(&bytes).ok()?;
+        list.files.retain(is_inside);
+        list.replaced.retain(is_inside);
+        Some(list)
     }
 
     pub(super) fn write(mut self, folder: &Path) -> Result<(), StudyError> {
@@ -96,4 +90,10 @@ impl Checksums {
         let path = folder.join(CHECKSUMS);
         write_atomic(&path, &json(&self)).map_err(|source| StudyError::Write { path, source })
     }
+}
+
+/// Whether a file is in the folder of its list: a list from elsewhere must not lead to other files.
+fn is_inside(file: &ManifestFile) -> bool {
+    let mut parts = Path::new(&file.name).components();
+    parts.all(|part| matches!(part, Component::Normal(_)))
 }

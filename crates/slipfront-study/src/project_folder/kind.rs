@@ -36,7 +36,7 @@ impl ProjectKind {
 
     /// Whether the folder holds results of this kind, even if its file or its journal is gone.
     pub fn has_results_in(&self, folder: &Path) -> bool {
-        self.is_in(folder) || Checksums::content(folder).is_some_and(|of| of == self.name)
+        self.is_in(folder) || Checksums::unsealed(folder).is_some_and(|list| list.of == self.name)
     }
 
     /// Loads a file of this kind by `parse`, which receives its text, its path, the name of the project, and

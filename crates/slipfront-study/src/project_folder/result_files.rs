@@ -32,7 +32,7 @@ pub struct ResultFiles {
     of: &'static str,
     /// Part of the points of a study that the folder is for.
     part: Option<String>,
-    /// Whether edited and foreign files are replaced.
+    /// Whether edited files are replaced.
     force: bool,
     /// Inputs of the results, which belong to every batch.
     given: Vec<ManifestFile>,
@@ -44,7 +44,7 @@ pub struct ResultFiles {
 
 impl ResultFiles {
     /// The result files of a folder. `of` names the content, such as `study`; `force` allows the replacement
-    /// of edited and foreign files.
+    /// of edited files, but not of files that slipfront has not written.
     pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -76,7 +76,7 @@ impl ResultFiles {
                 edited.push(name.clone());
             }
         }
-        self.refuse(edited)
+        self.refuse(edited, &list)
     }
 
     /// A new batch of files to write.
@@ -89,11 +89,13 @@ impl ResultFiles {
         }
     }
 
-    /// The list in the folder; an empty one if there is none, or if it cannot be used and edited files may be
-    /// replaced.
+    /// The list in the folder; an empty one if there is none. If edited files may be replaced, the list itself
+    /// may have been edited.
     fn list(&self) -> Result<Checksums, StudyError> {
         match Checksums::read(&self.folder) {
-            Err(StudyError::Checksums { .. }) if self.force => Ok(Checksums::default()),
+            Err(StudyError::Checksums { .. }) if self.force => {
+                Ok(Checksums::unsealed(&self.folder).unwrap_or_default())
+            }
             list => Ok(list?.unwrap_or_default()),
         }
     }
@@ -151,8 +153,16 @@ impl ResultFiles {
         sync(changed)
     }
 
-    fn refuse(&self, names: Vec<String>) -> Result<(), StudyError> {
-        if names.is_empty() || self.force {
+    /// Refuses files that are in the way, except those of the list if edited files may be replaced.
+    fn refuse(&self, mut names: Vec<String>, list: &Checksums) -> Result<(), StudyError> {
+        let is_listed = |name: &String| {
+            list.files
+                .iter()
+                .chain(&list.replaced)
+                .any(|file| file.name == *name)
+        };
+        names.retain(|name| !(self.force && is_listed(name)));
+        if names.is_empty() {
             return Ok(());
         }
         Err(StudyError::Edited {
@@ -359,7 +369,7 @@ impl Batch {
                 listed.push(file.clone());
             }
         }
-        files.refuse(foreign)?;
+        files.refuse(foreign, &before)?;
         listed.sort_by(|a, b| a.name.cmp(&b.name));
         let staged = std::mem::take(staged);
         placed.retain(|placed| staged.iter().all(|(_, file)| file.name != placed.name));
@@ -480,7 +490,7 @@ mod tests {
     }
 
     #[test]
-    fn edited_files_and_files_of_others_are_refused_by_name_and_replaced_on_demand() {
+    fn edited_files_and_files_of_others_are_refused_by_name_and_edited_ones_replaced_on_demand() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let files = ResultFiles::new(path, "design", false);
@@ -499,6 +509,10 @@ mod tests {
         assert_eq!(read(path, "case.toml").unwrap(), "1");
         let forced = ResultFiles::new(path, "design", true);
         forced.expect_unedited().unwrap();
+        let said = place(&forced, &results).unwrap_err().to_string();
+        assert!(said.contains(": design.txt; move them away"), "{said}");
+        assert_eq!(read(path, "design.txt").unwrap(), "notes of mine");
+        std::fs::remove_file(path.join("design.txt")).unwrap();
         place(&forced, &results).unwrap();
         for (name, text) in results {
             assert_eq!(read(path, name).unwrap(), text);
@@ -607,7 +621,11 @@ mod tests {
         let files = ResultFiles::new(path, "study", false);
         place(&files, &[("a.csv", "1")]).unwrap();
         let text = read(path, CHECKSUMS).unwrap();
-        std::fs::write(path.join(CHECKSUMS), text.replace("a.csv", "b.csv")).unwrap();
+        std::fs::write(
+            path.join(CHECKSUMS),
+            text.replace("is_complete\": true", "is_complete\": false"),
+        )
+        .unwrap();
         let said = place(&files, &[("a.csv", "2")]).unwrap_err().to_string();
         assert!(said.contains("checksums.json is damaged"), "{said}");
         assert_eq!(read(path, "a.csv").unwrap(), "1");

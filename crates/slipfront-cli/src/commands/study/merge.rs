@@ -8,6 +8,7 @@ use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, stud
 
 use super::run::{Shown, finish};
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::threads::set_threads;
@@ -21,9 +22,8 @@ pub(crate) struct Merge {
     /// Folder of the merged study
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Do not print tables
     #[arg(short, long)]
     quiet: bool,
@@ -43,7 +43,7 @@ impl Merge {
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut folder =
-            StudyFolder::open(&self.out, &study, None, self.force).map_err(Failure::of_folder)?;
+            StudyFolder::open(&self.out, &study, None, self.force.given).map_err(Failure::of_folder)?;
         let mut taken = 0;
         for shard in &self.shards {
             Failure::if_stopped(&signals)?;
