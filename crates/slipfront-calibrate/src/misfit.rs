@@ -179,8 +179,8 @@ fn distance(row: &[f64], nearest: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// The outer of six runs at 0, 1, ..., 5 is sqrt((1 + 4 + 9 + 16 + 25)/5) from the other five, and so is a
-    /// record at -1 from the nearest five of the six. Squares of small integers and their sums are exact.
+    /// The outer of six runs at 0, 1, ..., 5 is sqrt((1 + 4 + 9 + 16 + 25)/5) from the other five, and so is
+    /// a record at -1 from the nearest five of the six. Squares of small integers and their sums are exact.
     #[test]
     fn a_run_is_not_its_own_neighbour() {
         let runs = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];

@@ -64,8 +64,8 @@ pub struct FinishedRun {
     pub kept: Option<String>,
 }
 
-/// What tells a kept run folder from any other: the seal of the manifest, or of a run that failed a hash of
-/// the case and the files that it reads. None if the folder has no such files, or they are damaged.
+/// Tells a kept run folder from any other: the seal of the manifest, or of a run that failed a hash of the
+/// case and the files that it reads. None if the folder has no such files, or they are damaged.
 pub(crate) fn mark_of(folder: &Path, is_done: bool) -> Option<String> {
     if is_done {
         return Some(Manifest::read(folder).ok()?.checksum);

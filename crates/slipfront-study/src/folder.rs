@@ -38,8 +38,8 @@ pub struct StudyFolder {
 
 impl StudyFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process uses.
-    /// It is for the points of a `part`, or for all. If the study has changed since then, its tables and pictures are removed: they can be made again from
-    /// the records.
+    /// It is for the points of a `part`, or for all. If the study has changed since then, its tables and
+    /// pictures are removed: they can be made again from the records.
     ///
     /// # Errors
     /// When the folder contains other things or another part of the study, or results that were edited
@@ -182,16 +182,6 @@ pub(crate) fn stage(
     if !rows.is_empty() {
         batch.write(anisotropy, |file| Ok(tables::anisotropy(&rows, file)?))?;
     }
-    stage_pictures(plan, results, batch, stop)
-}
-
-/// Writes the pictures of a study to a batch of files, in the look of the batch, until a stop.
-pub(crate) fn stage_pictures(
-    plan: &Plan,
-    results: &StudyResults,
-    batch: &mut Batch,
-    stop: &AtomicBool,
-) -> Result<(), StudyError> {
     let look = batch.look().clone();
     pictures::draw(plan, results, &look, |name, picture| {
         if stop.load(Ordering::Relaxed) {

@@ -108,7 +108,7 @@ impl RunJournal {
     }
 }
 
-/// What is kept of a run in memory, by its identity.
+/// The part of a run that stays in memory, by its identity.
 fn result_of(run: &FinishedRun) -> (String, (RunResult, Option<String>)) {
     (run.id.clone(), (run.outcome.result(), run.kept.clone()))
 }

@@ -1,6 +1,5 @@
-//! Verifies the folder of a study: compares it with the list of its files, and then with the tables and
-//! pictures that follow from its recorded runs; compares the kept run folders with their manifests. Other
-//! folders are verified by their kind.
+//! Verifies a folder by its kind. The run folders that a study has kept are compared with their manifests and
+//! with the lines of the journal that name them.
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
@@ -10,27 +9,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use slipfront_base::disk::read_limited;
 use slipfront_base::number_format::{are, count};
 use slipfront_base::text::single_line;
-use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
+use slipfront_base::unfinished::is_unfinished;
 use slipfront_run::export::folders_in;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::names::{FIGURE_CACHE, MANIFEST, RO_CRATE, RUNS};
-use slipfront_run::verify::{
-    DESCRIPTION_MAX_BYTES, Verdict, VerifyError, first_line, inspect, unlisted_files, verify_run,
-};
+use slipfront_run::verify::{DESCRIPTION_MAX_BYTES, Verdict, inspect, unlisted_files, verify_run};
 
-use crate::converge;
 use crate::error::StudyError;
-use crate::execute::collect;
 use crate::finished_run::{FinishedRun, mark_of};
-use crate::folder::{PAPER, StudyFolder, is_of_figures, stage, study_of};
-use crate::plan::{Plan, folder_of_run};
-use crate::project_folder::verify::{differences_from, verify_project};
-use crate::project_folder::{
-    Checksums, Derivation, Extent, Journal, Others, VerifyStudyError, verify_checksums, verify_complete,
-};
+use crate::folder::{PAPER, is_of_figures, study_of};
+use crate::plan::folder_of_run;
+use crate::project_folder::verify::verify_project;
+use crate::project_folder::{Checksums, Derivation, Extent, Journal, VerifyStudyError, verify_complete};
 use crate::run_journal::RunJournal;
 use crate::study_file::{RetainRuns, STUDIES};
+use crate::write::STUDY_FOLDERS;
 
 /// Whether a study has been run in the folder.
 pub fn has_records(folder: &Path) -> bool {
@@ -50,7 +44,7 @@ pub fn verify(
     let verdict = if STUDIES.has_results_in(folder) {
         verify_study(folder, extent, stop)?
     } else if let Some(derivation) = others.iter().find(|other| other.kind.has_results_in(folder)) {
-        verify_project(folder, derivation, extent, stop)?
+        verify_project(folder, derivation, &[], extent, stop)?
     } else if is_of_figures(folder) {
         let verdict = verify_complete(folder, &PAPER, &[FIGURE_CACHE], stop)?;
         Verdict {
@@ -123,74 +117,13 @@ fn verify_crate(
     Ok(verdict)
 }
 
-/// Compares a study with its list, makes its tables and pictures again from its records, and compares its run
+/// Compares a study with its list and with the results that follow from its recorded runs, and its run
 /// folders with their manifests.
 fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &STUDIES, &[RUNS], stop)?;
-    if extent == Extent::Derived && verdict.differences.is_empty() {
-        derive_study(folder, &mut verdict, stop)?;
-    }
-    if verdict.differences.is_empty() && !is_complete {
-        let (what, path) = ("study", folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
-    }
+    let mut verdict = verify_project(folder, &STUDY_FOLDERS, &[RUNS], extent, stop)?;
     let kept = verify_kept(folder, &mut verdict, stop)?;
     verdict.what += &format!(", {} as they were written", count(kept, "run folder"));
     Ok(verdict)
-}
-
-/// Makes tables and pictures of a study again from its records, and compares the folder with them.
-fn derive_study(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), VerifyStudyError> {
-    let made = study_of(folder).and_then(|file| Ok((Plan::new(&file, None)?, file)));
-    let (plan, file) = match made {
-        Ok(made) => made,
-        Err(error) => {
-            let (path, line) = (folder.join("study.toml"), first_line(&error));
-            let difference = format!("{} is not a valid study for this version: {line}", path.display());
-            verdict.differences.push(difference);
-            return Ok(());
-        }
-    };
-    plan.check_memory(0)?;
-    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    let mut again = StudyFolder::open(temporary.path(), &file, None, false)?;
-    again.records.merge(folder)?;
-    let records = folder.join(RunJournal::FILE);
-    let (damaged, records) = (again.records.damaged, records.display());
-    let results = match collect(&plan, &again.records) {
-        Ok(results) => results,
-        Err(StudyError::Missing { runs, others }) if damaged == 0 => {
-            let path = folder.to_owned();
-            return Err(VerifyStudyError::Unfinished { path, runs, others });
-        }
-        // The damaged lines are needed to derive the tables again.
-        Err(StudyError::Missing { .. }) => {
-            let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
-            verdict.differences.push(damage);
-            return Ok(());
-        }
-        Err(error) => return Err(error.into()),
-    };
-    let mut batch = again.files.begin();
-    stage(&plan, &results, &mut batch, stop)?;
-    if converge::is_written(folder, &plan.axes) {
-        converge::stage(&plan, &results, &mut batch)?;
-    }
-    batch.place(Others::Go, Vec::new())?;
-    let how = "follow from the records";
-    verdict.differences = differences_from(temporary.path(), folder, how, stop)?;
-    if damaged > 0 {
-        let damage = format!(
-            "{records} has {}, whose runs are recorded once more or not needed",
-            count(damaged, "damaged line")
-        );
-        verdict.notes.push(damage);
-    }
-    verdict.what = format!(
-        "tables and pictures as its {} give them",
-        count(again.records.len(), "recorded run")
-    );
-    Ok(())
 }
 
 /// Compares the run folders that a study has kept with the lines of its journal, and looks for those that it
@@ -208,7 +141,14 @@ pub(crate) fn verify_kept(
         Err(error) => return Err(unreadable(error).into()),
     };
     // Differences of the journal itself are told already.
-    let (lines, _) = Journal::read::<FinishedRun>(folder, RunJournal::FILE).unwrap_or_default();
+    let (lines, damaged) = Journal::read::<FinishedRun>(folder, RunJournal::FILE).unwrap_or_default();
+    if damaged > 0 {
+        verdict.notes.push(format!(
+            "{} has {}, whose runs are recorded once more or not needed",
+            folder.join(RunJournal::FILE).display(),
+            count(damaged, "damaged line")
+        ));
+    }
     let mut recorded: HashMap<String, (bool, Option<String>)> = lines
         .into_iter()
         .filter_map(|run| Some((folder_of_run(&run.id)?, (run.outcome.result().is_ok(), run.kept))))

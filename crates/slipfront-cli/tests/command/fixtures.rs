@@ -29,8 +29,8 @@ pub(crate) const RUN_FILES: [&str; 12] = [
     "summary.json",
 ];
 
-/// Updates the checksum of a file in a results folder to its present contents, as a forger would. As in a list
-/// of an earlier version, the journal is not listed.
+/// Updates the checksum of a file in a results folder to its present contents, as a forger would. The journal
+/// is not listed, as in lists of earlier versions.
 pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
     let bytes = workspace.read(&format!("{folder}/{name}"));
     let list = workspace.read_text(&format!("{folder}/checksums.json"));

@@ -17,7 +17,8 @@ use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_study::project_folder::{Batch, Others, ResultFiles};
 
-/// Writes pictures, tables and the report to a folder, with the [files](crate::sources) that they follow from.
+/// Writes pictures, tables and the report to a folder, whose list also gets the [`sources`](crate::sources)
+/// that they follow from.
 ///
 /// # Errors
 /// When a picture cannot be drawn, a file cannot be written, or an existing file was edited.

@@ -89,8 +89,8 @@ impl ResultFiles {
         }
     }
 
-    /// The list in the folder; an empty one if there is none. If edited files may be replaced, the list itself
-    /// may have been edited.
+    /// The list in the folder; an empty one if there is none. If edited files may be replaced, the list
+    /// itself may have been edited.
     fn list(&self) -> Result<Checksums, StudyError> {
         match Checksums::read(&self.folder) {
             Err(StudyError::Checksums { .. }) if self.force => {

@@ -68,6 +68,30 @@ pub struct Derivation {
     pub find_again: FindAgain,
 }
 
+impl Derivation {
+    /// Derives the results of a folder again in another one.
+    ///
+    /// # Errors
+    /// When runs are missing that cannot be made again, results cannot be derived, or the system refuses to
+    /// read or to write; after a stop.
+    pub(crate) fn again(
+        &self,
+        folder: &Path,
+        other: &Path,
+        look: &PictureLook,
+        stop: &AtomicBool,
+    ) -> Result<[usize; 2], VerifyStudyError> {
+        (self.find_again)(folder, other, look, stop).map_err(|error| match error {
+            StudyError::Missing { runs, others } => VerifyStudyError::Unfinished {
+                path: folder.to_owned(),
+                runs,
+                others,
+            },
+            error => error.into(),
+        })
+    }
+}
+
 /// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the
 /// `others`; the results are complete if the second value is true.
 ///
@@ -171,10 +195,11 @@ pub fn verify_complete(
 pub(crate) fn verify_project(
     folder: &Path,
     derivation: &Derivation,
+    others: &[&str],
     extent: Extent,
     stop: &AtomicBool,
 ) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = verify_complete(folder, derivation.kind, &[], stop)?;
+    let mut verdict = verify_complete(folder, derivation.kind, others, stop)?;
     if extent == Extent::Derived && verdict.differences.is_empty() {
         derive_from_runs(folder, derivation, &mut verdict, stop)?;
     }
@@ -193,12 +218,13 @@ fn derive_from_runs(
     // Opening a pipe would wait forever.
     let file = folder.join(derivation.kind.file);
     open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
-    let [kept, all] = (derivation.find_again)(folder, temporary.path(), &PictureLook::default(), stop)?;
+    let [kept, all] = derivation.again(folder, temporary.path(), &PictureLook::default(), stop)?;
     if all > kept {
         let sentence = format!("{} not in the journal, and run again", are(all - kept, "run"));
         verdict.notes.push(sentence);
     }
-    verdict.differences = differences_from(temporary.path(), folder, "follow from its runs", stop)?;
+    let again = Checksums::read(temporary.path())?.unwrap_or_default();
+    verdict.differences = differences(&again.files, folder, "follow from its runs", stop);
     verdict.what = format!(
         "{}, a {} as its {} give it",
         verdict.what,
@@ -206,15 +232,4 @@ fn derive_from_runs(
         count(kept, "recorded run")
     );
     Ok(())
-}
-
-/// Differences of a folder from the results that were made again in a temporary one.
-pub(crate) fn differences_from(
-    temporary: &Path,
-    folder: &Path,
-    how: &str,
-    stop: &AtomicBool,
-) -> Result<Vec<String>, StudyError> {
-    let again = Checksums::read(temporary)?.unwrap_or_default();
-    Ok(differences(&again.files, folder, how, stop))
 }

@@ -90,7 +90,7 @@ fn run_folders_that_shards_kept_are_taken_over() {
     );
 }
 
-/// Of a run that failed, the case is taken over; a run folder that its journal does not name is not.
+/// The case of a run that failed is taken over; a run folder that its journal does not name is refused.
 #[test]
 fn kept_folders_of_shards_are_those_of_their_runs() {
     let workspace = Workspace::with_study(

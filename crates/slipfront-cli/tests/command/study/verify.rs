@@ -26,9 +26,7 @@ fn a_study_is_what_its_records_give() {
     let (status, said, problems) = verified(&workspace, "out");
     assert_eq!((status, problems.as_str()), (0, ""), "{said}");
     assert!(
-        said.contains(&format!(
-            "out: tables and pictures as its {SMALL_RUNS} recorded runs give them"
-        )),
+        said.contains(&format!("a study as its {SMALL_RUNS} recorded runs give it")),
         "{said}"
     );
     for name in names(&results.path) {
