@@ -228,17 +228,17 @@ pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) ->
         .insert("manifest.webmanifest".to_owned(), MANIFEST.as_bytes().to_vec());
     let service_worker = service_worker(&parts.files).into_bytes();
     parts.files.insert("service_worker.js".to_owned(), service_worker);
-    place(parts.files, out).map_err(failed)
+    place(&parts.files, out).map_err(failed)
 }
 
 /// Writes files to a hidden folder, which gets its name when it is whole. In a folder that is there already,
 /// they get their names one by one, which needs no space on the disk.
-fn place(files: BTreeMap<String, Vec<u8>>, out: &Path) -> std::io::Result<()> {
+fn place(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> std::io::Result<()> {
     let is_new = !out.exists();
     make_folders(folder_of(out))?;
     let beside = if is_new { out.to_owned() } else { out.join(MODULE) };
     let hidden = UnfinishedFolder::beside(&beside)?;
-    for (name, contents) in &files {
+    for (name, contents) in files {
         write_with_folders(&hidden.path().join(name), contents)?;
     }
     if is_new {
@@ -422,7 +422,7 @@ mod tests {
             if is_there {
                 fs::create_dir(&out).unwrap();
             }
-            place(files.clone(), &out).unwrap_err();
+            place(&files, &out).unwrap_err();
             assert_eq!(out.exists(), is_there);
             assert_eq!(
                 fs::read_dir(folder.path()).unwrap().count(),
@@ -431,7 +431,7 @@ mod tests {
         }
         assert_eq!(fs::read_dir(&out).unwrap().count(), 0);
         files.remove(&name);
-        place(files, &out).unwrap();
+        place(&files, &out).unwrap();
         fs::create_dir(out.join(".slipfront-0123456789abcdef-AbCdEf")).unwrap();
         export_folder(&Start::default(), &module, "notices", &out).unwrap();
         fs::write(out.join("mine"), "mine").unwrap();
