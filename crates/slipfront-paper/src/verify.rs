@@ -58,11 +58,7 @@ fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(),
         let files = files_of(&again)?;
         if names(&files) == listed {
             verdict.differences = differences(&files, folder, "follow from the data of the figures", stop);
-            verdict.what += ", and as the data of the figures give them";
-            verdict.notes.push(format!(
-                "the data of the figures, in {FIGURE_CACHE}/, are not derived from {}: `slipfront paper` with another --out repeats all runs",
-                RunJournal::FILE
-            ));
+            verdict.what += ", and as the data of the figures give them, which are not derived again";
             return Ok(());
         }
     }
