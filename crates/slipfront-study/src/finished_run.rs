@@ -59,7 +59,8 @@ pub struct FinishedRun {
     pub wall_time_s: f64,
     /// Outcome of the run.
     pub outcome: Outcome,
-    /// The [mark](mark_of) of its folder, if that was kept.
+    /// Seal of the manifest of its folder, or of a run that failed a hash of its case; none if no folder was
+    /// kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept: Option<String>,
 }
