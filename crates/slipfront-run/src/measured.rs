@@ -101,7 +101,7 @@ impl MeasuredRecord {
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
         let open = || Ok(Box::new(open_limited(path, u64::MAX)?) as Box<dyn Read>);
-        Self::read_from(&open, path, columns, along, options)
+        Self::read_from(&open, path, columns, along, options, &[])
     }
 
     /// Reads two columns of a table in memory, as [`read`](Self::read) does for a file; messages name its
@@ -116,16 +116,18 @@ impl MeasuredRecord {
         along: Measure,
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| Ok(Box::new(bytes)), path, columns, along, options)
+        Self::read_from(&|| Ok(Box::new(bytes)), path, columns, along, options, &[])
     }
 
     /// Reads two columns of the table that `open` opens from its beginning, each time that it is called.
+    /// `shown` says how a workbook [shows](workbook::Sheet::shown) its columns.
     fn read_from<'t>(
         open: &dyn Fn() -> std::io::Result<Box<dyn Read + 't>>,
         path: &Path,
         columns: [&Column; 2],
         along: Measure,
         options: TableOptions,
+        shown: &[[bool; 2]],
     ) -> Result<Self, MeasuredError> {
         let failed = |source: TableError| MeasuredError::Table {
             path: path.to_owned(),
@@ -142,7 +144,8 @@ impl MeasuredRecord {
                 path: path.to_owned(),
                 why,
             })?;
-            let mut record = Self::parse(sheet.text.as_bytes(), path, columns, along, options)?;
+            let open = || Ok(Box::new(sheet.text.as_bytes()) as Box<dyn Read>);
+            let mut record = Self::read_from(&open, path, columns, along, options, &sheet.shown)?;
             let took = record.took.take();
             let took = took.unwrap_or_else(|| display_path(path).to_string());
             record.took = Some(format!("{took}; sheet {:?} of the workbook", sheet.name));
@@ -160,7 +163,7 @@ impl MeasuredRecord {
             places,
             x_factor,
             y_factor,
-        } = record.columns(&layout, path, columns)?;
+        } = record.columns(&layout, path, columns, shown)?;
         let source = open().map_err(|source| failed(source.into()))?;
         let mut rows = TableRows::new(source, &layout, LINE_MAX_BYTES);
         let decimal = layout.decimal;
@@ -322,6 +325,7 @@ impl MeasuredRecord {
         layout: &TableLayout,
         path: &Path,
         columns: [&Column; 2],
+        shown: &[[bool; 2]],
     ) -> Result<Found, MeasuredError> {
         let names = ColumnName::all(layout);
         let mut places = [0; 2];
@@ -331,19 +335,44 @@ impl MeasuredRecord {
         let mut of_columns = units_of(layout, &names);
         of_columns.resize(layout.columns, None);
         let units = places.map(|place| of_columns[place].clone());
-        let [_, given] = columns.map(|column| column.unit.as_deref());
+        let mut given = columns.map(|column| column.unit.as_deref());
+        for k in 0..2 {
+            // Cells that are shown as percentages are stored as shares of 1, whatever the header says.
+            let Some([has_plain, true]) = shown.get(places[k]) else {
+                continue;
+            };
+            let unit = given[k].or(units[k].as_deref());
+            let is_share = unit.is_none_or(|unit| Measure::Coefficient.factor(unit).is_some());
+            if *has_plain || !is_share || k == 0 {
+                return Err(MeasuredError::Percentages {
+                    path: path.to_owned(),
+                    column: columns[k].name.clone(),
+                    why: match *has_plain {
+                        true => "shows some of its numbers as percentages and others not",
+                        false => "shows its numbers as percentages, and is no coefficient",
+                    },
+                });
+            }
+            given[k] = Some("1");
+        }
+        let [_, given_y] = given;
         if Measure::Coefficient
-            .factor(given.or(units[1].as_deref()).unwrap_or("N"))
+            .factor(given_y.or(units[1].as_deref()).unwrap_or("N"))
             .is_some()
         {
             self.of = Measure::Coefficient;
         }
-        let shown = |k: usize| {
+        let name_of = |k: usize| {
             let named = names.get(places[k]).filter(|name| !name.whole.is_empty());
             named.map_or(columns[k].name.as_str(), |name| name.whole)
         };
-        let factor =
-            |k: usize, measure, axis| factor(path, columns[k], shown(k), units[k].as_deref(), measure, axis);
+        let factor = |k: usize, measure, axis| {
+            let column = Column {
+                name: columns[k].name.clone(),
+                unit: given[k].map(str::to_owned),
+            };
+            factor(path, &column, name_of(k), units[k].as_deref(), measure, axis)
+        };
         Ok(Found {
             places,
             x_factor: factor(0, self.along, "x"),

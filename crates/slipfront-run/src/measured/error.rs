@@ -54,6 +54,15 @@ pub enum MeasuredError {
         axis: &'static str,
         example: Option<&'static str>,
     },
+    #[error(
+        "column `{column}` of {} {why}: give its cells the number format General, and the column the unit that they then have",
+        display_path(path)
+    )]
+    Percentages {
+        path: PathBuf,
+        column: String,
+        why: &'static str,
+    },
     #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
     Unit {
         path: PathBuf,
