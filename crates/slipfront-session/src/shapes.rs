@@ -17,6 +17,9 @@ pub(crate) struct ShapeOutlines {
 /// Largest number of outlines of all textures; further textures are visible only in the field itself.
 const MAX_OUTLINES: usize = 2000;
 
+/// Largest number of corners of all copies of a texture, whether they lie on the slider or not.
+const MAX_CORNERS: usize = 1 << 22;
+
 /// Number of points on an ellipse.
 const POINTS: usize = 72;
 
@@ -40,6 +43,10 @@ pub(crate) fn outlines(case: &Case) -> Vec<ShapeOutlines> {
     )];
     let mut left = MAX_OUTLINES;
     let drawn = textures.iter().enumerate().filter_map(|(index, texture)| {
+        let shape = &texture.shape;
+        if shape.n_copies(&texture.arrays).saturating_mul(shape.n_corners()) > MAX_CORNERS {
+            return None;
+        }
         let shapes = contours(lattice, texture)?;
         let contours: Vec<Contour> = shapes.iter().flat_map(|shape| clip(shape, &slider)).collect();
         left = left.checked_sub(contours.len())?;
