@@ -9,6 +9,7 @@
 pub mod arrays;
 pub mod case;
 pub mod case_file;
+pub mod extremes;
 pub mod field_info;
 pub mod quantity;
 pub mod same;

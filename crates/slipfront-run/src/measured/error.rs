@@ -80,6 +80,17 @@ pub enum MeasuredError {
         column: String,
     },
     #[error(
+        "line {line} of {} has {value:e} in column `{column}`, as meters write where their range is exceeded: remove such lines, \
+         or begin them with #",
+        display_path(path)
+    )]
+    Overload {
+        path: PathBuf,
+        line: u64,
+        column: String,
+        value: f64,
+    },
+    #[error(
         "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a single \
          step of the test",
         display_path(path)
