@@ -67,8 +67,8 @@ pub struct MeasuredRecord {
     /// How displacements with the noise of a sensor were averaged, if they were: a sentence without its full
     /// stop.
     pub averaged: Option<String>,
-    /// Which ordinates are far from all others, as readings of an overloaded meter are: a sentence without its
-    /// full stop.
+    /// Which ordinates are far from all others, as readings of an overloaded meter are: a sentence without
+    /// its full stop.
     pub far_off: Option<String>,
 }
 
@@ -415,8 +415,8 @@ impl MeasuredRecord {
     }
 }
 
-/// A sentence on readings that are far from all others, and larger: a record that begins at rest has its zeros
-/// far from the friction of sliding, and a peak of static friction may be far from it too.
+/// A sentence on readings that are far from all others, and larger: a record that begins at rest has its
+/// zeros far from the friction of sliding, and a peak of static friction may be far from it too.
 fn far_off(extremes: &Extremes, points: usize, path: &Path, column: &str) -> Option<String> {
     let marks = extremes.marks();
     let (value, n) = marks.iter().find(|(value, _)| extremes.exceeds_all(*value))?;
@@ -665,8 +665,8 @@ mod tests {
         assert!(took.ends_with("; sheet \"Daten\" of the workbook"), "{took}");
     }
 
-    /// Zeros before the drive begins lie as far from the friction of sliding as readings of an overloaded meter
-    /// do, on the other side.
+    /// Zeros before the drive begins lie as far from the friction of sliding as readings of an overloaded
+    /// meter do, on the other side.
     #[test_case(&[(7, 32767.0)], Some("32767 in column `F` at 1 of 100 points"); "one")]
     #[test_case(&[(7, 32767.0), (50, 32767.0), (51, 32767.0)], Some("32767 in column `F` at 3 of 100 points"); "equal ones")]
     #[test_case(&[(7, 32767.0), (8, -32768.0)], Some("-32768 in column `F` at 1 of 100 points"); "both signs")]
