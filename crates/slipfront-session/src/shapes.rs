@@ -76,3 +76,25 @@ fn arc(ellipse: &Ellipse, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     let at = |k| ellipse.at(from + (to - from) * k as f64 / count as f64);
     (0..count).map(at).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::document::Document;
+
+    use super::*;
+
+    /// A shape of five corners is drawn in a thousand copies, and not in a million.
+    #[test]
+    fn outlines_of_many_copies_are_not_made() {
+        for (rows, drawn) in [(1, 1), (1000, 0)] {
+            let text = format!(
+                "slider.blocks = [30, 30]\ntexture = [{{ shape = 'polygon', array = [1000, {rows}], pitch = '1 nm', \
+                 points = [{}] }}]",
+                "['1 um', '1 um'], ['2 um', '1 um'], ['2 um', '2 um'], ['1 um', '2 um'], ['1 um', '1.5 um']"
+            );
+            let document = Document::new("case", &text, |_| Err("there is none".to_owned())).unwrap();
+            let case = document.case(&mut |_| true).unwrap();
+            assert_eq!(outlines(&case).len(), drawn);
+        }
+    }
+}
