@@ -123,7 +123,7 @@ impl DesignFolder {
             let design = design.on_device(self.device.clone());
             match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
                 Ok(outcome) => front.push((percent, Some((design, outcome)))),
-                Err(StudyError::NoDesign) => front.push((percent, None)),
+                Err(StudyError::NoDesign { .. }) => front.push((percent, None)),
                 Err(error) => return Err(error),
             }
         }

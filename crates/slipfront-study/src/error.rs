@@ -224,9 +224,9 @@ pub enum StudyError {
     )]
     NoVerdict { path: PathBuf },
     #[error(
-        "no texture satisfies these limits: widen `design.coverage`, reduce `design.feature` or `design.gap`, or allow more features"
+        "no texture satisfies these limits{why}: widen `design.coverage`, reduce `design.feature` or `design.gap`, or allow more features"
     )]
-    NoDesign,
+    NoDesign { why: String },
     #[error("a comparison with the untextured slider is not possible: {why}")]
     Reference { why: String },
     #[error("stopped by a signal: finished runs are safe, and the same command resumes from there")]

@@ -57,6 +57,14 @@ impl CaseError {
         let sentence = single_line(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
     }
+
+    /// The error without its place, for a value that no file contains.
+    pub fn without_place(&self) -> String {
+        match self {
+            Self::Invalid(invalid) => invalid.sentence.clone(),
+            error => error.to_string(),
+        }
+    }
 }
 
 /// Place at which a value was written.

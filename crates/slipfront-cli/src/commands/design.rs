@@ -116,7 +116,7 @@ impl DesignCommand {
                 let sentence = format!("stopped by a signal: {so_far}the same command resumes from there");
                 Failure::stopped(&signals, anyhow::anyhow!(sentence))
             }
-            StudyError::NoDesign => Failure::input(error),
+            StudyError::NoDesign { .. } => Failure::input(error),
             error => Failure::of_results(&signals, error),
         })?;
         if self.json {
