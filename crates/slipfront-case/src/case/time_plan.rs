@@ -29,11 +29,11 @@ pub struct TimePlan {
     pub loading: Loading,
 }
 
-/// Ratio of the load of a block in contact to its load if every block touched. The onset is later by this
-/// factor. None unless every block has a drive spring that can bear its load.
-pub(super) fn load_factor(file: &CaseFile, model: &Model) -> Option<f64> {
+/// Ratio of the largest load of a block to that of every block if all touched under a uniform pressure. The
+/// onset is later by up to this factor. None unless every block has a drive spring that can bear its load.
+pub(super) fn largest_load(file: &CaseFile, model: &Model) -> Option<f64> {
     match file.drive.attached {
-        Attached::At(AttachedEdge::All) => Some(model.surface.load_factor()),
+        Attached::At(AttachedEdge::All) => Some(model.surface.largest_load()),
         Attached::At(_) | Attached::File(_) => None,
     }
 }
@@ -142,10 +142,10 @@ impl TimePlan {
     }
 }
 
-/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some
-/// blocks touch and bear f times the load, the onset comes before their own drive springs bear the whole load
-/// at f/(k_s V*). The 2.5/V* before the kinetic window must follow this time, which takes longer than 8/V*
-/// where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead load
+/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where some blocks
+/// bear up to f times the load, because others do not touch or the pressure differs from place to place, the
+/// onset comes before their own drive springs bear their load at f/(k_s V*). The 2.5/V* before the kinetic window must follow this time, which takes longer than 8/V*
+/// for an f above 2.06: under a uniform pressure, where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead load
 /// against the drive delay the onset. Under a program of speeds, the duration counts from the last of them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
@@ -157,7 +157,7 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     };
     let path = f64::max(
         8.0,
-        load_factor(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
+        largest_load(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
     );
     last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales) + time_against_load(model)
 }
@@ -174,12 +174,11 @@ fn delay(file: &CaseFile, scales: &Scales) -> f64 {
 }
 
 /// Time t* of a held drive up to which the largest mu* counts as static friction: twice the time of the onset
-/// (Eq. 12), or the time at which the drive springs of the blocks in contact bear the whole load, if that is
-/// later.
+/// (Eq. 12), or the time at which the drive springs of all blocks bear their loads, if that is later.
 pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let path = f64::max(
         2.0 * ONSET_PATH,
-        load_factor(file, model).unwrap_or(1.0) / K_DRIVE,
+        largest_load(file, model).unwrap_or(1.0) / K_DRIVE,
     );
     path / model.loading_speed() * delay(file, scales) + time_against_load(model)
 }

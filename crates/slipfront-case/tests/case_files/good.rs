@@ -265,6 +265,58 @@ fn runs_last_longer_where_few_blocks_touch() {
     }
 }
 
+/// A block with 20 times the mean pressure slips long after the others, and a dead load against the drive
+/// delays every block by the path on which its drive spring takes it up: the run follows both, and so does the
+/// expected onset.
+#[test]
+fn runs_last_until_the_block_with_the_largest_load_slips() {
+    let folder = tempfile::tempdir().unwrap();
+    // A mean pressure of 1: half of the blocks bear 20 times the load of the others.
+    let row = [2.0 / 21.0, 40.0 / 21.0]
+        .map(|pressure| pressure.to_string())
+        .join(",");
+    std::fs::write(folder.path().join("half.csv"), format!("{row}\n").repeat(2)).unwrap();
+    let one = [[4.0 / 23.0; 3], [4.0 / 23.0, 80.0 / 23.0, 4.0 / 23.0]];
+    let one: Vec<String> = one
+        .iter()
+        .map(|row| row.map(|pressure| pressure.to_string()).join(","))
+        .collect();
+    std::fs::write(folder.path().join("one.csv"), one.join("\n")).unwrap();
+    let found = |text: &str| {
+        let case = Case::parse(&format!("drive.v_star = 0.1\n{text}"), "case", folder.path(), &[]).unwrap();
+        (case.time_plan.end_star(), case.expected.onset_star[1])
+    };
+    // Rounded up to a whole step.
+    let close = |found: f64, expected: f64| (0.0..0.1 + 1e-9).contains(&(found - expected));
+    for (text, largest) in [
+        ("slider.blocks = [2, 2]", 1.0),
+        (
+            "slider.blocks = [2, 2]\nload.pressure_field = 'half.csv'",
+            40.0 / 21.0,
+        ),
+        (
+            "slider.blocks = [3, 2]\nload.pressure_field = 'one.csv'",
+            80.0 / 23.0,
+        ),
+    ] {
+        let (end, onset) = found(text);
+        // 3/8 is the stiffness of a drive spring.
+        assert!(
+            close(end, f64::max(8.0, largest / 0.375 + 2.5) / 0.1),
+            "{text}: {end}"
+        );
+        assert!(
+            (onset / (2.5 * largest / 0.1) - 1.0).abs() < 1e-12,
+            "{text}: {onset}"
+        );
+    }
+    let plain = "slider.blocks = [2, 2]\nload.shear_star = ";
+    for (shear, later) in [(-0.3, 0.3 / 0.375 / 0.1), (0.3, 0.0)] {
+        let (end, _) = found(&format!("{plain}{shear}"));
+        assert!(close(end, 80.0 + later), "{shear}: {end}");
+    }
+}
+
 /// Times are compared with the end of the run, which the drive springs of the slider determine: later than
 /// 8/V* for a soft slider, earlier for a stiff one. The moduli are known only when a file is read.
 #[test]
