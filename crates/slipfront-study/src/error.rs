@@ -214,7 +214,7 @@ pub enum StudyError {
     )]
     NotOnMeshes { path: PathBuf },
     #[error(
-        "the model cannot reproduce these records, so the intervals are not valid: {} gives the reasons, and what to check",
+        "the model cannot reproduce these records, so its numbers do not describe them: {} gives the reasons, and what to check",
         display_path(path)
     )]
     Refused { path: PathBuf },
