@@ -11,6 +11,7 @@ pub mod case;
 pub mod case_file;
 pub mod extremes;
 pub mod field_info;
+pub mod nearest;
 pub mod quantity;
 pub mod same;
 pub mod table;

@@ -38,7 +38,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use slipfront::Communicator;
 use slipfront_base::text::shell_path;
-use slipfront_case::case_file::nearest;
+use slipfront_case::nearest::nearest;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;

@@ -142,13 +142,17 @@ impl MeasuredRecord {
             path: path.to_owned(),
             source,
         };
+        let unreadable = |source: std::io::Error| MeasuredError::Unreadable {
+            path: path.to_owned(),
+            source,
+        };
         let mut head = Vec::new();
         let read = open().and_then(|table| table.take(HEAD_BYTES).read_to_end(&mut head));
-        read.map_err(|source| failed(source.into()))?;
+        read.map_err(unreadable)?;
         if workbook::is_workbook(&head) {
             let mut bytes = Vec::new();
             let read = open().and_then(|book| book.take(workbook::MOST_BYTES + 1).read_to_end(&mut bytes));
-            read.map_err(|source| failed(source.into()))?;
+            read.map_err(unreadable)?;
             let sheet = workbook::sheet(&bytes).map_err(|why| MeasuredError::Workbook {
                 path: path.to_owned(),
                 why,

@@ -349,6 +349,12 @@ impl Case {
                 "the given pressures have a mean of {mean:.4} times `pressure`: starred quantities are relative to `pressure`"
             ));
         }
+        let pressure = &self.file.load.pressure;
+        if pressure.si() < 1.0 {
+            warnings.push(format!(
+                "`load.pressure` is \"{pressure}\", less than 1 Pa: if megapascals were meant, write \"MPa\""
+            ));
+        }
         warnings.extend(friction_warning(&self.model));
         warnings.extend(self.expected.at_once.warning());
         warnings.extend(self.coarse_for_stick_slip());

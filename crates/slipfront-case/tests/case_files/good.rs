@@ -317,6 +317,17 @@ fn runs_last_until_the_block_with_the_largest_load_slips() {
     }
 }
 
+/// A pressure in millipascals is read as it is written, with a note on the unit that was probably meant.
+#[test]
+fn a_pressure_below_a_pascal_has_a_note() {
+    let notes = |pressure: &str| {
+        let text = format!("slider.blocks = [30, 30]\nload.pressure = '{pressure}'");
+        Case::parse(&text, "case", "", &[]).unwrap().warnings().join("\n")
+    };
+    assert!(notes("2 mPa").contains("`load.pressure` is \"2 mPa\", less than 1 Pa"));
+    assert!(!notes("2 MPa").contains("less than 1 Pa"));
+}
+
 /// Times are compared with the end of the run, which the drive springs of the slider determine: later than
 /// 8/V* for a soft slider, earlier for a stiff one. The moduli are known only when a file is read.
 #[test]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use slipfront_base::text::display_path;
+use slipfront_case::nearest::why_unread;
 use slipfront_case::table::TableError;
 use thiserror::Error;
 
@@ -10,6 +11,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum MeasuredError {
+    #[error("cannot read {}: {}", display_path(path), why_unread(path, source))]
+    Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{} {source}", display_path(path))]
     Table { path: PathBuf, source: TableError },
     #[error("{} {why}", display_path(path))]
