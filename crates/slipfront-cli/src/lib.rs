@@ -178,7 +178,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
     })
 }
 
-/// Parses arguments; the help of every command ends with the table of exit statuses.
+/// Parses arguments; the help of the program ends with the table of exit statuses.
 fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, clap::Error> {
     let mut command = with_statuses(T::command());
     let matches = command.try_get_matches_from_mut(args)?;
@@ -196,7 +196,7 @@ fn with_statuses(command: clap::Command) -> clap::Command {
         Some(help) => format!("{help}\n\n{STATUSES}"),
         None => STATUSES.to_owned(),
     };
-    command.after_help(help).mut_subcommands(with_statuses)
+    command.after_help(help)
 }
 
 /// Runs the command `slipfront-mpi`, with one process for every rank of the communicator; arguments and exit

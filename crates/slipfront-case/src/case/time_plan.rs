@@ -5,11 +5,11 @@ use slipfront::lattice::K_DRIVE;
 use slipfront::observe::KineticStart;
 use slipfront::{Loading, Model, ONSET_PATH, Scales, Stop, StopReason};
 
-use super::groups::Groups;
+use super::groups::{Groups, MAX_V_STAR};
 use crate::case_file::{
     self, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
 };
-use slipfront_base::number_format::four_digits;
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Duration and time step of a run, its end, and the averaging window of kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,9 +80,9 @@ impl TimePlan {
         let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
         if steps > MAX_STEPS {
             let sentence = format!(
-                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: shorten the \
-                 run or increase the step",
-                four_digits(dt_star)
+                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: {}",
+                four_digits(dt_star),
+                shorter(file, groups.v_star, steps / MAX_STEPS)
             );
             return Err(file.source.error(key, sentence));
         }
@@ -160,6 +160,41 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
         largest_load(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
     );
     last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales) + time_against_load(model)
+}
+
+/// Advice on a run with `times` as many steps as can be made. The drive is then too slow, or its springs are
+/// too soft, by this factor.
+fn shorter(file: &CaseFile, v_star: f64, times: f64) -> String {
+    if file.time.duration != RunTime::Star(AutoOr::Auto) {
+        return format!(
+            "reduce its duration by a factor of {} or more",
+            four_digits(times)
+        );
+    }
+    // Rounded up to two digits, so that the speed that is named suffices.
+    let enough = |speed: f64| {
+        let unit = libm::pow(10.0, libm::floor(libm::log10(speed * times)) - 1.0);
+        (speed * times / unit).ceil() * unit
+    };
+    let speed = match &file.drive.speed {
+        _ if enough(v_star) > MAX_V_STAR => None,
+        DriveSpeed::VStar(v_star) => Some(format!("`drive.v_star` = {}", four_digits(enough(*v_star)))),
+        DriveSpeed::Speed(speed) => Some(format!(
+            "`drive.speed` = \"{}\"",
+            with_si_prefix(enough(speed.si()), "m/s")
+        )),
+        DriveSpeed::Program(_) => None,
+    };
+    let speed = speed.map_or(String::new(), |speed| {
+        format!(
+            ", or {speed} or more; with `drive.loading` = \"held\" such a speed still gives the static friction of slow loading"
+        )
+    });
+    format!(
+        "the drive loads the slider too slowly for a model that resolves waves; drive springs that are {} times stiffer would \
+         do{speed}. `slipfront check` of such a case lists speeds with their errors and times",
+        four_digits(times)
+    )
 }
 
 /// Time by which a dead load against the drive delays the onset.

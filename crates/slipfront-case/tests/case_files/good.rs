@@ -317,6 +317,28 @@ fn runs_last_until_the_block_with_the_largest_load_slips() {
     }
 }
 
+/// A run of too many steps is refused with a speed that suffices, as far as a speed can.
+#[test]
+fn too_slow_a_drive_is_refused_with_one_that_does() {
+    let parse = |keys: &str| Case::parse(&format!("slider.blocks = [4, 4]\n{keys}"), "case", "", &[]);
+    let said = |keys: &str| parse(keys).unwrap_err().to_string();
+    let slow = said("drive = { v_star = 1e-8, stiffness_star = 0.01 }");
+    // 8/V* at 0.01/0.375 of the paper's stiffness, in steps of 0.1: 75 times too many.
+    assert!(
+        slow.contains("75 times stiffer would do, or `drive.v_star` = 7.500e-7"),
+        "{slow}"
+    );
+    assert!(parse("drive = { v_star = 7.5e-7, stiffness_star = 0.01 }").is_ok());
+    assert!(parse("drive = { v_star = 1e-8, stiffness_star = 0.75 }").is_ok());
+    let soft = said("drive = { v_star = 9, stiffness_star = 1e-12 }");
+    assert!(
+        soft.contains("times stiffer") && !soft.contains("drive.v_star"),
+        "{soft}"
+    );
+    let long = said("time = { duration_star = 1e9, step = 1e-4 }");
+    assert!(long.contains("reduce its duration by a factor of 2500"), "{long}");
+}
+
 /// A pressure in millipascals is read as it is written, with a note on the unit that was probably meant.
 #[test]
 fn a_pressure_below_a_pascal_has_a_note() {

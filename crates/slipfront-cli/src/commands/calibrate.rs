@@ -23,7 +23,7 @@ use crate::threads::{count_from_one, set_threads};
 #[command(after_help = "Examples:
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv --training results/training -o results/first
-  slipfront calibrate cases/calibrations/single_block.toml --dry-run --until \"20 s\"
+  slipfront calibrate cases/calibrations/paper.toml --dry-run --until \"2 s\"
 
 If the command is stopped in any way, the same command resumes it. The folder contains the intervals, a picture of each record with
 the calibrated model, and a case with the medians.")]
