@@ -339,6 +339,32 @@ fn too_slow_a_drive_is_refused_with_one_that_does() {
     assert!(long.contains("reduce its duration by a factor of 2500"), "{long}");
 }
 
+/// Speeds of a program that no step has are named.
+#[test]
+fn speeds_after_the_end_of_the_run_have_a_note() {
+    let note = |duration: &str| {
+        let text = format!(
+            "slider.blocks = [30, 30]\ntime.duration_star = {duration}\ndrive.program = [{{ v_star = 0.03, until_star = 110 }}, \
+             {{ v_star = -0.03, until_star = 330 }}, {{ v_star = 0.03 }}]"
+        );
+        let warnings = Case::parse(&text, "case", "", &[]).unwrap().warnings();
+        warnings
+            .into_iter()
+            .find(|warning| warning.contains("drive.program"))
+    };
+    let said = note("60").unwrap();
+    assert!(
+        said.contains("the last 2 speeds of `drive.program` begin, the first at t* = 110"),
+        "{said}"
+    );
+    let said = note("330").unwrap();
+    assert!(
+        said.contains("the last 1 speed of `drive.program` begins, the first at t* = 330"),
+        "{said}"
+    );
+    assert_eq!(note("340"), None);
+}
+
 /// A pressure in millipascals is read as it is written, with a note on the unit that was probably meant.
 #[test]
 fn a_pressure_below_a_pascal_has_a_note() {
