@@ -142,11 +142,13 @@ impl TimePlan {
     }
 }
 
-/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where some blocks
-/// bear up to f times the load, because others do not touch or the pressure differs from place to place, the
-/// onset comes before their own drive springs bear their load at f/(k_s V*). The 2.5/V* before the kinetic window must follow this time, which takes longer than 8/V*
-/// for an f above 2.06: under a uniform pressure, where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead load
-/// against the drive delay the onset. Under a program of speeds, the duration counts from the last of them.
+/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where some
+/// blocks bear up to f times the load, because others do not touch or the pressure differs from place to
+/// place, the onset comes before their own drive springs bear their load at f/(k_s V*). The 2.5/V* before the
+/// kinetic window must follow this time, which takes longer than 8/V* for an f above 2.06: under a uniform
+/// pressure, where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead
+/// load against the drive delay the onset. Under a program of speeds, the duration counts from the last of
+/// them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments

@@ -265,9 +265,9 @@ fn runs_last_longer_where_few_blocks_touch() {
     }
 }
 
-/// A block with 20 times the mean pressure slips long after the others, and a dead load against the drive
-/// delays every block by the path on which its drive spring takes it up: the run follows both, and so does the
-/// expected onset.
+/// A block with a multiple of the mean pressure slips long after the others, and a dead load against the
+/// drive delays every block by the path on which its drive spring takes it up: the run follows both, and so
+/// does the expected onset.
 #[test]
 fn runs_last_until_the_block_with_the_largest_load_slips() {
     let folder = tempfile::tempdir().unwrap();
