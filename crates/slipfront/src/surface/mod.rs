@@ -30,7 +30,9 @@ pub use mask_outline::outline as mask_outline;
 pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};
 pub use sharing::share_load;
-pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
+pub use texture::{
+    Cavity, FillRule, Groove, Orientation, Part, Shape, Texture, Tile, cavity_lambda, cavity_percent,
+};
 
 use std::ops::Range;
 
