@@ -11,7 +11,7 @@ use super::files::Watch;
 use super::inputs::Inputs;
 use super::slider::outline;
 use super::topography::{Ground, Topography};
-use crate::arrays::Slab;
+use crate::arrays::{Drawing, Slab};
 use crate::case_file::{
     Arrangement, Blocks, CaseError, CaseFile, Count, Inside, MAX_COUNT, Mask, Pattern, Pitch, Shape, Texture,
 };
@@ -26,6 +26,8 @@ pub(super) struct InBlocks {
     pub(super) asked_percent: Option<f64>,
     /// The height maps among the textures.
     pub(super) topographies: Vec<Topography>,
+    /// Notes about files of drawings.
+    pub(super) notes: Vec<String>,
 }
 
 /// The textured blocks of the rows of this rank, with the textures; masks and height maps are read.
@@ -56,6 +58,7 @@ pub(super) fn shapes_in_blocks(
     let mut textures = Vec::new();
     let mut asked = Some(0.0);
     let mut topographies = Vec::new();
+    let mut notes = Vec::new();
     let mut masks = Masks::default();
     let (mut steps, most_steps) = (0.0, STEPS + STEPS_PER_BLOCK * (lattice.nx * lattice.ny) as f64);
     // A height map covers all rows, so a rank must know which blocks exist in all of them.
@@ -92,6 +95,15 @@ pub(super) fn shapes_in_blocks(
                 topographies.push(topography);
                 (surface::Shape::Tile(tile), percent)
             }
+            Inside::Drawing(drawing) => {
+                let key = format!("{key}.file");
+                let block = scales.block_size * 1e3;
+                let read = inputs.read_drawing(file, (&key, &drawing.file), block, watch)?;
+                within_effort(&read, &arrays, lattice)
+                    .map_err(|sentence| file.source.error(&key, sentence))?;
+                notes.extend(read.notes.iter().map(|note| format!("{}: {note}", drawing.file)));
+                (surface::Shape::Drawing(read.parts.into()), None)
+            }
         };
         within_reach(&shape, &arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
         steps += meshing_steps(&shape, &arrays);
@@ -121,6 +133,7 @@ pub(super) fn shapes_in_blocks(
         textures,
         asked_percent: asked,
         topographies,
+        notes,
     })
 }
 
@@ -300,6 +313,26 @@ impl<'a> Masks<'a> {
         };
         Ok(entry.insert(tile).clone())
     }
+}
+
+/// Most corners and crossings of rows of blocks of all copies of a drawing, which take some seconds.
+const EFFORT: f64 = (1 << 26) as f64;
+
+fn within_effort(drawing: &Drawing, arrays: &[surface::Array], lattice: &Lattice) -> Result<(), String> {
+    let rings = || drawing.parts.iter().flat_map(|part| &part.rings);
+    let corners = rings().map(Vec::len).sum::<usize>() as f64;
+    let height = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]).abs().min(lattice.ny as f64);
+    let heights: f64 = rings().flat_map(|ring| ring.windows(2)).map(height).sum();
+    let rows: usize = arrays.iter().map(|array| array.count[1]).product();
+    let effort = corners * rows as f64 + heights * surface::n_copies(arrays) as f64;
+    if effort <= EFFORT {
+        return Ok(());
+    }
+    Err(format!(
+        "the outlines of the drawing have {corners} corners and cross {heights:.0} rows of blocks, in {} copies; draw them with \
+         fewer lines, reduce `array`, or write a picture for a mask",
+        surface::n_copies(arrays)
+    ))
 }
 
 /// Largest extent of a texture, in slider lengths. A texture farther away is a typing error, and on a

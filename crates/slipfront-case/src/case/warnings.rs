@@ -204,6 +204,7 @@ impl Case {
                 ));
             }
         }
+        warnings.extend(report.notes.iter().cloned());
         for topography in &report.topographies {
             warnings.extend(self.other_scale(topography));
             let notes = topography.notes.iter();
