@@ -12,7 +12,7 @@ use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::texture_file;
+use slipfront_case::texture_file::{self, Options};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
 use slipfront_run::names::CASE;
 use slipfront_run::running;
@@ -108,7 +108,7 @@ impl Report<'_> {
         let case = self.write_texture(design, texture, shares)?;
         for ending in MASK_ENDINGS {
             let name = format!("{MASK_NAME}.{ending}");
-            let (bytes, _) = texture_file::contents(&case, Path::new(&name), None)?;
+            let (bytes, _) = texture_file::contents(&case, Path::new(&name), Options::default())?;
             self.batch.write(&name, |to| to.write_all(&bytes))?;
         }
         self.write_pictures(design, outcome)?;
