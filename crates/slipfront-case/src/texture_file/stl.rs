@@ -1,5 +1,6 @@
 //! The face of a slider as a closed solid in binary STL, in millimetres: blocks in contact end at z = 0, textured
-//! ones at the depth of the texture below. The back is as far below these.
+//! ones at the depth of the texture below. The back is as far below these. Upper corners of
+//! blocks that touch only along an edge are a little apart.
 
 use super::error::TextureFileError;
 use super::textured_blocks::textured_blocks;
@@ -8,19 +9,22 @@ use crate::case::Case;
 /// Largest number of triangles: a file of 400 MB.
 const MAX_TRIANGLES: usize = 1 << 23;
 
+/// Shift, in blocks, of a corner at which a block would touch another one along a single edge: a closed surface
+/// has two faces at an edge, not four.
+const APART: f64 = 1.0 / 256.0;
+
 /// The solid, with a texture of this depth in m.
 pub(super) fn solid(case: &Case, depth: f64) -> Result<Vec<u8>, TextureFileError> {
     let lattice = &case.model.lattice;
     let (nx, ny) = (lattice.nx, lattice.ny);
     let textured = textured_blocks(case);
-    // Level of the face of a block, in depths above the back; none if there is no block.
+    // Level of the face of a block, in depths above the back, where it is 0 if there is no block.
     let level = |x: usize, y: usize| {
-        // Indices from 1, so that there are none around the lattice.
-        let block = (1..=nx)
-            .contains(&x)
-            .then(|| (1..=ny).contains(&y).then(|| (y - 1) * nx + x - 1))??;
-        let exists = case.model.slider().exists(block);
-        exists.then(|| if textured[block] { 1 } else { 2 })
+        // Indices begin at 1, so that there are some around the lattice.
+        let is_on = (1..=nx).contains(&x) && (1..=ny).contains(&y);
+        let block = is_on.then(|| (y - 1) * nx + x - 1);
+        let block = block.filter(|&block| case.model.slider().exists(block));
+        block.map_or(0, |block| if textured[block] { 1 } else { 2 })
     };
     let mut mesh = Mesh {
         bytes: vec![0; 84],
@@ -28,8 +32,22 @@ pub(super) fn solid(case: &Case, depth: f64) -> Result<Vec<u8>, TextureFileError
     };
     for y in 1..=ny {
         for x in 1..=nx {
-            let Some(top) = level(x, y) else { continue };
-            let square = |z: usize| [[x, y, z], [x + 1, y, z], [x + 1, y + 1, z], [x, y + 1, z]];
+            let top = level(x, y);
+            if top == 0 {
+                continue;
+            }
+            let square = |z: usize| {
+                [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]: [usize; 2]| {
+                    // The neighbours at this corner: indices at the block's end plus or minus one.
+                    let [beside, above] = [x + 2 * i - 1, y + 2 * j - 1];
+                    let touches =
+                        z > 0 && level(beside, above) >= z && level(beside, y) < z && level(x, above) < z;
+                    let inwards = if touches { APART } else { 0.0 };
+                    let along =
+                        |at: usize, end: usize| (at + end - 1) as f64 + inwards * (1.0 - 2.0 * end as f64);
+                    [along(x, i), along(y, j), z as f64]
+                })
+            };
             let [a, b, c, d] = square(0);
             mesh.quad([a, d, c, b], [0.0, 0.0, -1.0]);
             mesh.quad(square(top), [0.0, 0.0, 1.0]);
@@ -41,7 +59,7 @@ pub(super) fn solid(case: &Case, depth: f64) -> Result<Vec<u8>, TextureFileError
             ];
             for (neighbour, [from, to], normal) in sides {
                 // One wall for each depth, so that the walls of neighbours have the same corners.
-                for z in neighbour.unwrap_or(0)..top {
+                for z in neighbour..top {
                     let ([low, high], [p, q]) = ([square(z), square(z + 1)], [from, to]);
                     mesh.quad([low[p], low[q], high[q], high[p]], normal);
                 }
@@ -71,16 +89,10 @@ impl Mesh {
     }
 
     /// Adds a rectangle of corners in blocks and depths, counterclockwise as seen from outside.
-    fn quad(&mut self, corners: [[usize; 3]; 4], normal: [f32; 3]) {
+    fn quad(&mut self, corners: [[f64; 3]; 4], normal: [f32; 3]) {
         let [block, depth] = self.lengths;
-        let corner = |[x, y, z]: [usize; 3]| {
-            [
-                (x - 1) as f64 * block,
-                (y - 1) as f64 * block,
-                (z as f64 - 2.0) * depth,
-            ]
-            .map(|length| length as f32)
-        };
+        let corner =
+            |[x, y, z]: [f64; 3]| [x * block, y * block, (z - 2.0) * depth].map(|length| length as f32);
         for triangle in [[0, 1, 2], [0, 2, 3]] {
             let vectors = std::iter::once(normal).chain(triangle.map(|at| corner(corners[at])));
             for number in vectors.flatten() {

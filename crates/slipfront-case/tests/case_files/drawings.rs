@@ -181,7 +181,7 @@ fn curves_enclose_their_area(name: &str, text: &str, wanted: f64) {
 #[test_case("a.svg", &page(&format!("{PATH}<circle r='1' fill='#FFF'/>")), "filled with white")]
 #[test_case("a.svg", &page("<style>#a {fill:none}</style>"), "only rules for classes")]
 #[test_case("a.svg", &page("<rect width='1' height='1' clip-path='url(#a)'/>"), "that a `clip-path` changes")]
-#[test_case("a.svg", &page("<g display='none'><rect width='1' height='1'/></g>"), "no outline of a texture (1 of its elements not shown")]
+#[test_case("a.svg", &page("<g display='none'><rect width='1' height='1'/></g>"), "no outline of a texture (not shown, and so no texture: 1 element")]
 #[test_case("a.svg", "<svg", "is not a readable drawing")]
 #[test_case("a.svg", "<!DOCTYPE svg [<!ENTITY a 'b'>]><svg/>", "declares entities")]
 #[test_case("a.svg", "<html/>", "begins with <html>")]
@@ -214,7 +214,7 @@ fn drawings_are_refused_with_the_place_and_the_remedy(name: &str, text: &str, pa
 fn what_is_not_shown_is_told_and_copies_are_repeated() {
     let text = page("<rect width='1' height='1' y='3'/>\n<circle r='9' display='none'/>");
     let warnings = case("a.svg", &text, "[6, 4]", "").unwrap().warnings();
-    let said = "a.svg: 1 of its elements not shown are no texture, the first in line 2";
+    let said = "a.svg: not shown, and so no texture: 1 element, the first in line 2";
     assert!(
         warnings.iter().any(|warning| warning.ends_with(said)),
         "{warnings:?}"

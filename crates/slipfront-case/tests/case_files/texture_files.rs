@@ -617,10 +617,10 @@ fn pictures_and_fields_read_back_as_the_same_texture() {
 }
 
 /// A solid is closed: every edge of a triangle is that of another one, the other way round.
-#[test_case("", 2; "a dimple")]
-#[test_case("outline = 'disc'", 2; "on a disc")]
-#[test_case("outline = 'mask'\noutline_file = 'holes.png'", 4; "with blocks that touch at corners")]
-fn a_solid_is_closed_and_has_its_volume(slider: &str, most: usize) {
+#[test_case(""; "a dimple")]
+#[test_case("outline = 'disc'"; "on a disc")]
+#[test_case("outline = 'mask'\noutline_file = 'holes.png'"; "with blocks that touch at corners")]
+fn a_solid_is_closed_and_has_its_volume(slider: &str) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let exists: Vec<bool> = (0..400).map(|b| (b % 20 / 3 + b / 60) % 2 == 0).collect();
@@ -664,18 +664,18 @@ fn a_solid_is_closed_and_has_its_volume(slider: &str, most: usize) {
             *edges.entry(edge.map(bits)).or_default() += 1;
         }
     }
-    let both = |edge: &[[u32; 3]; 2]| edges[edge] + edges.get(&[edge[1], edge[0]]).copied().unwrap_or(0);
-    assert!(edges.iter().all(|(edge, count)| both(edge) == 2 * count));
-    assert_eq!(edges.keys().map(both).max(), Some(most));
+    let is_shared = |edge: &[[u32; 3]; 2]| edges[edge] == 1 && edges.get(&[edge[1], edge[0]]) == Some(&1);
+    assert!(edges.keys().all(is_shared));
     let blocks = (0..400).filter(|&b| case.model.slider().exists(b)).count() as f64;
     let covered = textured_blocks(&case)
         .into_iter()
         .filter(|&textured| textured)
         .count() as f64;
     assert!(covered > 30.0);
-    // Cubic millimetres; STL has 24 bits for a number.
+    // Cubic millimetres. Corners that are moved take up to a 256th of a block at each.
     let wanted = (4.0 * blocks - 2.0 * covered) * 1e-9;
-    assert!((volume / wanted - 1.0).abs() < 1e-5, "{volume} {wanted}");
+    let moved = if slider.contains("mask") { 1e-2 } else { 1e-4 };
+    assert!((volume / wanted - 1.0).abs() < moved, "{volume} {wanted}");
 }
 
 #[test]

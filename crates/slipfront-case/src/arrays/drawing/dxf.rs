@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use slipfront::surface::{FillRule, Part};
+use slipfront_base::number_format::count;
 use slipfront_base::text::single_line;
 
 use super::chains::{OpenLine, closed};
@@ -110,8 +111,8 @@ pub(super) fn read(bytes: &[u8], block: f64) -> Result<Drawing, String> {
     let mut notes = Vec::new();
     if let Some(first) = drawn.hidden.first() {
         notes.push(format!(
-            "{} of its entities not shown are no texture, the first in line {first}",
-            drawn.hidden.len()
+            "not shown, and so no texture: {}, the first in line {first}",
+            count(drawn.hidden.len(), "object")
         ));
     }
     let mut parts = Vec::new();

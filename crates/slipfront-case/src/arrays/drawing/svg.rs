@@ -2,6 +2,7 @@
 
 use roxmltree::Node;
 use slipfront::surface::Part;
+use slipfront_base::number_format::count;
 use slipfront_base::text::single_line;
 use svgtypes::{
     Length, LengthUnit, NumberListParser, PathParser, PathSegment, TransformListParser, TransformListToken,
@@ -69,8 +70,8 @@ pub(super) fn read(bytes: &[u8], block: f64) -> Result<Drawing, String> {
     for (found, what) in [(reader.hidden, "not shown"), (reader.flat, "without an area")] {
         if let Some(first) = found.first() {
             notes.push(format!(
-                "{} of its elements {what} are no texture, the first in line {first}",
-                found.len()
+                "{what}, and so no texture: {}, the first in line {first}",
+                count(found.len(), "element")
             ));
         }
     }
