@@ -5,6 +5,7 @@ use slipfront::surface::{
 };
 
 use super::error::TextureFileError;
+use super::even_odd::textures;
 use crate::case::Case;
 use crate::case_file::Outline;
 
@@ -69,7 +70,7 @@ impl OutlineDrawing {
             layers: Vec::new(),
             notes: Vec::new(),
         };
-        let textures = case.textures_in_blocks()?;
+        let textures = textures(case)?;
         let corners = textures.iter().map(corners).sum();
         if corners > MAX_CORNERS {
             let most = MAX_CORNERS;
@@ -84,7 +85,8 @@ impl OutlineDrawing {
             let is_drawing = matches!(texture.shape, Shape::Drawing(_));
             let (contours, nests) = match shapes.filter(|_| !overlaps) {
                 Some(mut shapes) => {
-                    // Parts of one shape may enclose each other, if it crosses itself or the slider has holes.
+                    // Parts of one shape may enclose each other, if it crosses itself or the slider has
+                    // holes.
                     let may_nest = matches!(texture.shape, Shape::Polygon(_)) || drawing.slider.len() > 1;
                     let nests = may_nest && shapes.iter().any(|parts| parts.len() > 1);
                     if texture.inverted {

@@ -4,6 +4,7 @@
 mod drawing;
 mod dxf;
 mod error;
+mod even_odd;
 mod gsf;
 mod stl;
 mod svg;
@@ -24,10 +25,10 @@ use slipfront_base::disk::write_atomic;
 
 /// The smallest feature and the smallest gap of the texture, in blocks.
 pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
-    Ok(clearance(&case.model.lattice, &case.textures_in_blocks()?))
+    Ok(clearance(&case.model.lattice, &even_odd::textures(case)?))
 }
 
-/// What a file needs besides the case.
+/// Options of the file of a texture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
     /// Number of pixels per block along a side of a picture, by default one.

@@ -1,6 +1,6 @@
-//! The face of a slider as a closed solid in binary STL, in millimetres: blocks in contact end at z = 0, textured
-//! ones at the depth of the texture below. The back is as far below these. Upper corners of
-//! blocks that touch only along an edge are a little apart.
+//! The face of a slider as a closed solid in binary STL, in millimetres: blocks in contact end at z = 0,
+//! textured ones at the depth of the texture below. The back is as far below these. Upper corners of blocks
+//! that touch only along an edge are a little apart.
 
 use super::error::TextureFileError;
 use super::textured_blocks::textured_blocks;
@@ -9,8 +9,8 @@ use crate::case::Case;
 /// Largest number of triangles: a file of 400 MB.
 const MAX_TRIANGLES: usize = 1 << 23;
 
-/// Shift, in blocks, of a corner at which a block would touch another one along a single edge: a closed surface
-/// has two faces at an edge, not four.
+/// Shift, in blocks, of a corner at which a block would touch another one along a single edge: a closed
+/// surface has two faces at an edge, not four.
 const APART: f64 = 1.0 / 256.0;
 
 /// The solid, with a texture of this depth in m.

@@ -153,8 +153,8 @@ fn curves_enclose_their_area(name: &str, text: &str, wanted: f64) {
         panic!("{parts:?}")
     };
     let found: f64 = rings.iter().map(|ring| area(ring)).sum();
-    // Chords within a ten-thousandth of a block of curves that are at most ten blocks long, and corners rounded
-    // to a hundredth where lines are joined.
+    // Chords within a ten-thousandth of a block of curves that are at most ten blocks long, and corners
+    // rounded to a hundredth where lines are joined.
     assert!((found - wanted).abs() < 1e-3, "{found} {wanted}");
 }
 

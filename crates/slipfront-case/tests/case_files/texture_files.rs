@@ -279,9 +279,9 @@ fn dxf(text: &str, block: f64) -> Vec<Element> {
     layers.into_values().collect()
 }
 
-/// Every block is textured according to the elements, except for centres within 1e-9 block of an outline, and
-/// again when the drawing is read, except for centres within two ten-thousandths: chords differ from curves by
-/// one, and the elements from these by rounding.
+/// Every block is textured according to the elements, except for centres within 1e-9 block of an outline,
+/// and again when the drawing is read, except for centres within two ten-thousandths: chords differ from
+/// curves by one, and the elements from these by rounding.
 fn expect_filled(elements: &[Element], [textured, again]: [&[bool]; 2], nx: usize, what: &str) {
     for (b, (textured, again)) in textured.iter().zip(again).enumerate() {
         let center = [(b % nx) as f64 + 0.5, (b / nx) as f64 + 0.5];
@@ -413,6 +413,34 @@ fn every_texture_and_the_slider_have_a_layer_and_a_colour() {
         );
         assert!(dxf.contains(&format!("\n8\n{layer}\n")), "{layer}");
     }
+}
+
+/// Outlines of a drawing remain outlines, and those of parts that overlap become edges of blocks.
+#[test_case("M0.1 0.1L1.2 0.1 0.7 0.9zM2 1h1v.3h-1z", 7, false; "beside each other")]
+#[test_case("M0 0.1h2v2h-2z M0.3 0.4v1h1v-1z", 8, false; "within each other")]
+#[test_case("M0.1 0.1L1.2 0.1 0.7 0.9z", 3, true; "one")]
+#[test_case("M0.1 0.1h2v2h-2zM1 1h2v2h-2z", 8, false; "over each other")]
+fn outlines_of_drawings_remain(path: &str, corners: usize, has_feature: bool) {
+    let folder = tempfile::tempdir().unwrap();
+    let page = "<svg width='4mm' height='3mm' viewBox='0 0 4 3'>";
+    fs::write(
+        folder.path().join("a.svg"),
+        format!("{page}<path d='{path}'/></svg>"),
+    )
+    .unwrap();
+    let text = "slider = { blocks = [40, 30], block_size = '100 um' }\n[[texture]]\nshape = 'drawing'\nfile = 'a.svg'";
+    let case = Case::parse(text, "case", folder.path(), &[]).unwrap();
+    let notes = write(&case, &folder.path().join("a.dxf"), Options::default()).unwrap();
+    let dxf = fs::read_to_string(folder.path().join("a.dxf")).unwrap();
+    let found = entities(&dxf, |layer| layer != "SLIDER").into_iter();
+    let count = found
+        .map(|(kind, pairs)| closed_line(kind, &pairs, 0.1).len())
+        .sum::<usize>();
+    assert_eq!(
+        (count, notes.len()),
+        (corners, usize::from(path.ends_with("h2v2h-2z")))
+    );
+    assert_eq!(smallest(&case).unwrap().feature.is_some(), has_feature);
 }
 
 #[test]

@@ -8,8 +8,9 @@ use slipfront_base::number_format::count;
 use slipfront_base::text::single_line;
 
 use super::chains::{OpenLine, closed};
+use super::outlines::{Drawing, MAX_DEPTH, SLIDER_LAYER};
 use super::pen::{Budget, CLOSE, Map, Pen, Point, direction};
-use super::{Drawing, MAX_DEPTH, SLIDER_LAYER, splines};
+use super::splines;
 
 /// Lengths of the units that `$INSUNITS` numbers, mm; 0 is none.
 const UNITS_MM: [f64; 15] = [
@@ -251,7 +252,7 @@ impl Layer {
     }
 }
 
-/// What has been drawn so far.
+/// Lines drawn from the entities of a file, layer by layer.
 struct Drawn<'r> {
     file: &'r Reader<'r>,
     budget: Budget,

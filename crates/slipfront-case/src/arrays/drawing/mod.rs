@@ -4,6 +4,7 @@
 mod chains;
 #[cfg(feature = "drawings")]
 mod dxf;
+mod outlines;
 #[cfg(feature = "drawings")]
 mod pen;
 #[cfg(feature = "drawings")]
@@ -16,27 +17,12 @@ mod svg_style;
 use std::io::Read;
 use std::path::Path;
 
-use slipfront::surface::Part;
-
+pub use self::outlines::Drawing;
+pub(crate) use self::outlines::SLIDER_LAYER;
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 
 /// Longest file, bytes.
 const FILE_MAX_BYTES: u64 = 64 << 20;
-/// Deepest nesting of groups and blocks.
-#[cfg(feature = "drawings")]
-const MAX_DEPTH: usize = 32;
-/// Name of the layer that `slipfront texture` gives the edge of the slider, which is no texture.
-pub(crate) const SLIDER_LAYER: &str = "SLIDER";
-
-/// Outlines in blocks, from the lower left corner of an SVG page or the origin of a DXF drawing, y upwards.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
-    /// Outlines that are filled together; the inside of the drawing is the union of all.
-    pub parts: Vec<Part>,
-    /// Notes about what the file shows and the parts leave out.
-    pub notes: Vec<String>,
-}
-
 /// Refuses a drawing that is longer than 64 MiB.
 ///
 /// # Errors

@@ -9,9 +9,10 @@ use svgtypes::{
     ViewBox,
 };
 
+use super::outlines::{Drawing, MAX_DEPTH, SLIDER_LAYER};
 use super::pen::{Budget, Map, Pen, Point, difference, direction, length};
 use super::svg_style::{Paint, Rules, Style};
-use super::{Drawing, MAX_DEPTH, SLIDER_LAYER};
+
 use crate::xml;
 
 /// Largest number of nodes of the file.

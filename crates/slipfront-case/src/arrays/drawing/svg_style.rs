@@ -15,7 +15,7 @@ pub(super) enum Paint {
     Dark,
 }
 
-/// What an element inherits.
+/// Paint, fill rule and visibility that an element of an SVG inherits.
 #[derive(Clone, Copy)]
 pub(super) struct Style {
     pub(super) fill: Paint,

@@ -16,8 +16,8 @@ key_rows! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Drawing {
-        /// Filled shapes of an SVG with width and height in mm, whose page has its lower left corner at that of
-        /// the slider; or closed lines of a DXF with a unit, whose origin lies there.
+        /// Filled shapes of an SVG with width and height in mm, whose page has its lower left corner at that
+        /// of the slider; or closed lines of a DXF with a unit, whose origin lies there.
         pub file: String = key("", KeyKind::File(&["svg", "dxf"])),
     }
 }
