@@ -22,8 +22,8 @@ use crate::case_file::{CaseError, CaseFile};
 /// The texture as requested and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
-    /// Requested A*, %; none if there is a mask, a polygon, a drawing or the depth of a height map, which have
-    /// an area only after meshing.
+    /// Requested A*, %; none if there is a mask, a polygon, a drawing or the depth of a height map, which
+    /// have an area only after meshing.
     pub asked_percent: Option<f64>,
     /// A* as meshed, % (Eq. 15).
     pub meshed_percent: f64,
