@@ -266,13 +266,16 @@ impl Drawn<'_> {
     fn entities(&mut self, entities: &[&Record], map: Map, outer: &str, depth: usize) -> Result<(), String> {
         let mut rest = entities;
         while let [entity, after @ ..] = rest {
-            self.budget.take(1.0)?;
             // The vertices of a polyline and the attributes of a block follow it.
             let count = after
                 .iter()
                 .take_while(|part| ["VERTEX", "ATTRIB", "SEQEND"].contains(&part.kind))
                 .count();
             let (parts, next) = after.split_at(count);
+            // Records are searched from their beginning, once for each copy of a block.
+            let length = |record: &&Record| 1 + record.pairs.len() / 16;
+            let lengths = length(entity) + parts.iter().map(length).sum::<usize>();
+            self.budget.take(lengths as f64)?;
             rest = next;
             let layer = match entity.text(8).unwrap_or("0") {
                 "0" => outer,

@@ -62,17 +62,17 @@ pub(super) fn read(bytes: &[u8], block: f64) -> Result<Drawing, String> {
         rules: Rules::of(&document)?,
         budget: Budget::new(),
         parts: Vec::new(),
-        hidden: Vec::new(),
-        flat: Vec::new(),
+        hidden: LeftOut::default(),
+        flat: LeftOut::default(),
     };
     let page = page(root, block)?;
     reader.group(root, page, Style::INITIAL, 0)?;
     let mut notes = Vec::new();
     for (found, what) in [(reader.hidden, "not shown"), (reader.flat, "without an area")] {
-        if let Some(first) = found.first() {
+        if let Some(first) = found.first {
             notes.push(format!(
                 "{what}, and so no texture: {}, the first in line {first}",
-                count(found.len(), "element")
+                count(found.count, "element")
             ));
         }
     }
@@ -181,9 +181,24 @@ struct Reader<'x> {
     rules: Rules<'x>,
     budget: Budget,
     parts: Vec<Part>,
-    /// Lines of elements that are not shown, and of those that have no area.
-    hidden: Vec<u32>,
-    flat: Vec<u32>,
+    /// Elements that are not shown, and those that have no area.
+    hidden: LeftOut,
+    flat: LeftOut,
+}
+
+/// Elements that are no texture: how many, and the line of the first, which is found by counting all lines
+/// before it.
+#[derive(Default)]
+struct LeftOut {
+    count: usize,
+    first: Option<u32>,
+}
+
+impl LeftOut {
+    fn add(&mut self, node: Node) {
+        self.count += 1;
+        self.first.get_or_insert_with(|| line(node));
+    }
 }
 
 impl<'x> Reader<'x> {
@@ -212,7 +227,7 @@ impl<'x> Reader<'x> {
             return Ok(());
         }
         if self.rules.is_hidden(node) {
-            self.hidden.push(line(node));
+            self.hidden.add(node);
             return Ok(());
         }
         for name in ["clip-path", "mask", "filter"] {
@@ -259,7 +274,7 @@ impl<'x> Reader<'x> {
         match (style.is_visible, fill, style.stroke) {
             (true, Paint::Dark, _) => (),
             (false, ..) | (_, Paint::Nothing, Paint::Nothing) => {
-                self.hidden.push(line(node));
+                self.hidden.add(node);
                 return Ok(());
             }
             (_, Paint::White, _) => {
@@ -291,7 +306,7 @@ impl<'x> Reader<'x> {
             if ring.len() > 2 {
                 rings.push(ring);
             } else if ring.len() > 1 || node.tag_name().name() != "path" {
-                self.flat.push(line(node));
+                self.flat.add(node);
             }
         }
         if !rings.is_empty() {

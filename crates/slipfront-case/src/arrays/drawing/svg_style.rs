@@ -1,11 +1,11 @@
 //! How an element of an SVG is painted: attributes, declarations, and rules for classes.
 
+use std::collections::HashMap;
+
 use roxmltree::{Document, Node};
 use slipfront::surface::FillRule;
+use slipfront_base::text::single_line;
 use svgtypes::Color;
-
-/// Largest number of rules of a file: drawing programs write one for each colour.
-const MAX_RULES: usize = 256;
 
 /// Paint of an element, as far as it matters to its outline.
 #[derive(Clone, Copy, PartialEq)]
@@ -34,62 +34,55 @@ impl Style {
     };
 }
 
-/// The rules of a file: for each class, its declarations.
-pub(super) struct Rules<'x>(Vec<(&'x str, &'x str)>);
+/// The properties that rules give to a class, each with the number of its rule.
+type Declared<'x> = HashMap<&'x str, (usize, &'x str)>;
+
+/// The rules of a file, by class.
+pub(super) struct Rules<'x>(HashMap<&'x str, Declared<'x>>);
 
 impl<'x> Rules<'x> {
     /// Reads the style sheets.
     pub(super) fn of(document: &'x Document) -> Result<Self, String> {
-        let mut rules = Vec::new();
+        let mut rules: HashMap<&str, Declared> = HashMap::new();
         let sheets = document
             .descendants()
             .filter(|node| node.tag_name().name() == "style");
-        for sheet in sheets
+        let texts = sheets
             .flat_map(|sheet| sheet.children())
-            .filter_map(|node| node.text())
-        {
-            for rule in sheet.split('}').filter(|rule| !rule.trim().is_empty()) {
-                let (selectors, declarations) = rule.split_once('{').unwrap_or((rule, ""));
-                for selector in selectors.split(',').map(str::trim) {
-                    let class = selector
-                        .strip_prefix('.')
-                        .filter(|class| !class.contains([' ', '.', ':', '>', '[']));
-                    let Some(class) = class else {
-                        return Err(format!(
-                            "has a style sheet with `{selector}`, and only rules for classes, such as `.cut`, are read: export it \
-                             with presentation attributes or inline styles"
-                        ));
-                    };
-                    rules.push((class, declarations));
-                }
+            .filter_map(|node| node.text());
+        let all = texts
+            .flat_map(|sheet| sheet.split('}'))
+            .filter(|rule| !rule.trim().is_empty());
+        for (number, rule) in all.enumerate() {
+            let (selectors, text) = rule.split_once('{').unwrap_or((rule, ""));
+            for selector in selectors.split(',').map(str::trim) {
+                let class = selector.strip_prefix('.');
+                let class = class.filter(|class| !class.contains([' ', '.', ':', '>', '[', '*']));
+                let Some(class) = class else {
+                    return Err(format!(
+                        "has a style sheet with `{}`, and only rules for classes, such as `.cut`, are read: export it with \
+                         presentation attributes or inline styles",
+                        single_line(&selector.chars().take(40).collect::<String>())
+                    ));
+                };
+                let known = rules.entry(class).or_default();
+                known.extend(declarations(text).map(|(name, value)| (name, (number, value))));
             }
-        }
-        if rules.len() > MAX_RULES {
-            return Err(format!(
-                "has {} rules in style sheets, and at most {MAX_RULES} are read: export it with presentation attributes",
-                rules.len()
-            ));
         }
         Ok(Self(rules))
     }
 
     /// A property of an element: of its style, of the last rule for one of its classes, or its attribute.
     pub(super) fn property(&self, node: Node<'x, 'x>, name: &str) -> Option<&'x str> {
-        let declared = |text: &'x str| {
-            let declarations = text
-                .split(';')
-                .filter_map(|declaration| declaration.split_once(':'));
-            let mut own = declarations.filter(|(key, _)| key.trim() == name);
-            own.next_back()
-                .map(|(_, value)| value.trim().trim_end_matches("!important").trim())
-        };
-        let classes = node.attribute("class").unwrap_or_default();
-        let rules = self.0.iter().rev();
-        let mut of_classes =
-            rules.filter(|(class, _)| classes.split_ascii_whitespace().any(|own| own == *class));
-        let of_style = node.attribute("style").and_then(declared);
-        of_style
-            .or_else(|| of_classes.find_map(|(_, declarations)| declared(declarations)))
+        let mut own =
+            declarations(node.attribute("style").unwrap_or_default()).filter(|(key, _)| *key == name);
+        let classes = node
+            .attribute("class")
+            .unwrap_or_default()
+            .split_ascii_whitespace();
+        let of_classes = classes.filter_map(|class| self.0.get(class)?.get(name));
+        let own = own.next_back().map(|(_, value)| value);
+        own.or_else(|| of_classes.max().map(|(_, value)| *value))
             .or_else(|| node.attribute(name).map(str::trim))
     }
 
@@ -127,6 +120,14 @@ impl<'x> Rules<'x> {
     pub(super) fn is_hidden(&self, node: Node<'x, 'x>) -> bool {
         self.property(node, "display") == Some("none") || self.property(node, "opacity").is_some_and(is_zero)
     }
+}
+
+/// Names and values of a list of declarations.
+fn declarations(text: &str) -> impl DoubleEndedIterator<Item = (&str, &str)> {
+    let pairs = text
+        .split(';')
+        .filter_map(|declaration| declaration.split_once(':'));
+    pairs.map(|(name, value)| (name.trim(), value.trim().trim_end_matches("!important").trim()))
 }
 
 fn is_zero(opacity: &str) -> bool {
