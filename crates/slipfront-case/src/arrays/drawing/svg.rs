@@ -5,8 +5,7 @@ use slipfront::surface::Part;
 use slipfront_base::number_format::count;
 use slipfront_base::text::single_line;
 use svgtypes::{
-    Length, LengthUnit, NumberListParser, PathParser, PathSegment, TransformListParser, TransformListToken,
-    ViewBox,
+    Length, LengthUnit, PathParser, PathSegment, TransformListParser, TransformListToken, ViewBox,
 };
 
 use super::outlines::{Drawing, MAX_DEPTH, SLIDER_LAYER};
@@ -66,7 +65,7 @@ pub(super) fn read(bytes: &[u8], block: f64) -> Result<Drawing, String> {
         flat: LeftOut::default(),
     };
     let page = page(root, block)?;
-    reader.group(root, page, Style::INITIAL, 0)?;
+    reader.group(root, page.after(transform(root)?), Style::INITIAL, 0)?;
     let mut notes = Vec::new();
     for (found, what) in [(reader.hidden, "not shown"), (reader.flat, "without an area")] {
         if let Some(first) = found.first {
@@ -291,12 +290,8 @@ impl<'x> Reader<'x> {
             }
         }
         let mut pen = Pen::new(map, &mut self.budget);
-        let drawn = outlines(node, &mut pen).map_err(|problem| match problem {
-            Problem::Of(problem) => about(node, &problem),
-            Problem::File(problem) => problem,
-        })?;
         let mut rings = Vec::new();
-        for (ring, is_closed) in drawn {
+        for (ring, is_closed) in outlines(node, &mut pen)? {
             if !is_closed && ring.len() > 2 {
                 return Err(about(
                     node,
@@ -305,27 +300,15 @@ impl<'x> Reader<'x> {
             }
             if ring.len() > 2 {
                 rings.push(ring);
-            } else if ring.len() > 1 || node.tag_name().name() != "path" {
-                self.flat.add(node);
             }
         }
-        if !rings.is_empty() {
+        if rings.is_empty() {
+            self.flat.add(node);
+        } else {
             let rule = style.rule;
             self.parts.push(Part { rings, rule });
         }
         Ok(())
-    }
-}
-
-/// A problem of an element, which is yet to be named, or of the file.
-enum Problem {
-    Of(String),
-    File(String),
-}
-
-impl From<String> for Problem {
-    fn from(problem: String) -> Self {
-        Self::File(problem)
     }
 }
 
@@ -351,7 +334,7 @@ fn transform(node: Node) -> Result<Map, String> {
 }
 
 /// The outlines of an element.
-fn outlines(node: Node, pen: &mut Pen) -> Result<Vec<Outline>, Problem> {
+fn outlines(node: Node, pen: &mut Pen) -> Result<Vec<Outline>, String> {
     let optional = |name: &str| {
         let Some(text) = node.attribute(name).filter(|text| *text != "auto") else {
             return Ok(None);
@@ -370,68 +353,51 @@ fn outlines(node: Node, pen: &mut Pen) -> Result<Vec<Outline>, Problem> {
         let is_size = !["x", "y", "cx", "cy"].contains(&name);
         let read = read.filter(|read| *read >= 0.0 || !is_size);
         read.map(Some).ok_or_else(|| {
-            Problem::Of(format!(
-                "with {name}=\"{}\", which is no length: give a number",
-                single_line(text)
-            ))
+            let text = single_line(text);
+            about(
+                node,
+                &format!("with {name}=\"{text}\", which is no length: give a number"),
+            )
         })
     };
     let number = |name: &str| optional(name).map(|read| read.unwrap_or(0.0));
     match node.tag_name().name() {
-        "path" => return path(node.attribute("d").unwrap_or_default(), pen),
-        "polygon" | "polyline" => {
-            let numbers = NumberListParser::from(node.attribute("points").unwrap_or_default());
-            let numbers: Result<Vec<f64>, _> = numbers.collect();
-            let numbers = numbers.map_err(|error| Problem::Of(format!("with unreadable points: {error}")))?;
-            let (points, []) = numbers.as_chunks() else {
-                return Err(Problem::Of(
-                    "with an odd number of coordinates: delete or add one".to_owned(),
-                ));
-            };
-            points.iter().try_for_each(|point| pen.to(*point))?;
-            if let ("polygon", Some(first)) = (node.tag_name().name(), points.first()) {
-                pen.to(*first)?;
-            }
+        "path" => path(node, node.attribute("d").unwrap_or_default(), pen),
+        kind @ ("polygon" | "polyline") => {
+            let end = if kind == "polygon" { "z" } else { "" };
+            let points = node.attribute("points").unwrap_or_default();
+            path(node, &format!("M{points}{end}"), pen)
         }
         "rect" => {
             let [x, y, width, height] = [number("x")?, number("y")?, number("width")?, number("height")?];
-            let radii = [optional("rx")?, optional("ry")?];
-            let [rx, ry] =
-                [radii[0].or(radii[1]), radii[1].or(radii[0])].map(|radius| radius.unwrap_or(0.0).max(0.0));
-            let [rx, ry] = [rx.min(0.5 * width), ry.min(0.5 * height)];
-            let quarter = std::f64::consts::FRAC_PI_2;
-            let [left, right, bottom, top] = [x + rx, x + width - rx, y + ry, y + height - ry];
-            pen.to([left, y])?;
-            for (k, [cx, cy]) in (-1..3).zip([[right, bottom], [right, top], [left, top], [left, bottom]]) {
-                let corner = |turn: i32| {
-                    let [c, s] = [(1, 0), (0, 1), (-1, 0), (0, -1)]
-                        .map(|(c, s)| [f64::from(c), f64::from(s)])[turn.rem_euclid(4) as usize];
-                    [cx + c * rx, cy + s * ry]
-                };
-                pen.to(corner(k))?;
-                if rx > 0.0 && ry > 0.0 {
-                    let angles = [k, k + 1].map(|turn| f64::from(turn) * quarter);
-                    pen.arc([cx, cy], [[rx, 0.0], [0.0, ry]], angles, corner(k + 1))?;
-                }
-            }
-            pen.to([left, y])?;
-        }
-        "circle" => {
-            let r = number("r")?;
-            pen.ellipse([number("cx")?, number("cy")?], [[r, 0.0], [0.0, r]])?;
-        }
-        // An ellipse: lines are never filled.
-        _ => {
             let [rx, ry] = [optional("rx")?, optional("ry")?];
             let [rx, ry] = [rx.or(ry), ry.or(rx)].map(|radius| radius.unwrap_or(0.0));
+            let [rx, ry] = [rx.min(0.5 * width), ry.min(0.5 * height)];
+            let [h, v] = [width - 2.0 * rx, height - 2.0 * ry];
+            let corner = |x: f64, y: f64| format!("a{rx} {ry} 0 0 1 {x} {y}");
+            let corners = [corner(rx, ry), corner(-rx, ry), corner(-rx, -ry), corner(rx, -ry)];
+            let [a, b, c, d] = corners;
+            path(
+                node,
+                &format!("M{} {y}h{h}{a}v{v}{b}h{}{c}v{}{d}z", x + rx, -h, -v),
+                pen,
+            )
+        }
+        // A circle or an ellipse: lines are never filled.
+        kind => {
+            let [rx, ry] = match kind {
+                "circle" => [optional("r")?; 2],
+                _ => [optional("rx")?, optional("ry")?],
+            };
+            let [rx, ry] = [rx.or(ry), ry.or(rx)].map(|radius| radius.unwrap_or(0.0));
             pen.ellipse([number("cx")?, number("cy")?], [[rx, 0.0], [0.0, ry]])?;
+            Ok(vec![pen.take()])
         }
     }
-    Ok(vec![pen.take()])
 }
 
 /// The outlines of a path.
-fn path(commands: &str, pen: &mut Pen) -> Result<Vec<Outline>, Problem> {
+fn path(node: Node, commands: &str, pen: &mut Pen) -> Result<Vec<Outline>, String> {
     let mut done = Vec::new();
     let mut start = [0.0; 2];
     // Control point that a smooth curve mirrors, and whether it is that of a cubic curve.
@@ -439,7 +405,8 @@ fn path(commands: &str, pen: &mut Pen) -> Result<Vec<Outline>, Problem> {
     // A line may follow the end of another one without a move.
     let mut is_begun = false;
     for segment in PathParser::from(commands) {
-        let segment = segment.map_err(|error| Problem::Of(format!("with unreadable commands: {error}")))?;
+        let segment =
+            segment.map_err(|error| about(node, &format!("with unreadable coordinates: {error}")))?;
         let (here, last) = (pen.here, control.take());
         let from = |abs: bool| if abs { [0.0; 2] } else { here };
         let at = |abs: bool, x: f64, y: f64| [from(abs)[0] + x, from(abs)[1] + y];
