@@ -11,7 +11,7 @@ use super::files::Watch;
 use super::inputs::Inputs;
 use super::slider::outline;
 use super::topography::{Ground, Topography};
-use crate::arrays::{Drawing, Slab};
+use crate::arrays::Slab;
 use crate::case_file::{
     Arrangement, Blocks, CaseError, CaseFile, Count, Inside, MAX_COUNT, Mask, Pattern, Pitch, Shape, Texture,
 };
@@ -99,8 +99,6 @@ pub(super) fn shapes_in_blocks(
                 let key = format!("{key}.file");
                 let block = scales.block_size * 1e3;
                 let read = inputs.read_drawing(file, (&key, &drawing.file), block, watch)?;
-                within_effort(&read, &arrays, lattice)
-                    .map_err(|sentence| file.source.error(&key, sentence))?;
                 notes.extend(read.notes.iter().map(|note| format!("{}: {note}", drawing.file)));
                 (surface::Shape::Drawing(read.parts.into()), None)
             }
@@ -315,26 +313,6 @@ impl<'a> Masks<'a> {
     }
 }
 
-/// Most corners and crossings of rows of blocks of all copies of a drawing, which take some seconds.
-const EFFORT: f64 = (1 << 26) as f64;
-
-fn within_effort(drawing: &Drawing, arrays: &[surface::Array], lattice: &Lattice) -> Result<(), String> {
-    let rings = || drawing.parts.iter().flat_map(|part| &part.rings);
-    let corners = rings().map(Vec::len).sum::<usize>() as f64;
-    let height = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]).abs().min(lattice.ny as f64);
-    let heights: f64 = rings().flat_map(|ring| ring.windows(2)).map(height).sum();
-    let rows: usize = arrays.iter().map(|array| array.count[1]).product();
-    let effort = corners * rows as f64 + heights * surface::n_copies(arrays) as f64;
-    if effort <= EFFORT {
-        return Ok(());
-    }
-    Err(format!(
-        "the outlines of the drawing have {corners} corners and cross {heights:.0} rows of blocks, in {} copies; draw them with \
-         fewer lines, reduce `array`, or write a picture for a mask",
-        surface::n_copies(arrays)
-    ))
-}
-
 /// Largest extent of a texture, in slider lengths. A texture farther away is a typing error, and on a
 /// periodic axis its position would be lost to rounding.
 const REACH: f64 = 100.0;
@@ -365,6 +343,11 @@ fn meshing_steps(shape: &surface::Shape, arrays: &[surface::Array]) -> f64 {
         surface::Shape::Polygon(points) => {
             let next = points.iter().cycle().skip(1);
             points.iter().zip(next).map(|(p, q)| (q[1] - p[1]).abs()).sum()
+        }
+        surface::Shape::Drawing(parts) => {
+            let rings = parts.iter().flat_map(|part| &part.rings);
+            let sides = rings.flat_map(|ring| ring.windows(2));
+            sides.map(|side| (side[1][1] - side[0][1]).abs()).sum()
         }
         surface::Shape::Tile(tile) => (tile.size[0] * tile.size[1]) as f64,
         surface::Shape::Cavity(_) | surface::Shape::Groove(_) => 4.0 * shape.reach(),

@@ -13,6 +13,8 @@ mod splines;
 mod svg;
 #[cfg(feature = "drawings")]
 mod svg_style;
+#[cfg(feature = "drawings")]
+mod tree;
 
 use std::io::Read;
 use std::path::Path;

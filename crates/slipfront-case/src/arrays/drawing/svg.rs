@@ -11,8 +11,7 @@ use svgtypes::{
 use super::outlines::{Drawing, MAX_DEPTH, SLIDER_LAYER};
 use super::pen::{Budget, Map, Pen, Point, difference, direction, length};
 use super::svg_style::{Paint, Rules, Style};
-
-use crate::xml;
+use super::tree;
 
 /// Largest number of nodes of the file.
 const NODES_MAX: u32 = 1 << 20;
@@ -49,7 +48,7 @@ pub(super) fn read(bytes: &[u8], block: f64) -> Result<Drawing, String> {
     })?;
     let text = without_type(text)?;
     let remedy = |sentence: String| format!("is not a readable drawing: {sentence}; save it as plain SVG");
-    let document = xml::parse("the file", &text, NODES_MAX).map_err(remedy)?;
+    let document = tree::parse("the file", &text, NODES_MAX).map_err(remedy)?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
         return Err(format!(
