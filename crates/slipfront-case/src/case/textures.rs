@@ -331,7 +331,8 @@ fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lat
     ))
 }
 
-/// Largest number of steps in which the textures of a small slider are meshed, a few minutes of them.
+/// Largest number of steps in which the textures of a small slider are meshed: half a minute where outlines
+/// cross each row many times, else a second.
 const STEPS: f64 = 1e9;
 /// Number of steps by which it grows with each block: a hundred textures may cover a large slider.
 const STEPS_PER_BLOCK: f64 = 100.0;
