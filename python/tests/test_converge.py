@@ -44,8 +44,8 @@ def sheet(tmp_path: Path) -> Path:
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """Every file of a folder but the journal, whose lines stand in the order in which runs ended."""
-    every = (path for path in folder.rglob("*") if path.is_file() and path.name != "runs.jsonl")
+    """Every file of a folder but the journal, whose lines have times and stand in the order in which runs ended, and its hash."""
+    every = (path for path in folder.rglob("*") if path.is_file() and path.name not in ("runs.jsonl", "checksums.json"))
     return {str(path.relative_to(folder)): path.read_bytes() for path in every}
 
 
