@@ -34,6 +34,7 @@ mod motion_bounds;
 mod properties;
 mod pull;
 mod quanta;
+mod response;
 mod rest;
 mod schedule;
 mod scratch;
@@ -59,6 +60,7 @@ pub use layout::{Layout, TILE, VECTORS};
 pub use motion_bounds::MotionBounds;
 pub use properties::{Blocks, Properties, Sheet};
 pub use quanta::Quanta;
+pub use response::{Join, SurfaceResponse, Threads, next_side};
 pub use schedule::SweepConditions;
 pub use springs::{SeriesNumbers, SquareRoot};
 pub use step::Step;
@@ -69,7 +71,7 @@ pub use sweep::{Springs, measure_displacements, sweep};
 pub use thresholds::{ChangingLaw, FallWithSlip, FallWithSpeed, Thresholds};
 pub use upper_sheet::UpperSheet;
 pub use variations::LargestFactors;
-pub use vector::LANES;
+pub use vector::{LANES, vectorized};
 
 /// BLAKE3 hash of the sources of this crate.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

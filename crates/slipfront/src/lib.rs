@@ -34,6 +34,7 @@ pub mod stability;
 pub mod surface;
 pub mod testing;
 
+mod body;
 mod clock;
 mod critical_size;
 mod dead_load;
@@ -58,6 +59,7 @@ mod vector_field;
 
 pub use slipfront_kernel::{communicator, lattice};
 
+pub use body::{Body, Face};
 pub use checkpoint::Checkpoint;
 pub use communicator::Communicator;
 pub use dead_load::{DeadLoad, LoadField};
@@ -72,6 +74,7 @@ pub use scales::Scales;
 pub use sheets::Sheet;
 pub use simulation::Simulation;
 pub use slider::{DriveSprings, Outline, Slider};
+pub use slipfront_kernel::next_side;
 pub use snapshot::Snapshot;
 pub use state::State;
 pub use stop::{Stop, StopReason};

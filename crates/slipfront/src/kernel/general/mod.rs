@@ -23,7 +23,7 @@ use self::band::{Band, BandSums, Summed};
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::{Engine, TakeSliding};
-use super::vectors::{level, vectorized};
+use super::vectors::level;
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::Clock;
 use crate::communicator::Communicator;
@@ -34,8 +34,8 @@ use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::VectorField;
-use slipfront_kernel::MotionBounds;
 use slipfront_kernel::fixed_point::RunningSum;
+use slipfront_kernel::{MotionBounds, vectorized};
 
 /// Least number of blocks in a band if there are several: some tens of microseconds of work.
 const MIN_BAND_BLOCKS: usize = 1024;
