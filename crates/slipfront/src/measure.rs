@@ -227,7 +227,7 @@ impl Peak {
         self.is_fall_to(mu_star) && clock.drive_time_star() - self.drive_time_star <= self.longest_fall
     }
 
-    fn is_fall_to(&self, mu_star: f64) -> bool {
+    pub(crate) fn is_fall_to(&self, mu_star: f64) -> bool {
         let half_way = 0.5 * (self.mu_star + self.steady_level);
         self.mu_star > self.steady_level && mu_star <= half_way && self.is_above(mu_star)
     }
@@ -238,16 +238,19 @@ impl Peak {
         self.mu_star - sliding >= LEAST_FALL * (self.share_of_load - self.steady_level).max(0.0)
     }
 
-    /// Includes the next step.
-    pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint) {
+    /// Includes the next step; `counts` says whether it can be the peak, as only instants at rest can be under
+    /// slow loading of a bulk body.
+    pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint, counts: bool) {
         let (mu_star, time_star) = (point.mu_star, clock.time_star());
-        // The whole run counts, at any path: 0 is below infinity.
-        self.largest
-            .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
+        if counts {
+            // The whole run counts, at any path: 0 is below infinity.
+            self.largest
+                .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
+        }
         if self.is_final() {
             return;
         }
-        let is_higher = mu_star > self.mu_star;
+        let is_higher = counts && mu_star > self.mu_star;
         if is_higher {
             (self.mu_star, self.step, self.time_star) = (mu_star, clock.step, time_star);
             self.mu_lateral_star = point.mu_lateral_star;
@@ -288,7 +291,7 @@ mod tests {
                 mu_lateral_star: -mu,
                 ..CurvePoint::default()
             };
-            peak.update(&clock, &point);
+            peak.update(&clock, &point, true);
             clock = clock.next(true);
         }
         peak

@@ -124,7 +124,7 @@ impl Snapshot<'_> {
         if !load.acts() {
             return 0.0;
         }
-        // The sum over equal blocks is known already, also over those of the highest sheet.
+        // The sum over equal blocks is known already.
         if load.field.is_none() && slider.drive_springs.is_none() {
             return dot(load.force, self.totals.displacement);
         }
@@ -222,8 +222,11 @@ impl Snapshot<'_> {
     /// The next instant: whether a held drive moves until then is known now.
     pub(crate) fn next_clock(&self) -> Clock {
         let rests_by_force = self.clock.rest == Rest::ByForce { at_rest: true };
-        let moves = self.model.drive.moves_after(self.totals.n_slipping);
-        self.clock.next(rests_by_force || moves)
+        let moves = match self.clock.rest {
+            Rest::ByForce { .. } if self.model.rests_by_excess() => rests_by_force,
+            _ => rests_by_force || self.model.drive.moves_after(self.totals.n_slipping),
+        };
+        self.clock.next(moves)
     }
 
     /// Time of the drive at the next step.
