@@ -16,16 +16,25 @@
 
 use std::f64::consts::TAU;
 
+use serde::{Deserialize, Serialize};
 use slipfront_kernel::SurfaceResponse;
 
 /// What holds the face of a body against its foundation, apart from friction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Face {
     /// The pressure is given at every place, as on a compliant foundation: the face bends freely.
     #[default]
     Pressure,
     /// The face stays flat, as on a rigid foundation that it touches everywhere.
     Flat,
+}
+
+impl Face {
+    /// Whether pressure is prescribed.
+    pub fn is_pressure(&self) -> bool {
+        *self == Self::Pressure
+    }
 }
 
 /// An isotropic body over the face, in units of the block size.
@@ -75,6 +84,15 @@ impl Body {
             }
         };
         [along, 1.0 / libm::tanh(x)].map(|factor| self.shear_modulus() * q * factor)
+    }
+
+    /// Traction over displacement along a wave of wave number q per block, or of a displacement that is equal
+    /// everywhere for q = 0.
+    pub fn along(&self, q: f64) -> f64 {
+        if q == 0.0 {
+            return self.uniform_stiffness();
+        }
+        self.stiffness(q)[0]
     }
 
     /// Traction over a displacement that is equal everywhere, `G/H`; 0 for a deep body.

@@ -208,7 +208,7 @@ impl Model {
 
     /// Whether a held drive waits until no force on a block exceeds its strength by more than a small share,
     /// as it does for a bulk body; else until no block in contact slides.
-    pub(crate) fn rests_by_excess(&self) -> bool {
+    pub fn rests_by_excess(&self) -> bool {
         self.body.is_some() && self.drive.is_held()
     }
 

@@ -6,12 +6,15 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::checkpoint::Checkpoint;
 use crate::drive::{Loading, Program};
 use crate::error::RunError;
 use crate::kernel::Execution;
 use crate::model::Model;
 use crate::simulation::Simulation;
+use crate::state::State;
 
 /// Rise of mu* in the first increments if no block slips.
 const INCREMENT: f64 = 0.02;
@@ -23,12 +26,12 @@ const REFINEMENT: f64 = 4.0;
 const SIZES: usize = 4;
 
 /// Increments of a held drive up to the onset of sliding.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Increments {
     /// Speed V* of the first increments: their path per time step.
     pub v_star: f64,
     /// The increments, as speeds of the drive in the time of the drive.
-    pub program: Arc<Program>,
+    pub program: Program,
     /// Number of increments up to the onset, with the one that leads to it.
     pub onset_steps: u64,
 }
@@ -53,11 +56,12 @@ struct Saved {
 }
 
 impl Search {
-    /// A search from rest. It ends after the path of `most` increments of the first size, if nothing runs away.
-    pub fn new(model: Model, dt_star: f64, execution: Execution, most: u64) -> Self {
+    /// A search from the given state, or from rest. It ends after the path of `most` increments of the first
+    /// size, if nothing runs away.
+    pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution, most: u64) -> Self {
         let counts = vec![0];
         let first = with_increments(&model, dt_star, &counts);
-        let simulation = Simulation::new(first, dt_star, None, execution.clone());
+        let simulation = Simulation::new(first, dt_star, state, execution.clone());
         let last_rest = Saved::of(&simulation);
         Self {
             model,
@@ -126,7 +130,7 @@ impl Search {
         segments.push((v_star, f64::INFINITY));
         Increments {
             v_star,
-            program: Arc::new(Program::new(segments)),
+            program: Program::new(segments),
             // Until the next one the blocks have run away.
             onset_steps: steps + 1,
         }
@@ -150,10 +154,15 @@ impl Saved {
     }
 }
 
+/// Speed V* of the largest increments of a held drive: their path per time step.
+pub fn speed_of_increments(model: &Model, dt_star: f64) -> f64 {
+    INCREMENT * model.share_of_load() / (model.drive.k_drive * model.driven_share() * dt_star)
+}
+
 /// Speed V* of the largest increments, and the speed of each size up to its last t* if there are so many of
 /// it; the last size has no end.
 fn segments(model: &Model, dt_star: f64, counts: &[u64]) -> (f64, Vec<(f64, f64)>) {
-    let v_star = INCREMENT * model.share_of_load() / (model.drive.k_drive * model.driven_share() * dt_star);
+    let v_star = speed_of_increments(model, dt_star);
     let (mut steps, mut speed) = (0, v_star);
     let segment = |(size, count): (usize, &u64)| {
         steps += count;
@@ -252,7 +261,7 @@ mod tests {
         /// The reduction of strength in %, and the steps of the search and of the run.
         fn reduction(&self) -> (f64, [u64; 2]) {
             let (model, dt_star) = self.model();
-            let mut search = Search::new(model.clone(), dt_star, Execution::default(), 2000);
+            let mut search = Search::new(model.clone(), dt_star, None, Execution::default(), 2000);
             let mut steps = 0;
             let found = loop {
                 steps += 1;
@@ -263,7 +272,7 @@ mod tests {
             let mut model = model.with_loading(Loading::Held {
                 onset_steps: found.onset_steps,
             });
-            (model.drive.v_star, model.drive.program) = (found.v_star, Some(found.program.clone()));
+            (model.drive.v_star, model.drive.program) = (found.v_star, Some(Arc::new(found.program)));
             let mut simulation = Simulation::new(model, dt_star, None, Execution::default());
             simulation.run(Stop::after_onset(u64::MAX), &mut []).unwrap();
             assert!(simulation.peak().ended);

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
 
+use super::bulk;
 use super::derived::Derived;
 use super::files::Watch;
 use super::groups::within;
@@ -55,7 +56,7 @@ pub(super) fn attach(
 }
 
 /// The drive of a slider. A total stiffness is shared by the driven blocks in proportion to their moduli; a
-/// stack of sheets has its own mount.
+/// bulk body without a given stiffness has that of its shear.
 pub(super) fn drive(
     file: &CaseFile,
     derived: &Derived,
@@ -64,10 +65,11 @@ pub(super) fn drive(
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
     let (scales, groups) = (&derived.scales, &derived.groups);
-    let k_drive = match (&derived.stack, total(file, scales)) {
-        (Some(stack), _) => scales.stiffness_of_area(stack.mount()),
-        (None, Some(total)) => total / slider.sum_of_drive_springs(lattice),
-        (None, None) => each(file, scales),
+    let is_given = file.drive.stiffness != DriveStiffness::Each(AutoOrStiffness::Auto);
+    let k_drive = match (bulk::body(file), total(file, scales)) {
+        (Some(body), _) if !is_given => bulk::mount(&body, lattice),
+        (_, Some(total)) => total / slider.sum_of_drive_springs(lattice),
+        (_, None) => each(file, scales),
     };
     within(
         file,

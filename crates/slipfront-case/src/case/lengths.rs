@@ -100,7 +100,7 @@ impl Case {
             }
         }
         if let Some(blocks) = self.critical_size_of_bulk() {
-            let is_of_slider = blocks.is_finite() && !self.model.sheets().is_empty();
+            let is_of_slider = blocks.is_finite() && self.model.body().is_some();
             let enough = is_of_slider.then_some(OF_CRITICAL_SIZE_OF_BULK);
             lengths.push(self.length("critical size, bulk body", blocks, enough));
         }
@@ -187,7 +187,7 @@ impl Case {
     fn has_spring_on_every_block(&self) -> bool {
         let drive = &self.file.drive;
         let is_on_all = matches!(drive.attached, Attached::At(AttachedEdge::All));
-        let is_sheet = self.model.sheets().is_empty();
+        let is_sheet = self.model.body().is_none();
         is_sheet && is_on_all && drive.motion != Motion::Rotation && self.model.n_blocks() > 1
     }
 

@@ -215,7 +215,6 @@ impl Case {
         }
         warnings.extend(self.too_coarse());
         warnings.extend(self.thick_for_texture());
-        warnings.extend(self.bulk_notes());
         warnings
     }
 

@@ -175,15 +175,9 @@ impl Drive {
         self.attached.check(check)
     }
 
-    /// Refuses drives that do not apply to a bulk body, which is driven over its whole upper face.
+    /// Refuses drives that do not apply to a bulk body, which is driven over its whole back.
     fn check_for_bulk(&self, check: &Check) -> Result<(), CaseError> {
-        let is_auto = self.stiffness == DriveStiffness::Each(AutoOrStiffness::Auto);
         let keys = [
-            (
-                self.stiffness.key(),
-                !is_auto,
-                "its stiffness follows from `slider.height`, or is in the last of `slider.sheets`",
-            ),
             (
                 "motion",
                 self.motion == Motion::Rotation,
@@ -192,9 +186,9 @@ impl Drive {
             (
                 "attach_file",
                 matches!(self.attached, Attached::File(_)),
-                "its whole upper face is driven",
+                "its whole back is driven",
             ),
-            ("attach", self.edge().is_some(), "its whole upper face is driven"),
+            ("attach", self.edge().is_some(), "its whole back is driven"),
         ];
         let given = keys.iter().find(|(_, is_given, _)| *is_given);
         given.map_or(Ok(()), |(key, _, why)| {

@@ -58,7 +58,7 @@ pub(crate) use pattern::MAX_COUNT;
 pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
 pub use shapes::*;
-pub use slider::{Damping, Grade, SheetOfStack, Slider};
+pub use slider::{Damping, Grade, Slider};
 pub(crate) use slider::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, MAX_RELATIVE, MIN_RELATIVE};
 pub use source::Source;
 pub use tables::Tables;
