@@ -128,6 +128,9 @@ impl Simulation {
             point: CurvePoint::default(),
             observed: false,
         };
+        if simulation.model.rests_by_excess() {
+            simulation.clock.rest = simulation.rest(0.0);
+        }
         simulation.measure();
         simulation
     }
@@ -259,18 +262,17 @@ impl Simulation {
         self.observed = false;
         let speed_square_before = self.totals.velocity_square;
         self.totals = self.engine.step(&self.model, &self.clock, energies);
-        self.clock.rest = if self.model.rests_by_excess() {
-            let at_rest = self.engine.speed_square_max() <= self.rest_speed().powi(2);
-            Rest::ByForce { at_rest }
-        } else {
-            self.rest(speed_square_before)
-        };
+        self.clock.rest = self.rest(speed_square_before);
         self.measure();
     }
 
     /// Criterion of rest for a held drive from this step on: by force, once the drive has stood still for so
     /// long that it would wait forever for blocks that hardly move, and in all later steps.
     fn rest(&self, speed_square_before: f64) -> Rest {
+        if self.model.rests_by_excess() {
+            let at_rest = self.engine.speed_square_max() <= self.rest_speed().powi(2);
+            return Rest::ByForce { at_rest };
+        }
         if self.clock.rest == Rest::Exact && !self.stands_too_long() {
             return Rest::Exact;
         }
