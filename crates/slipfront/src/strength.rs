@@ -16,14 +16,14 @@ use crate::model::Model;
 use crate::simulation::Simulation;
 use crate::state::State;
 
-/// Rise of mu* in the first increments if no block slips.
-const INCREMENT: f64 = 0.02;
+/// Rise of mu* in the first increments, of which all but the last are elastic.
+const INCREMENT: f64 = 0.08;
 
-/// Ratio of an increment to the next smaller one.
-const REFINEMENT: f64 = 4.0;
+/// Ratio of an increment of a held drive to the next smaller one.
+pub const REFINEMENT: f64 = 4.0;
 
 /// Number of sizes of increments.
-const SIZES: usize = 4;
+const SIZES: usize = 5;
 
 /// Increments of a held drive up to the onset of sliding.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,7 +84,11 @@ impl Search {
             self.simulation.check()?;
             let now = self.simulation.snapshot();
             let (peak, mu_star, drive_steps) = (now.peak, now.point.mu_star, now.drive_steps);
-            if self.simulation.is_at_rest() {
+            let slips_too_early = self.counts.len() == 1 && now.totals.n_slipping > 0;
+            if slips_too_early {
+                self.counts.push(0);
+                self.go_back();
+            } else if self.simulation.is_at_rest() {
                 self.last_rest = Saved::of(&self.simulation);
                 let finished: u64 = self.counts[..self.counts.len() - 1].iter().sum();
                 *self.counts.last_mut().expect("there is a first size") = drive_steps - finished;
@@ -122,12 +126,12 @@ impl Search {
 
     fn found(&self) -> Increments {
         let (v_star, mut segments) = segments(&self.model, self.dt_star, &self.counts);
-        // One more of the smallest leads to the onset, and sliding is loaded by the largest.
+        // One more of the smallest leads to the onset, and sliding is loaded by those of the second size.
         let steps = self.counts.iter().sum::<u64>() + 1;
         if let Some((_, until_star)) = segments.last_mut() {
             *until_star = steps as f64 * self.dt_star;
         }
-        segments.push((v_star, f64::INFINITY));
+        segments.push((v_star / REFINEMENT, f64::INFINITY));
         Increments {
             v_star,
             program: Program::new(segments),

@@ -148,7 +148,8 @@ impl TimePlan {
     /// The plan with the increments that lead a bulk body to its onset.
     pub(super) fn with_increments(self, increments: &Increments) -> Self {
         let onset_steps = increments.onset_steps;
-        let last_step = self.last_step + onset_steps;
+        // Increments after the onset are smaller than those of the plan.
+        let last_step = onset_steps + self.last_step * slipfront::REFINEMENT as u64;
         Self {
             last_step,
             stop: if self.stop.is_after_onset() {

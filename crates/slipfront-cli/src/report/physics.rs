@@ -181,6 +181,9 @@ fn drive(case: &Case) -> String {
             four_digits(springs * drive.k_drive)
         ),
     };
+    if case.model.rests_by_excess() {
+        return format!("slow {motion}{stiffness}, in increments that become finer before the onset");
+    }
     let held = if drive.is_held() {
         ", stopped while a block in contact slides"
     } else {
@@ -249,6 +252,12 @@ fn time(case: &Case) -> String {
     let end_star = time_plan.end_star();
     let held = match time_plan.loading {
         Loading::Constant => String::new(),
+        Loading::Held { .. } if case.model.rests_by_excess() => {
+            return format!(
+                "to the rest after each increment, in steps of dt* = {}",
+                four_digits(time_plan.dt_star)
+            );
+        }
         Loading::Held { onset_steps } => format!(
             " of the drive, not counting steps in which it stops; mu_s* is the largest mu* up to t* = {} of the drive",
             four_digits(onset_steps as f64 * time_plan.dt_star)
