@@ -13,7 +13,6 @@ use slipfront::{Body, Lattice};
 use super::coefficients::sharing_distance;
 use super::runnable::Case;
 use super::textures::{pitch, regular_pitch};
-use crate::case_file::{self, CaseFile};
 use slipfront_base::number_format::with_si_prefix;
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
@@ -40,20 +39,6 @@ struct TextureLengths {
     pitch: Option<f64>,
     /// Whether one array of this pitch fills the slider.
     is_regular: bool,
-}
-
-/// The bulk body of a case, in units of its block size; none for a sheet.
-pub(super) fn body(file: &CaseFile) -> Option<Body> {
-    let slider = &file.slider;
-    let of_body = || Body {
-        height: slider
-            .height
-            .as_ref()
-            .map_or(f64::INFINITY, |height| height.si() / slider.block_size.si()),
-        poisson: slider.poisson.unwrap_or(POISSON_RATIO),
-        face: slider.face,
-    };
-    (slider.body == case_file::Body::Bulk).then(of_body)
 }
 
 /// Stiffness of the drive springs that stand for the shear of a body between its face and its driven back, in

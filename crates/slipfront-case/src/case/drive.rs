@@ -66,7 +66,7 @@ pub(super) fn drive(
 ) -> Result<Drive, CaseError> {
     let (scales, groups) = (&derived.scales, &derived.groups);
     let is_given = file.drive.stiffness != DriveStiffness::Each(AutoOrStiffness::Auto);
-    let k_drive = match (bulk::body(file), total(file, scales)) {
+    let k_drive = match (file.slider.bulk_body(), total(file, scales)) {
         (Some(body), _) if !is_given => bulk::mount(&body, lattice),
         (_, Some(total)) => total / slider.sum_of_drive_springs(lattice),
         (_, None) => each(file, scales),

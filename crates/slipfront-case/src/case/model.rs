@@ -6,7 +6,6 @@ use slipfront::scales::damping;
 use slipfront::surface::share_load;
 use slipfront::{Communicator, Lattice, Loading, Model, State, Surface, SurfaceError};
 
-use super::bulk;
 use super::coefficients::{coefficients, contact, sharing_distance};
 use super::derived::Derived;
 use super::drive::{attach, attached, drive};
@@ -96,7 +95,7 @@ pub(super) fn make(
     let (damping, friction) = (damping(groups.omega_star), derived.friction);
     let model = Model::of_rows(lattice, rows, surface, drive, damping, groups.epsilon, friction);
     let model = model.with_slider(slider);
-    let model = match bulk::body(file) {
+    let model = match file.slider.bulk_body() {
         None => model,
         Some(body) => model.with_body(body),
     };

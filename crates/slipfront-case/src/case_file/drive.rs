@@ -133,6 +133,9 @@ impl Drive {
     }
 
     pub(super) fn check(&self, check: &Check, slider: &Slider) -> Result<(), CaseError> {
+        if slider.body == Body::Bulk {
+            self.check_for_bulk(check)?;
+        }
         self.speed.check(check)?;
         if let DriveSpeed::Program(segments) = &self.speed {
             check_program(segments, check)?;
@@ -162,9 +165,6 @@ impl Drive {
             return check.refuse("attach", |key| {
                 format!("`{key}` gives an edge, but the slider is periodic along {axis}; use free edges, or `attach_file`")
             });
-        }
-        if slider.body == Body::Bulk {
-            self.check_for_bulk(check)?;
         }
         if slider.rigid && !matches!(self.stiffness, DriveStiffness::Total(_)) {
             return check.refuse(self.stiffness.key(), |_| {

@@ -21,7 +21,7 @@ use super::motion::Load;
 use super::output::Output;
 use super::overrides::Override;
 use super::shapes::Shape;
-use super::slider::Slider;
+use super::slider::{Damping, Slider};
 use super::source::Source;
 use super::tables::Tables;
 use super::texture::Texture;
@@ -171,6 +171,9 @@ impl CaseFile {
         let is_bulk = self.slider.body == Body::Bulk;
         if !self.source.has("slider.edges") {
             self.slider.edges = [if is_bulk { Edges::Periodic } else { Edges::Free }; 2];
+        }
+        if !self.source.has("slider.omega_star") && !self.source.has("slider.damping_rate") {
+            self.slider.damping = Damping::OmegaStar(self.slider.critical_damping().unwrap_or(0.1));
         }
         if !self.source.has("drive.loading") {
             let weakens = self.friction.slip_weakening.is_some();

@@ -1,6 +1,7 @@
 //! `[slider]`: the lattice of blocks and its material.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use slipfront::lattice::{K_STRAIGHT, POISSON_RATIO};
 use slipfront::{Edges, Face, next_side};
 
 use super::check::Check;
@@ -71,7 +72,8 @@ key_rows! {
         [
             /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
             pub damping: Damping or "the slider needs a damping: `omega_star` or `damping_rate`" {
-                /// Damping of the motion of the blocks.
+                /// Damping of the motion of the blocks. A bulk body has the critical damping of its longest wave
+                /// if not given.
                 omega_star: f64 => OmegaStar = key("0.1", number(within(0.0, 1e3), "a slider that rings little has 1"))
                     .star(StarUnit::Rate)
                     .or("damping_rate").paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),
@@ -144,6 +146,28 @@ pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
 const MIN_BLOCKS_PERIODIC: u32 = 3;
 
 impl Slider {
+    /// The bulk body, in units of the block size; none for a sheet.
+    pub(crate) fn bulk_body(&self) -> Option<slipfront::Body> {
+        let body = || slipfront::Body {
+            height: self
+                .height
+                .as_ref()
+                .map_or(f64::INFINITY, |height| height.si() / self.block_size.si()),
+            poisson: self.poisson.unwrap_or(POISSON_RATIO),
+            face: self.face,
+        };
+        (self.body == Body::Bulk).then(body)
+    }
+
+    /// Omega* of the critical damping of the longest wave of a bulk body, `2 sqrt(K/k_1)`. Less lets inertia
+    /// carry blocks on after each local slip, which lowers the strength; more makes slow waves come to rest
+    /// slowly.
+    pub(super) fn critical_damping(&self) -> Option<f64> {
+        let longest = f64::from(self.blocks[0].max(self.blocks[1]));
+        let stiffness = self.bulk_body()?.along(std::f64::consts::TAU / longest);
+        Some(2.0 * (stiffness / K_STRAIGHT).sqrt())
+    }
+
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         let [nx, ny] = self.blocks;
         check.value("blocks", &self.blocks)?;
