@@ -72,7 +72,9 @@ fn dimples_on_a_glued_layer() {
         let key = format!("slider.height='{:e} m'", height * BLOCK);
         for weakening in [5.0, 10.0] {
             let expected = 100.0 * (1.0 - layer.largest_friction(&dimples.blocks(weakening, Sharing::Equal)));
-            let found = dimples.on_body(poisson, weakening, Sharing::Equal, &[&key, "drive.stiffness_star=0.005"]);
+            // On a soft mount, as the reference, which pulls by a traction: G/H would hold slip back that has begun.
+            let keys = [&*key, "drive.stiffness_star=0.005"];
+            let found = dimples.on_body(poisson, weakening, Sharing::Equal, &keys);
             let what = format!("{height} blocks high, nu = {poisson}, w p (1 - nu)/G = {weakening}");
             agrees(&what, found, expected);
         }
@@ -80,26 +82,32 @@ fn dimples_on_a_glued_layer() {
 }
 
 /// Blocks in a pitch, and the reduction in % of an array with a critical size of 0.116 pitches.
-const ON_BLOCKS: [(usize, f64); 4] = [(16, 32.5), (24, 34.1), (32, 34.8), (48, 34.6)];
+const ON_BLOCKS: [(usize, f64); 6] = [
+    (8, 26.84),
+    (12, 32.48),
+    (16, 34.98),
+    (24, 34.42),
+    (32, 34.83),
+    (48, 34.69),
+];
 
-/// Three blocks in the critical size of a bulk body are enough for 2 % of a reduction, and two are not.
+/// Two blocks in the critical size of a bulk body are enough for 2 % of a reduction, and fewer are not.
 #[test]
-fn three_blocks_in_the_critical_size_are_enough() {
-    let finest = ON_BLOCKS[3].1;
-    let [coarse, .., last] = ON_BLOCKS.map(|(_, reduction)| reduction);
+fn two_blocks_in_the_critical_size_are_enough() {
+    let finest = ON_BLOCKS[5].1;
     let page = include_str!("../../../docs/validation/measures.md");
-    let (one, two) = (ON_BLOCKS[1].1, ON_BLOCKS[2].1);
-    let line = format!("reductions of {coarse}, {one}, {two} and {last} % on");
+    let [_, reductions @ .., last] = ON_BLOCKS.map(|(_, reduction)| format!("{reduction:.1}"));
+    let line = format!("reductions of {} and {last} % on", reductions.join(", "));
     assert!(page.contains(&line), "docs/validation/measures.md lacks {line}");
     for (pitch, measured) in ON_BLOCKS {
         let found = Dimples::array(pitch).on_body(0.3, 20.0, Sharing::Equal, &[]);
         let blocks = 2.316 * pitch as f64 / 20.0;
         println!("{blocks:.1} blocks in the critical size: {found:.2} %");
         // Rounding of the measured value.
-        assert!((found - measured).abs() < 0.06, "{blocks}: {found}");
+        assert!((found - measured).abs() < 0.006, "{blocks}: {found}");
         assert_eq!(
             (found / finest - 1.0).abs() < 0.02,
-            blocks > 2.5,
+            blocks > 1.5,
             "{blocks}: {found}"
         );
     }

@@ -18,7 +18,7 @@ use slipfront_base::number_format::{four_digits, with_si_prefix};
 const OF_CRITICAL_SIZE: f64 = 5.0;
 /// Sufficient number of blocks in the critical size of a bulk body. For dimples four times as wide as this
 /// size, the reduction on 1.9 blocks differs by 6 % from that on 5.6, and on 2.8 blocks by 1.5 %.
-const OF_CRITICAL_SIZE_OF_BULK: f64 = 3.0;
+const OF_CRITICAL_SIZE_OF_BULK: f64 = 2.0;
 /// Sufficient number of blocks in the screening length along the drive, where it is the shorter length.
 const OF_SCREENING: f64 = 3.0;
 /// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the

@@ -327,7 +327,7 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
         let of_body = text.replace(&format!("thickness = '{thickness}'"), "body = 'bulk'");
         let of_body = case(&of_body, &[]).lengths();
         let of_body = of_body.iter().find(|length| length.name == found.name).unwrap();
-        assert_eq!(of_body.enough, Some(3.0));
+        assert_eq!(of_body.enough, Some(2.0));
         // Rounding of some products and sums of equal numbers.
         assert!((of_body.blocks / found.blocks - 1.0).abs() < 1e-12);
         // Rounding of some products and sums of equal numbers.
@@ -364,7 +364,7 @@ fn slip_in_stiff_layers_is_stable() {
     let stable = size(&height(0.99));
     assert!(stable.blocks.is_infinite() && stable.enough.is_none());
     let found = size(&height(1.01));
-    assert_eq!(found.enough, Some(3.0));
+    assert_eq!(found.enough, Some(2.0));
     let (kappa, high): (f64, f64) = (3.0 - 4.0 / 3.0, 1.01 * shear_modulus / weakening);
     let of_layer = (4.0 - 2.0 * kappa / 3.0) / (1.0 + kappa) * shear_modulus * high;
     let expected = (of_layer / (weakening - shear_modulus / high)).sqrt();
