@@ -304,14 +304,6 @@ impl Slider {
                 format!("`{key}` does not apply to `slider.body` = \"bulk\": {why}; leave it out, or use \"sheet\"")
             });
         }
-        let [nx, ny] = self.blocks;
-        if nx.min(ny) == 1 {
-            return check.refuse("blocks", |key| {
-                format!(
-                    "`{key}` is [{nx}, {ny}]: a bulk body needs several blocks along x and along y; use \"sheet\" for a chain or a single block"
-                )
-            });
-        }
         if let Some(height) = &self.height
             && height.si() < self.block_size.si()
         {
