@@ -11,13 +11,15 @@ from ._cite import cite
 from ._converge import Convergence, QuantityOnMeshes, converge
 from ._design import Design, DesignResults, Largest, Least, Value
 from ._export import export
-from ._map import map
-from ._open import InterruptedRun, PaperResults, open, open_run, open_study
+from ._map import map as map
+from ._open import InterruptedRun, PaperResults, open_run, open_study
+from ._open import open as open
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
 from ._slipfront import ForkError, RunError, __version__
 from ._study import Study, StudyResults
 
+# Without `map` and `open`, so that `from slipfront import *` leaves the built-in functions.
 __all__ = [
     "Calibration",
     "CalibrationResults",
@@ -45,8 +47,6 @@ __all__ = [
     "cite",
     "converge",
     "export",
-    "map",
-    "open",
     "open_run",
     "open_study",
     "run",

@@ -232,7 +232,7 @@ class Calibration:
         notes = self._watched(records, temporary, progress, threads, partial(self._native.execute, (path, force), kept))
         results = CalibrationResults.read(path, None if folder is None else path)
         if results.is_refused:
-            notes.append("the model cannot reproduce these records, so the intervals are not valid: `text` gives the reasons, and what to check")
+            notes.append("the model cannot reproduce these records, so its numbers do not describe them: `text` gives the reasons, and what to check")
         for note in notes:
             warnings.warn(_without_folder(note, temporary.path), stacklevel=2)
         return results
@@ -428,7 +428,7 @@ class CalibrationResults:
 
     @property
     def is_refused(self) -> bool:
-        """Whether the model cannot reproduce the records; the intervals are then not valid."""
+        """Whether the model cannot reproduce the records; its numbers then do not describe them."""
         return bool(self._found["is_refused"])
 
     @property
@@ -493,7 +493,7 @@ class CalibrationResults:
 
     def _repr_html_(self) -> str:
         def row(key: str, found: Interval) -> list[str]:
-            doubts = {
+            doubts = {"does not describe the records": True} if self.is_refused else {
                 "not determined": not found.is_determined,
                 "belongs to the block": found.belongs_to_block,
                 "depends on the time step": found.depends_on_step,
@@ -503,7 +503,7 @@ class CalibrationResults:
             return [key, f"{found.median:.4g} {unit}".strip(), interval, ", ".join(doubt for doubt, is_so in doubts.items() if is_so)]
 
         rows = [row(key, found) for key, found in self.intervals.items()]
-        refused = "<p>The model cannot reproduce these records, so the intervals are not valid.</p>" if self.is_refused else ""
+        refused = "<p>The model cannot reproduce these records, so its numbers do not describe them.</p>" if self.is_refused else ""
         return refused + table(["key", "median", "90 % interval", ""], rows)
 
     def __reduce__(self) -> tuple[Any, ...]:

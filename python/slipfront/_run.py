@@ -105,12 +105,12 @@ class Run:
 
     @property
     def static_friction_star(self) -> float:
-        """mu_s*, the first peak of mu* (or its largest value where there is no transition)."""
+        """mu_s*, the first peak of mu*; without a `transition` its largest value, which is a lower bound."""
         return float(self.summary["static_friction_star"])
 
     @property
     def static_friction(self) -> float:
-        """mu_s, the static friction coefficient F_T/F_N."""
+        """mu_s, the static friction coefficient F_T/F_N; a lower bound without a `transition`."""
         return float(self.summary["static_friction"])
 
     @property
@@ -279,14 +279,15 @@ class Run:
 
         return plot(self, kind, ax, instant, label)
 
-    def __getattr__(self, name: str) -> xr.Dataset | None:
-        if name.startswith("_") or name not in self._tables:
-            raise AttributeError(f"'Run' object has no attribute {name!r}")
-        table = self._tables[name]
-        return None if table is None else table.copy()
+    @property
+    def precursors(self) -> xr.Dataset | None:
+        """The events of slip of a slider that is driven at an edge; None for another drive."""
+        return self._table("precursors")
 
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._tables]
+    @property
+    def events(self) -> xr.Dataset | None:
+        """The catalogue of events of slip; None unless ``output.events`` is true."""
+        return self._table("events")
 
     def __repr__(self) -> str:
         return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._main_values())})"
@@ -297,7 +298,8 @@ class Run:
 
     def _main_values(self) -> list[tuple[str, str]]:
         kinetic, error = self.kinetic_friction_star, self.kinetic_friction_star_uncertainty
-        values = [("mu_s*", f"{self.static_friction_star:.4g}")]
+        bound = "" if self.transition else "at least "
+        values = [("mu_s*", f"{bound}{self.static_friction_star:.4g}")]
         if kinetic is not None:
             values.append(("mu_k*", with_error(kinetic, error)))
         return [*values, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
@@ -324,6 +326,10 @@ class Run:
     def _kymograph(self) -> xr.Dataset | None:
         arrays = self._source.kymograph()
         return None if arrays is None else _dataset.kymograph(arrays, self._arrays["time_unit_s"])
+
+    def _table(self, name: str) -> xr.Dataset | None:
+        table = self._tables[name]
+        return None if table is None else table.copy()
 
     @functools.cached_property
     def _tables(self) -> dict[str, xr.Dataset | None]:

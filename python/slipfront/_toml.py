@@ -125,7 +125,7 @@ def value(given: Any, arrays: Arrays, of: str = "") -> str:
     if isinstance(given, Path):
         return word(str(given))
     if isinstance(given, Mapping):
-        pairs = (f"{key(name)} = {value(inner, arrays, _below(of, name))}" for name, inner in given.items())
+        pairs = (f"{key(_text(name))} = {value(inner, arrays, _below(of, name))}" for name, inner in given.items())
         return "{ " + ", ".join(pairs) + " }"
     if hasattr(given, "magnitude") and hasattr(given, "units"):
         return _quantities(given)
@@ -137,12 +137,12 @@ def value(given: Any, arrays: Arrays, of: str = "") -> str:
             return word(arrays.add(array, of))
         check_numbers(of, array)
         return value(array.tolist(), arrays)
-    if isinstance(given, Sequence):
+    if isinstance(given, Sequence) and not isinstance(given, (bytes, bytearray, memoryview)):
         if names_file(of):
             return word(arrays.add(_rows(of, given), of))
         return "[" + ", ".join(value(inner, arrays, _below(of, str(place))) for place, inner in enumerate(given)) + "]"
-    raise TypeError(
-        f"a case is made of tables, lists, words, numbers, quantities and arrays, not of {type(given).__name__}"
+    raise _refused(
+        f"{f'`{of}`: ' if of else ''}a case is made of tables, lists, words, numbers, quantities and arrays, not of {type(given).__name__}"
     )
 
 
@@ -169,11 +169,25 @@ def by_key(overrides: Mapping[str, Any]) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for name, given in overrides.items():
-        if isinstance(given, Mapping) and "." not in name:
-            found |= {f"{name}.{inner}": value for inner, value in given.items()}
+        if isinstance(given, Mapping) and "." not in _text(name):
+            found |= {f"{name}.{_text(inner)}": value for inner, value in given.items()}
         else:
-            found[name] = given
+            found[_text(name)] = given
     return found
+
+
+def _text(name: object) -> str:
+    """A key, which is a text."""
+    if not isinstance(name, str):
+        raise _refused(f"a key of a case is a text such as 'drive', not {name!r}")
+    return name
+
+
+def _refused(sentence: str) -> _slipfront.CaseError:
+    """An error of a case that has no text, so that its value has no line."""
+    error = _slipfront.CaseError(sentence)
+    error.line = error.column = None
+    return error
 
 
 def word(text: str) -> str:
@@ -199,8 +213,9 @@ def document(tables: Mapping[str, Any], arrays: Arrays) -> str:
     plain, headed = [], []
     for name, given in tables.items():
         if isinstance(given, Mapping):
-            headed += [f"[{key(name)}]", *_lines(given, arrays, name)]
+            headed += [f"[{key(_text(name))}]", *_lines(given, arrays, name)]
         elif isinstance(given, Sequence) and given and all(isinstance(one, Mapping) for one in given):
+            _text(name)
             for place, one in enumerate(given):
                 headed += [f"[[{key(name)}]]", *_lines(one, arrays, f"{name}.{place}")]
         else:
@@ -214,7 +229,7 @@ def _lines(table: Mapping[str, Any], arrays: Arrays, of: str) -> list[str]:
 
 def _path(name: str) -> str:
     """A key with dots is a key within tables, as in the command's --set."""
-    return ".".join(key(part) for part in name.split("."))
+    return ".".join(key(part) for part in _text(name).split("."))
 
 
 def _number(number: float) -> str:

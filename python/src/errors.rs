@@ -134,7 +134,7 @@ pub(crate) fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {
         | StudyError::ReferencePoint { .. }
         | StudyError::Levels { .. }
         | StudyError::Bare { .. }
-        | StudyError::NoDesign
+        | StudyError::NoDesign { .. }
         | StudyError::MemoryLimit { .. }
         | StudyError::TimeLimit { .. } => CaseError::new_err(in_words_of_python(error)),
         StudyError::Failed { .. } => RunError::new_err(in_words_of_python(error)),

@@ -229,7 +229,7 @@ impl Study {
         let failed = |error: StudyError| Python::attach(|py| study_error(py, &error));
         let opened = detached(py, || {
             self.plan.check_memory(threads)?;
-            let opened = StudyFolder::open(&folder, &self.file, force)?;
+            let opened = StudyFolder::open(&folder, &self.file, None, force)?;
             opened.check_disk(&self.plan)?;
             Ok(opened)
         })?;

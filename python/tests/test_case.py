@@ -75,10 +75,36 @@ def test_errors_have_the_sentences_of_the_command() -> None:
     assert raised.value.line is None
     with pytest.raises(sf.CaseError, match="^drive.v_star=0: "):
         sf.Case.load("cases/circle.toml", {"drive.v_star": 0})
-    with pytest.raises(TypeError, match="not of object"):
+    with pytest.raises(sf.CaseError, match="not of object"):
         sf.Case({"drive": {"v_star": object()}})
     with pytest.raises(TypeError, match="a dictionary of its tables, not from str: from a file by Case.load"):
         sf.Case("cases/circle.toml")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("tables", "sentence"),
+    [
+        ({1: 2}, "a text such as 'drive', not 1"),
+        ({"slider": {1: 2}}, "a text such as 'drive', not 1"),
+        ({1: [{"shape": "cavity"}]}, "a text such as 'drive', not 1"),
+        ({"texture": [{b"shape": "cavity"}]}, "a text such as 'drive', not b'shape'"),
+        ({"slider": {"blocks": b"\x05\x05"}}, "`slider.blocks`: .* not of bytes"),
+        ({"drive": {"v_star": bytearray(b"1")}}, "`drive.v_star`: .* not of bytearray"),
+    ],
+)
+def test_keys_are_texts_and_numbers_no_bytes(tables: Any, sentence: str) -> None:
+    with pytest.raises(sf.CaseError, match=sentence) as raised:
+        sf.Case(tables)
+    assert raised.value.line is None and raised.value.column is None
+    with pytest.raises(sf.CaseError, match=sentence.replace("`slider.blocks`: .*", "").replace("`drive.v_star`: .*", "")):
+        sf.Case({}, tables)
+
+
+def test_a_star_import_leaves_the_functions_of_python() -> None:
+    import builtins
+
+    taken = set(sf.__all__) & set(dir(builtins))
+    assert not taken and callable(sf.open) and callable(sf.map)
 
 
 def test_a_file_that_is_missing_is_one_for_python_too(tmp_path: Path) -> None:

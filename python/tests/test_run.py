@@ -96,6 +96,20 @@ def test_runs_that_ask_for_events_have_a_catalogue() -> None:
     assert sf.run(case.replace({"output.events": False}), progress=False).events is None
 
 
+def test_every_table_of_a_run_is_an_attribute() -> None:
+    run = sf.run({"slider": {"blocks": [4, 3]}, "drive": {"v_star": 0.2}}, progress=False)
+    assert all(hasattr(sf.Run, name) for name in run._tables)
+    with pytest.raises(AttributeError):
+        _ = run.precursor  # type: ignore[attr-defined]
+
+
+def test_static_friction_without_a_transition_is_a_lower_bound() -> None:
+    case = sf.Case({"slider": {"blocks": [8, 8]}, "drive": {"v_star": 0.1}})
+    assert "mu_s* = 0" in repr(sf.run(case, progress=False))
+    short = sf.run(case.replace({"time.duration_star": 20}), progress=False)
+    assert not short.transition and "mu_s* = at least 0" in repr(short)
+
+
 @pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_ends_a_run_at_once(long: sf.Case) -> None:
     pressed: list[float] = []

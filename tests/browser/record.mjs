@@ -94,7 +94,7 @@ test('a path becomes a time by the speed of the drive, and a coefficient is over
 
 test('a file that is no table says so, and asks for no columns', async (t) => {
   const lab = await open(t, { toml: SMALL });
-  for (const [name, text] of [['notes.txt', 'words'], ['sheet.xlsx', 'PK\x03\x04 no workbook'], ['empty.csv', '']]) {
+  for (const [name, text] of [['notes.txt', 'words'], ['rig.lvm', 'words'], ['sheet.xlsx', 'PK\x03\x04 no workbook'], ['empty.csv', '']]) {
     const { problem, curve } = await lab.after(() => drop(lab, name, text), 'record', (record) => record.name === name);
     assert.equal(curve, null);
     await lab.reads('measure-problem', problem);

@@ -99,9 +99,6 @@ pub fn with_interval(value: f64, interval: Option<[f64; 2]>, digits: usize) -> S
 
 /// A quantity to four digits, with an SI prefix: 0.025 s is `25 ms`.
 pub fn with_si_prefix(value: f64, unit: &str) -> String {
-    if !value.is_normal() {
-        return format!("{value} {unit}");
-    }
     let (factor, prefix) = si_prefix(value);
     format!("{} {prefix}{unit}", four_digits(value / factor))
 }
@@ -178,6 +175,8 @@ mod tests {
         assert_eq!(with_interval(0.5, Some([0.4, 0.6]), 2), "0.50 \u{b1} 0.10");
         assert_eq!(with_interval(0.001, None, 2), "1.0e-3");
         assert_eq!(with_si_prefix(0.025, "s"), "25 ms");
+        assert_eq!(with_si_prefix(0.0, "s"), "0 s");
+        assert_eq!(with_si_prefix(1e-308, "s"), "1.000e-308 s");
         assert_eq!(
             [0, 1, 2].map(|n| count(n, "block")),
             ["0 blocks", "1 block", "2 blocks"]

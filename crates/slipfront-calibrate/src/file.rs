@@ -372,6 +372,15 @@ impl CalibrationFile {
             );
             self.project.error("x", sentence)
         })?;
+        if measured.y.iter().all(|friction| *friction == 0.0) {
+            let sentence = format!(
+                "{} is 0 in each of its {} values of friction: give the column of friction with `y`, and check that the sensor was \
+                 on",
+                path.display(),
+                measured.y.len()
+            );
+            return Err(self.project.error("y", sentence).into());
+        }
         if grid.end() <= 0.0 {
             return Err(self.before_the_drive(path, &grid).into());
         }

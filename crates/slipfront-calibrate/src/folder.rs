@@ -156,7 +156,7 @@ impl CalibrationFolder {
         let found = self.fit.find(&mut maker.on_device(device))?;
         let mut batch = self.files.begin();
         let text = Report::of(&self.fit.set_up, &found.findings).write(&found, &mut batch)?;
-        batch.place(Others::Go)?;
+        batch.place(Others::Go, self.kept.listed()?)?;
         Ok(text)
     }
 

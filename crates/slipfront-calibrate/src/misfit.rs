@@ -122,19 +122,11 @@ impl Check {
             })
             .unzip();
         let drift = Regression::learn(&rows.concat(), &drifts);
-        let d = table.len() / runs;
-        let distances = squared_distances(table, table, d);
-        let mut nearest: Vec<f64> = distances
-            .chunks_exact(runs)
-            .map(|row| distance(row, NEAREST + 1))
-            .collect();
-        nearest.sort_by(f64::total_cmp);
-        let place = ((1.0 - REFUSED_AS_FOREIGN) * (runs + 1) as f64) as usize;
         Self {
             drift,
             drifts,
             table: table.to_vec(),
-            far: nearest[place.min(runs - 1)],
+            far: far(table, runs),
             levels: (0..grids.len())
                 .map(|record| {
                     let levels = levels.iter().map(|levels| levels[record]);
@@ -164,10 +156,36 @@ impl Check {
     }
 }
 
+/// Distance of a training run to the other runs that only few runs exceed.
+fn far(table: &[f64], runs: usize) -> f64 {
+    let distances = squared_distances(table, table, table.len() / runs);
+    // The nearest run of all is the run itself.
+    let of_run = |row| distance(row, NEAREST + 1);
+    let mut nearest: Vec<f64> = distances.chunks_exact(runs).map(of_run).collect();
+    nearest.sort_by(f64::total_cmp);
+    let place = ((1.0 - REFUSED_AS_FOREIGN) * (runs + 1) as f64) as usize;
+    nearest[place.min(runs - 1)]
+}
+
 /// Root mean square of the smallest distances; for a training run, the first is the distance to itself.
 fn distance(row: &[f64], nearest: usize) -> f64 {
     let mut row = row.to_vec();
     let nearest = nearest.min(row.len());
     row.select_nth_unstable_by(nearest - 1, f64::total_cmp);
     (row[..nearest].iter().sum::<f64>() / NEAREST as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The outer of six runs at 0, 1, ..., 5 is sqrt((1 + 4 + 9 + 16 + 25)/5) from the other five, and so is
+    /// a record at -1 from the nearest five of the six. Squares of small integers and their sums are exact.
+    #[test]
+    fn a_run_is_not_its_own_neighbour() {
+        let runs = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+        assert_eq!(far(&runs, runs.len()), f64::sqrt(11.0));
+        let of_record = squared_distances(&[-1.0], &runs, 1);
+        assert_eq!(distance(&of_record, NEAREST), f64::sqrt(11.0));
+    }
 }

@@ -200,9 +200,33 @@ fn in_words(found: &Findings) -> String {
         text += &paragraph(&refusal(found));
         text.push('\n');
     }
-    let rows: Vec<Vec<String>> = found.unknowns.iter().map(row).collect();
+    let rows: Vec<Vec<String>> = found
+        .unknowns
+        .iter()
+        .map(|estimate| row(estimate, found))
+        .collect();
     text += &table(&["key", "median", "from", "to", "range"], &rows);
-    text += &paragraph(&format!(
+    if !found.is_refused {
+        text += &accepted_intervals(found);
+        text += &paragraph(&accepted(found));
+    }
+    text += &paragraph(&instrument(found));
+    for (number, percent) in found.within_band_percent.iter().enumerate() {
+        text += &paragraph(&format!(
+            "{:.0} % of the values of record {} lie within the 90 % band of the calibrated model.",
+            percent,
+            number + 1
+        ));
+    }
+    text += &at_finer_step(found);
+    text += &on_finer_blocks(found);
+    text += &further(found);
+    text
+}
+
+/// How far the intervals of accepted records determine the unknowns.
+fn accepted_intervals(found: &Findings) -> String {
+    let mut text = paragraph(&format!(
         "Each interval contains the true value with a probability of 90 %. This was checked with training runs left out of {}, \
          with noise of {} % of the mean friction.",
         count(found.runs, "run"),
@@ -223,20 +247,6 @@ fn in_words(found: &Findings) -> String {
             pair.correlation
         ));
     }
-    if !found.is_refused {
-        text += &paragraph(&accepted(found));
-    }
-    text += &paragraph(&instrument(found));
-    for (number, percent) in found.within_band_percent.iter().enumerate() {
-        text += &paragraph(&format!(
-            "{:.0} % of the values of record {} lie within the 90 % band of the calibrated model.",
-            percent,
-            number + 1
-        ));
-    }
-    text += &at_finer_step(found);
-    text += &on_finer_blocks(found);
-    text += &further(found);
     text
 }
 
@@ -245,7 +255,8 @@ fn paragraph(sentence: &str) -> String {
     format!("{}\n", wrapped(sentence, COLUMNS))
 }
 
-fn row(estimate: &UnknownEstimate) -> Vec<String> {
+/// Row of an unknown, whose last cell says why its median is not a property of the surface, if it is not.
+fn row(estimate: &UnknownEstimate, found: &Findings) -> Vec<String> {
     let [low, high] = estimate.interval;
     let [from, to] = estimate.range.map(four_digits);
     let mut row = vec![
@@ -255,7 +266,9 @@ fn row(estimate: &UnknownEstimate) -> Vec<String> {
         estimate.text(high),
         format!("[{from}, {to}]"),
     ];
-    if !estimate.is_determined {
+    if found.is_refused {
+        row.push("does not describe the records".to_owned());
+    } else if !estimate.is_determined {
         row.push("not determined".to_owned());
     } else if estimate.belongs_to_block {
         row.push("belongs to the block".to_owned());
@@ -270,7 +283,7 @@ fn refusal(found: &Findings) -> String {
     format!(
         "The model cannot reproduce these records: {}. The test rejects about 4 % of the model's own records. Correct a drift \
          of the sensor, describe its filter in [instrument], check law, units, mount and noise, and widen the ranges. The \
-         intervals below are not valid.",
+         numbers below do not describe them.",
         found.check.reasons().join("; ")
     )
 }

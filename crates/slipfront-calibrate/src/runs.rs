@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use slipfront::device::{Device, DeviceError};
+use slipfront_run::manifest::ManifestFile;
 use slipfront_study::project_folder::{Journal, JournalEntry};
 use slipfront_study::{StudyError, TrainingError};
 
@@ -185,6 +186,11 @@ impl KeptRuns {
     /// Copies the journal of a results folder into another.
     pub(crate) fn copy(folder: &Path, other: &Path) -> Result<(), StudyError> {
         Journal::copy::<CalibrationRun>(folder, other, CALIBRATION.journal)
+    }
+
+    /// The journal of the results folder with its checksum; nothing of runs that are only in memory.
+    pub(crate) fn listed(&self) -> Result<Vec<ManifestFile>, StudyError> {
+        self.journal.iter().map(Journal::listed).collect()
     }
 
     /// Number of runs.

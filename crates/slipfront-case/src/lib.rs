@@ -9,7 +9,9 @@
 pub mod arrays;
 pub mod case;
 pub mod case_file;
+pub mod extremes;
 pub mod field_info;
+pub mod nearest;
 pub mod quantity;
 pub mod same;
 pub mod table;

@@ -441,6 +441,13 @@ impl<'a> WrittenQuantity<'a> {
         let power = self.unit.power_of_ten - other.unit.power_of_ten;
         self.number.shifted(power).filter(|_| is_alike)
     }
+
+    /// The quantity in kilograms, metres and seconds, as a text that is equal for equal quantities.
+    pub fn in_base_units(&self) -> String {
+        // Neither too large a number nor one that vanishes has a value.
+        let value = self.number.shifted(self.unit.power_of_ten).unwrap_or(f64::NAN);
+        format!("{} {}", value + 0.0, self.unit.dimension)
+    }
 }
 
 /// A decimal number at the beginning of a text, not yet rounded.
@@ -535,7 +542,7 @@ impl Unit {
                 return Err(QuantityError::UnknownUnit {
                     text: text.to_owned(),
                     unit: truncated(symbol),
-                    advice: advice_on(symbol, &factors, wanted, example),
+                    advice: advice_on(&unit_text, symbol, &factors, wanted, example),
                 });
             }
         }
@@ -622,9 +629,15 @@ fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     })
 }
 
-/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit that gives the product the
-/// `wanted` dimension, or otherwise the known units.
-fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: &str) -> String {
+/// Advice on an unknown `symbol` among the `factors` of a unit: the nearest unit that gives the
+/// product the `wanted` dimension, or otherwise the known units.
+fn advice_on(
+    unit_text: &str,
+    symbol: &str,
+    factors: &[(&str, i32)],
+    wanted: Dimension,
+    example: &str,
+) -> String {
     if symbol.starts_with(',') {
         return "the decimal sign is a point".to_owned();
     }
@@ -647,7 +660,17 @@ fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: 
         {
             return format!("did you mean `{bare}^{raised}`?");
         }
-        if let Some(near) = nearest_unit(symbol, |unit| fits(unit, *power)) {
+        // 1 MPa is nearer to the example "100 kPa" than 1 mPa, for "2 mpa" as for "210000 mpa".
+        let decades = |near: &str| {
+            let read = |text: &str| {
+                let written = WrittenQuantity::read(text)?;
+                written.number.shifted(written.unit.power_of_ten)
+            };
+            let one = format!("1 {}", unit_text.replacen(symbol, near, 1));
+            let ratio = read(&one).zip(read(example));
+            ratio.map_or(0.0, |(value, usual)| libm::log10(value / usual).abs())
+        };
+        if let Some(near) = nearest_unit(symbol, |unit| fits(unit, *power), decades) {
             return format!("did you mean `{near}`?");
         }
     }
@@ -657,8 +680,13 @@ fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: 
 }
 
 /// The accepted unit, with its prefix, that is spelt most like `symbol`, among those with a suitable
-/// dimension.
-fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String> {
+/// dimension; of those that differ from it by capitals alone, the one with the fewest `decades` from a usual
+/// value.
+fn nearest_unit(
+    symbol: &str,
+    fits: impl Fn(Dimension) -> bool,
+    decades: impl Fn(&str) -> f64,
+) -> Option<String> {
     let units = UNITS.iter().filter(|(_, dimension, _)| fits(*dimension));
     let candidates = units.flat_map(|(unit, ..)| {
         let prefixes = PREFIXES.iter().map(|(prefix, _)| *prefix).chain([""]);
@@ -667,10 +695,15 @@ fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String
     let distance = |unit: &str| {
         // "KPA" is nearer to "kPa" than to any unit with other letters.
         let folded = strsim::damerau_levenshtein(&unit.to_lowercase(), &symbol.to_lowercase());
-        (folded, strsim::damerau_levenshtein(unit, symbol))
+        let unusual = if folded == 0 {
+            decades(unit).round() as u64
+        } else {
+            0
+        };
+        (folded, unusual, strsim::damerau_levenshtein(unit, symbol))
     };
     let nearest = candidates.map(|unit| (distance(&unit), unit)).min();
-    let ((distance, _), unit) = nearest?;
+    let ((distance, ..), unit) = nearest?;
     (distance == 0 || distance == 1 && symbol.len() > 1).then_some(unit)
 }
 

@@ -15,6 +15,7 @@ mod commands;
 mod device;
 mod divided_override;
 mod failure;
+mod force;
 mod help;
 mod make_case;
 mod print;
@@ -37,7 +38,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use slipfront::Communicator;
 use slipfront_base::text::shell_path;
-use slipfront_case::case_file::nearest;
+use slipfront_case::nearest::nearest;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::program::{this_build, version_lines};
 use slipfront_study::StudyFile;
@@ -177,7 +178,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
     })
 }
 
-/// Parses arguments; the help of every command ends with the table of exit statuses.
+/// Parses arguments; the help of the program ends with the table of exit statuses.
 fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, clap::Error> {
     let mut command = with_statuses(T::command());
     let matches = command.try_get_matches_from_mut(args)?;
@@ -195,7 +196,7 @@ fn with_statuses(command: clap::Command) -> clap::Command {
         Some(help) => format!("{help}\n\n{STATUSES}"),
         None => STATUSES.to_owned(),
     };
-    command.after_help(help).mut_subcommands(with_statuses)
+    command.after_help(help)
 }
 
 /// Runs the command `slipfront-mpi`, with one process for every rank of the communicator; arguments and exit

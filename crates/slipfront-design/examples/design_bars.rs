@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cavity = textured_blocks(&case(1.0, CAVITY)?);
     let limits = Limits {
         coverage: [0.0, 10.0],
-        feature: 3,
+        feature: 3.0,
         gap: 3,
         ..Limits::default()
     };

@@ -13,7 +13,7 @@ use crate::judge::{Contender, Judge};
 use crate::limits::{Illegal, Limits};
 use crate::named::{GROOVE, Named, named};
 use crate::open_search::OpenSearch;
-use crate::search::{Proposal, Search};
+use crate::search::{Proposal, Rejected, Search};
 use crate::shapes::Shapes;
 use crate::slider_blocks::SliderBlocks;
 use crate::space::Space;
@@ -32,10 +32,19 @@ pub struct Design {
     start: u64,
     /// Number of drafts that are tried at once; by default from the number of runs.
     drafts_at_once: Option<usize>,
-    /// Masks that the search also starts from, and their names.
-    drawn: Vec<(String, Vec<bool>)>,
+    /// Textures that the search also starts from.
+    drawn: Vec<Drawn>,
     /// Shapes with unknown numbers, if numbers are searched for in place of masks.
     pub(crate) shapes: Option<Arc<Shapes>>,
+}
+
+/// A texture that a search also starts from.
+#[derive(Debug)]
+struct Drawn {
+    name: String,
+    textured: Vec<bool>,
+    /// Smallest width of its shapes in blocks, if numbers of shapes are searched for.
+    feature: Option<f64>,
 }
 
 /// Result of a search.
@@ -51,6 +60,8 @@ pub struct Outcome {
     pub(crate) compared: Vec<(String, Option<Arc<Vec<bool>>>)>,
     /// Length of the search.
     pub(crate) length: SearchLength,
+    /// Drafts without a legal texture.
+    pub(crate) rejected: Rejected,
     /// Drafts that were tried, in their order.
     pub(crate) tried: Vec<Tried>,
 }
@@ -108,24 +119,46 @@ impl Design {
     }
 
     /// Adds a mask, or the legal part of it, to the starts of the search. It counts as a named pattern, and
-    /// is always judged, good or not.
-    pub fn begin_with(&mut self, name: String, textured: Vec<bool>) {
-        self.drawn.push((name, textured));
+    /// is always judged, good or not. `feature` is the smallest width in blocks of the shapes that it was
+    /// meshed from; none for the widths of the mask.
+    pub fn begin_with(&mut self, name: String, textured: Vec<bool>, feature: Option<f64>) {
+        self.drawn.push(Drawn {
+            name,
+            textured,
+            feature,
+        });
     }
 
-    /// Notes on starting masks that break a limit.
+    /// The legal part of a starting mask.
+    fn legal_part(&self, drawn: &Drawn) -> Result<Vec<bool>, Illegal> {
+        let (grid, limits) = (&self.evaluator.grid, &self.limits);
+        if self.shapes.is_some() && limits.check(grid, &drawn.textured, drawn.feature).is_ok() {
+            return Ok(drawn.textured.clone());
+        }
+        limits.texture(grid, &Named::drawn(grid, &drawn.name, &drawn.textured).draft)
+    }
+
+    /// Notes on starting masks that break a limit or that a case refuses.
     pub(crate) fn notes(&self) -> Vec<String> {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
-        let note = |(name, textured): &(String, Vec<bool>)| {
-            if !textured.contains(&true) {
+        let note = |drawn: &Drawn| {
+            let name = &drawn.name;
+            if !drawn.textured.contains(&true) {
                 return Some(format!("the {name} covers no block, and was left out"));
             }
-            let illegal = limits.check(grid, textured).err()?;
-            let named = Named::drawn(grid, name, textured);
-            let made = match limits.texture(grid, &named.draft) {
-                Some(_) if self.shapes.is_some() => "the part within the limits is tested, under this name",
-                Some(_) => "the search starts with the part within the limits, under this name",
-                None => "no part is within the limits, so it was left out",
+            let part = self.legal_part(drawn);
+            let refused = part
+                .as_ref()
+                .ok()
+                .and_then(|part| self.evaluator.check(part).err());
+            if let Some(refused) = refused {
+                return Some(format!("the {name} was left out: {}", refused.without_place()));
+            }
+            let illegal = limits.check(grid, &drawn.textured, drawn.feature).err()?;
+            let made = match part {
+                Ok(_) if self.shapes.is_some() => "the part within the limits is tested, under this name",
+                Ok(_) => "the search starts with the part within the limits, under this name",
+                Err(_) => "no part is within the limits, so it was left out",
             };
             Some(format!("the {name} violates a limit: {illegal}; {made}"))
         };
@@ -195,6 +228,7 @@ impl Design {
                 textures,
                 stage: DesignStage::Judging,
                 best: f64::NAN,
+                rejected: stages.rejected().drafts,
                 best_texture: None,
                 best_shares: None,
                 work: RunCost {
@@ -211,7 +245,7 @@ impl Design {
         };
         let judged = judge
             .verdict(&searched, &legal, &beside, known, &mut kept)?
-            .ok_or(StudyError::NoDesign)?;
+            .ok_or_else(|| stages.no_design())?;
         let winner = best.iter().find(|found| found.texture == judged.texture);
         Ok(Outcome {
             shares: winner.and_then(Proposal::shares),
@@ -219,6 +253,7 @@ impl Design {
             verdict: judged.verdict,
             compared: judged.compared,
             length: stages.length(bounds),
+            rejected: stages.rejected().clone(),
             tried: stages.tried,
         })
     }
@@ -236,7 +271,7 @@ impl Design {
         let mut stages = Stages::new(&self.evaluator, self.search_from(starts), self.drafts_at_once);
         let best = stages.run(bounds, &mut RunCache::new(), &mut |_| Ok(()), watch)?;
         if best.is_empty() {
-            return Err(StudyError::NoDesign);
+            return Err(stages.no_design());
         }
         Ok(best.into_iter().map(|found| found.texture).collect())
     }
@@ -250,12 +285,12 @@ impl Design {
                 (Space::patches(grid, limits), starts)
             }
         };
-        Search::new(space, self.limits.feature, self.start, starts)
+        Search::new(space, self.limits.feature_blocks(), self.start, starts)
     }
 
     /// Whether a pattern is one of the starting masks.
     fn is_drawn(&self, name: &str) -> bool {
-        self.drawn.iter().any(|(drawn, _)| drawn == name)
+        self.drawn.iter().any(|drawn| drawn.name == name)
     }
 
     /// Largest number of runs of the verdict with legal patterns of these names, and their cost in steps
@@ -266,16 +301,18 @@ impl Design {
         Judge::most_runs(&self.evaluator, patterns.len(), judged)
     }
 
-    /// The legal patterns that a search begins with, named patterns and masks, and their textures; fewer once
-    /// `ends` returns true.
+    /// The legal patterns that a search begins with, named patterns and masks, and their textures, without
+    /// those that a case refuses; fewer once `ends` returns true.
     pub(crate) fn starts(&self, ends: &dyn Fn() -> bool) -> (Vec<Named>, Vec<Vec<bool>>) {
         let (grid, limits) = (&self.evaluator.grid, &self.limits);
-        let drawn = self.drawn.iter().filter_map(|(name, textured)| {
-            let named = Named::drawn(grid, name, textured);
-            let texture = limits.texture(grid, &named.draft)?;
-            Some((named, texture))
+        let drawn = self.drawn.iter().filter_map(|drawn| {
+            let texture = self.legal_part(drawn).ok()?;
+            Some((Named::drawn(grid, &drawn.name, &drawn.textured), texture))
         });
-        named(grid, limits, ends).into_iter().chain(drawn).unzip()
+        let all = named(grid, limits, ends).into_iter().chain(drawn);
+        all.take_while(|_| !ends())
+            .filter(|(_, texture)| self.evaluator.check(texture).is_ok())
+            .unzip()
     }
 
     /// A search for which the caller makes the runs.
@@ -283,12 +320,12 @@ impl Design {
         OpenSearch::new(self.search_from(self.starts(&|| false).0))
     }
 
-    /// Checks that a texture is legal.
+    /// Checks that a mask is legal.
     ///
     /// # Errors
     /// The first limit that it breaks.
     pub fn check(&self, textured: &[bool]) -> Result<(), Illegal> {
-        self.limits.check(&self.evaluator.grid, textured)
+        self.limits.check(&self.evaluator.grid, textured, None)
     }
 
     /// Blocks along x and along y.

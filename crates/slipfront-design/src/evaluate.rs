@@ -41,8 +41,8 @@ pub(crate) struct Wanted {
 /// Identity of a run: a hash of everything that determines its numbers.
 pub type RunId = String;
 
-/// Numbers of a run, or a sentence with the reason why it has none: it diverged, or never came to rest while
-/// the drive was held.
+/// Numbers of a run, or a sentence with the reason why it has none: it diverged, never came to rest while the
+/// drive was held, or its case refuses the texture.
 pub type RunOutcome = Result<Measured, String>;
 
 /// Outcomes of runs by their identities.
@@ -206,9 +206,7 @@ impl Evaluator {
         }
         // Each run is its own task: some end early, and no thread may be left with several long runs.
         let runs = runs.par_iter().with_max_len(1);
-        let outcomes: Result<Vec<_>, CaseError> =
-            runs.map(|(_, wanted)| self.measure(wanted, stop)).collect();
-        Ok(outcomes?)
+        Ok(runs.map(|(_, wanted)| self.measure(wanted, stop)).collect())
     }
 
     /// Makes runs on a device; none after a stop. A wish for a curve is for the CPU alone.
@@ -219,36 +217,52 @@ impl Evaluator {
         device: &dyn Device,
         stop: &AtomicBool,
     ) -> Result<Vec<Option<RunOutcome>>, StudyError> {
-        let case = |(_, wanted): &(RunId, &Wanted)| Ok(Arc::new(self.case(wanted)?));
-        let cases: Vec<_> = runs.par_iter().map(case).collect::<Result<_, CaseError>>()?;
-        let summaries = device_summaries(&cases, device, &|| stop.load(Ordering::Relaxed))?;
-        Ok(summaries
-            .into_iter()
-            .map(|summary| summary.map(measured))
-            .collect())
+        let cases: Vec<Result<Arc<Case>, String>> = runs
+            .par_iter()
+            .map(|(_, wanted)| self.case(wanted).map(Arc::new))
+            .collect();
+        let to_run: Vec<Arc<Case>> = cases.iter().flatten().cloned().collect();
+        let summaries = device_summaries(&to_run, device, &|| stop.load(Ordering::Relaxed))?;
+        let mut summaries = summaries.into_iter();
+        let outcome = |case: Result<Arc<Case>, String>| match case {
+            Ok(_) => summaries.next().flatten().map(measured),
+            Err(why) => Some(Err(why)),
+        };
+        Ok(cases.into_iter().map(outcome).collect())
     }
 
-    /// The case of a run.
-    fn case(&self, wanted: &Wanted) -> Result<Case, CaseError> {
+    /// The case of a run, or the reason why the case refuses the texture.
+    fn case(&self, wanted: &Wanted) -> Result<Case, String> {
         let texture = wanted.texture.as_ref().map(|texture| texture.as_slice());
-        self.subjects[wanted.subject].case(texture, wanted.surface, wanted.fidelity)
+        let case = self.subjects[wanted.subject].case(texture, wanted.surface, wanted.fidelity);
+        case.map_err(|error| error.without_place())
     }
 
     /// Makes one run; none after a stop.
-    fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Result<Option<RunOutcome>, CaseError> {
+    fn measure(&self, wanted: &Wanted, stop: &AtomicBool) -> Option<RunOutcome> {
         let ends = || stop.load(Ordering::Relaxed);
-        let case = self.case(wanted)?;
-        let Wish::Curve(points) = &self.subjects[wanted.subject].wish else {
-            return Ok(run_summary_unless(&case, &ends).map(measured));
+        let case = match self.case(wanted) {
+            Ok(case) => case,
+            Err(why) => return Some(Err(why)),
         };
-        let record = run_unless(&Arc::new(case), &ends);
-        Ok(record.map(|record| {
-            let measured = record.map(|record| Measured {
-                misfit: Some(misfit(points, &record)),
-                ..Measured::of(&record.summary)
-            });
-            measured.map_err(|error| error.to_string())
-        }))
+        let Wish::Curve(points) = &self.subjects[wanted.subject].wish else {
+            return run_summary_unless(&case, &ends).map(measured);
+        };
+        let record = run_unless(&Arc::new(case), &ends)?;
+        let measured = record.map(|record| Measured {
+            misfit: Some(misfit(points, &record)),
+            ..Measured::of(&record.summary)
+        });
+        Some(measured.map_err(|error| error.to_string()))
+    }
+
+    /// Checks that all cases can be run with a texture.
+    ///
+    /// # Errors
+    /// The reason why one of them refuses it.
+    pub(crate) fn check(&self, texture: &[bool]) -> Result<(), CaseError> {
+        let mut subjects = self.subjects.iter();
+        subjects.try_for_each(|subject| subject.case(Some(texture), 0, Fidelity::Fine).map(drop))
     }
 
     /// Outcome of a run.

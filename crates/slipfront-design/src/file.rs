@@ -8,12 +8,12 @@ use slipfront_case::case_file::{CaseError, CaseFile, KeyKind, Override, Redistri
 use slipfront_case::key_rows;
 use slipfront_case::quantity::{Force, Length};
 use slipfront_case::table::TableOptions;
-use slipfront_case::texture_file::textured_blocks;
+use slipfront_case::texture_file::{smallest, textured_blocks};
 use slipfront_run::measured::Measure;
 use toml::{Table, Value};
 
 use crate::design::Design;
-use crate::limits::Limits;
+use crate::limits::{Limits, whole_blocks};
 use crate::shapes::Shapes;
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::Subject;
@@ -80,7 +80,8 @@ key_rows! {
         tolerance: Option<Number> = key("", KeyKind::Special("more than 0")).without("none"),
         /// Least and largest share of the slider that is textured, %.
         coverage: [f64; 2] = key("", KeyKind::Special("from at least 0 to less than 100")).without("needed"),
-        /// Smallest width of a feature, a length. It becomes a whole number of blocks, rounded up.
+        /// Smallest width of a feature, a length. In a mask it is rounded up to whole blocks; shapes with
+        /// `unknowns` are measured as drawn, a circle by its diameter.
         feature: Option<Length> = key("", KeyKind::Special("more than 0")).without("one block"),
         /// Smallest width of a feature in blocks, in place of `feature`.
         feature_blocks: Option<u32> = key("", KeyKind::Special("1 and more")),
@@ -286,8 +287,8 @@ impl DesignFile {
         Ok(case)
     }
 
-    /// The textured blocks of the base case with other textures instead of its own.
-    fn textured(&self, key: &str, textures: &Value) -> Result<Vec<bool>, CaseError> {
+    /// The base case with other textures instead of its own.
+    fn with_textures(&self, key: &str, textures: &Value) -> Result<Case, CaseError> {
         if !textures.is_array() {
             let sentence = format!(
                 "`{key}` must be a list of textures, each as in a case file, such as [{{ shape = \"mask\", file = \"mask.png\" }}]"
@@ -295,8 +296,7 @@ impl DesignFile {
             return Err(self.project.error(key, sentence));
         }
         let case = self.case_with(&[Override::new("texture", textures)]);
-        let case = case.map_err(|error| self.project.found_in(key, error))?;
-        Ok(textured_blocks(&case))
+        case.map_err(|error| self.project.found_in(key, error))
     }
 
     /// Whether the wish is a curve.
@@ -393,12 +393,21 @@ impl DesignFile {
         if let Some(drafts) = keys.drafts_at_once {
             design.try_at_once(drafts as usize);
         }
+        let mut begin_with = |name: String, case: &Case| -> Result<(), CaseError> {
+            let feature = if keys.unknowns.is_empty() {
+                None
+            } else {
+                smallest(case)?.feature
+            };
+            design.begin_with(name, textured_blocks(case), feature);
+            Ok(())
+        };
         for (k, textures) in keys.starts.iter().enumerate() {
-            let textured = self.textured("starts", textures)?;
-            design.begin_with(format!("start {} of the file", k + 1), textured);
+            let case = self.with_textures("starts", textures)?;
+            begin_with(format!("start {} of the file", k + 1), &case)?;
         }
         if base.model.surface.texture_percent() > 0.0 {
-            design.begin_with("texture of the case".to_owned(), textured_blocks(&base));
+            begin_with("texture of the case".to_owned(), &base)?;
         }
         if !keys.unknowns.is_empty() {
             let subject = Subject::new(&base, Wish::Least(Quantity::StaticFriction), limits.coverage[1])?;
@@ -427,15 +436,13 @@ impl DesignFile {
         let keys = &self.keys;
         let narrowest = grid.size()[0].min(grid.size()[1]);
         let width = |[key, in_blocks]: [&str; 2], length: &Option<Length>, blocks: Option<u32>| {
-            let of_length = |length: &Length| {
-                // A length that equals a whole number of blocks up to rounding must not gain a block.
-                (length.si() / base.scales.block_size - 1e-6).ceil().max(1.0) as usize
-            };
-            let blocks =
-                blocks.map_or_else(|| length.as_ref().map_or(1, of_length), |blocks| blocks as usize);
-            if blocks > narrowest {
-                let sentence =
-                    format!("`{key}` is {blocks} blocks, more than the slider's {narrowest} across");
+            let of_length = |length: &Length| length.si() / base.scales.block_size;
+            let blocks = blocks.map_or_else(|| length.as_ref().map_or(1.0, of_length), f64::from);
+            if whole_blocks(blocks) > narrowest {
+                let sentence = format!(
+                    "`{key}` is {} blocks, more than the slider's {narrowest} across",
+                    whole_blocks(blocks)
+                );
                 return Err(self
                     .project
                     .error(if length.is_some() { key } else { in_blocks }, sentence));
@@ -455,12 +462,13 @@ impl DesignFile {
         }
         let forbidden = keys.forbidden.as_ref();
         let forbidden = forbidden
-            .map(|textures| self.textured("forbidden", textures))
-            .transpose()?;
+            .map(|textures| self.with_textures("forbidden", textures))
+            .transpose()?
+            .map(|case| textured_blocks(&case));
         Ok(Limits {
             coverage: [keys.coverage[0], self.largest_coverage(base, grid, percent)],
             feature: width(["feature", "feature_blocks"], &keys.feature, keys.feature_blocks)?,
-            gap: width(["gap", "gap_blocks"], &keys.gap, keys.gap_blocks)?,
+            gap: whole_blocks(width(["gap", "gap_blocks"], &keys.gap, keys.gap_blocks)?),
             mirror: match keys.mirror {
                 Mirror::None => [false, false],
                 Mirror::X => [true, false],

@@ -123,12 +123,12 @@ impl DesignFolder {
             let design = design.on_device(self.device.clone());
             match self.judged(&design, bounds, &mut |now| watch(&of_front.with(now))) {
                 Ok(outcome) => front.push((percent, Some((design, outcome)))),
-                Err(StudyError::NoDesign) => front.push((percent, None)),
+                Err(StudyError::NoDesign { .. }) => front.push((percent, None)),
                 Err(error) => return Err(error),
             }
         }
         text += &self.report(&mut batch).write_front(&front)?;
-        batch.place(Others::Go)?;
+        batch.place(Others::Go, vec![self.journal.listed()?])?;
         Ok(text)
     }
 

@@ -1,7 +1,7 @@
 //! Limits on the textures of a design, and the conversion of a draft to a legal texture.
 
 use slipfront::opening;
-use slipfront_base::number_format::{are, count as count_of};
+use slipfront_base::number_format::{are, count as count_of, four_digits};
 
 use crate::patch::PatchDraft;
 use crate::slider_blocks::{SliderBlocks, count};
@@ -11,9 +11,9 @@ use crate::slider_blocks::{SliderBlocks, count};
 pub struct Limits {
     /// Least and largest share of the blocks that are textured, %.
     pub coverage: [f64; 2],
-    /// Smallest width of a feature: every textured block belongs to a textured square of this many blocks
-    /// along a side.
-    pub feature: usize,
+    /// Smallest width of a feature: of a shape as it is drawn. A mask rounds it up to whole blocks: every
+    /// textured block belongs to a textured square of this many blocks along a side.
+    pub feature: f64,
     /// Smallest width of a gap: every block in contact belongs to a square of this many blocks in contact
     /// along a side.
     pub gap: usize,
@@ -32,7 +32,7 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             coverage: [0.0, 100.0],
-            feature: 1,
+            feature: 1.0,
             gap: 1,
             mirror: [false; 2],
             copies: [1; 2],
@@ -42,14 +42,19 @@ impl Default for Limits {
     }
 }
 
+/// Rounding of widths, in blocks.
+const ROUNDING: f64 = 1e-6;
+
 /// Reason why a texture is not legal.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum Illegal {
+    #[error("no part of the texture is as wide as a feature and leaves gaps as wide as they must be")]
+    Nothing,
     #[error("the texture covers {found:.2} % of the slider; {least} to {most} % are allowed")]
     Coverage { found: f64, least: f64, most: f64 },
-    #[error("a feature is {} wide; the minimum is {least}", count_of(*found, "block"))]
-    Feature { found: usize, least: usize },
+    #[error("a feature is {} wide; the minimum is {}", blocks(*found), four_digits(*least))]
+    Feature { found: f64, least: f64 },
     #[error("a gap between features, or between a feature and an edge, is {} wide; the minimum is {least}", count_of(*found, "block"))]
     Gap { found: usize, least: usize },
     #[error("the texture is not symmetric about the middle of {axis}")]
@@ -62,12 +67,33 @@ pub enum Illegal {
     Features { found: usize, most: usize },
 }
 
+/// A width in whole blocks, rounded up.
+pub(crate) fn whole_blocks(width: f64) -> usize {
+    // A length that equals a whole number of blocks up to rounding must not gain a block.
+    (width - ROUNDING).ceil().max(1.0) as usize
+}
+
+/// A width in blocks, in words.
+fn blocks(width: f64) -> String {
+    format!(
+        "{} block{}",
+        four_digits(width),
+        if width == 1.0 { "" } else { "s" }
+    )
+}
+
 impl Limits {
-    /// Checks that a texture is legal.
+    /// Smallest side of a square of blocks within a feature of a mask.
+    pub(crate) fn feature_blocks(&self) -> usize {
+        whole_blocks(self.feature)
+    }
+
+    /// Checks that a texture is legal. If its shapes are known, `drawn` is the smallest width of them in
+    /// blocks, which their blocks do not show: a disc 6 blocks across contains no square of 5 blocks.
     ///
     /// # Errors
     /// The first limit that it breaks.
-    pub fn check(&self, grid: &SliderBlocks, textured: &[bool]) -> Result<(), Illegal> {
+    pub fn check(&self, grid: &SliderBlocks, textured: &[bool], drawn: Option<f64>) -> Result<(), Illegal> {
         let [least, most] = self.coverage;
         let found = grid.percent(textured);
         if !(least..=most).contains(&found) {
@@ -81,7 +107,11 @@ impl Limits {
                 opening::width(&grid.lattice, set)
             }
         };
-        if let Some(found) = narrow(textured, self.feature) {
+        let narrow_feature = match drawn {
+            Some(drawn) => Some(drawn).filter(|drawn| *drawn < self.feature - ROUNDING),
+            None => narrow(textured, self.feature_blocks()).map(|width| width as f64),
+        };
+        if let Some(found) = narrow_feature {
             let least = self.feature;
             return Err(Illegal::Feature { found, least });
         }
@@ -116,8 +146,11 @@ impl Limits {
     }
 
     /// The texture of a draft: the blocks inside its patches, after all patches have grown by the same
-    /// distance to the largest legal texture within the coverage of the draft. None if no texture is legal.
-    pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &PatchDraft) -> Option<Vec<bool>> {
+    /// distance to the largest legal texture within the coverage of the draft.
+    ///
+    /// # Errors
+    /// A limit that it breaks.
+    pub(crate) fn texture(&self, grid: &SliderBlocks, draft: &PatchDraft) -> Result<Vec<bool>, Illegal> {
         let growth = self.growth(grid, draft);
         let mut levels: Vec<f64> = growth.iter().copied().filter(|level| level.is_finite()).collect();
         levels.sort_unstable_by(f64::total_cmp);
@@ -141,7 +174,10 @@ impl Limits {
                 high = middle;
             }
         }
-        largest.filter(|texture| texture.contains(&true) && self.check(grid, texture).is_ok())
+        let largest = largest.filter(|texture| texture.contains(&true));
+        let texture = largest.ok_or(Illegal::Nothing)?;
+        self.check(grid, &texture, None)?;
+        Ok(texture)
     }
 
     /// Growth at which a draft contains each block, equal in all cells and mirrored halves; infinite where a
@@ -192,7 +228,7 @@ impl Limits {
 
     /// A set after too narrow parts are removed and too narrow gaps are filled.
     fn smoothed(&self, grid: &SliderBlocks, set: &[bool]) -> Vec<bool> {
-        let opened = opening::opened(&grid.lattice, set, self.feature);
+        let opened = opening::opened(&grid.lattice, set, self.feature_blocks());
         if self.gap <= 1 {
             return opened;
         }
@@ -201,7 +237,7 @@ impl Limits {
         if closed == opened {
             return opened;
         }
-        opening::opened(&grid.lattice, &closed, self.feature)
+        opening::opened(&grid.lattice, &closed, self.feature_blocks())
     }
 
     /// The block at the same place in the first cell.
@@ -235,7 +271,7 @@ mod tests {
     fn every_limit_is_told_by_what_breaks_it() {
         let rows = ["....", ".##.", ".##.", "...#"];
         let (grid, textured) = drawn(&rows, [false; 2]);
-        let said = |limits: &Limits| limits.check(&grid, &textured);
+        let said = |limits: &Limits| limits.check(&grid, &textured, None);
         assert_eq!(said(&Limits::default()), Ok(()));
         let check = |change: &dyn Fn(&mut Limits)| {
             let mut changed = Limits::default();
@@ -251,8 +287,11 @@ mod tests {
             }
         );
         assert_eq!(
-            check(&|limits| limits.feature = 2),
-            Illegal::Feature { found: 1, least: 2 }
+            check(&|limits| limits.feature = 2.0),
+            Illegal::Feature {
+                found: 1.0,
+                least: 2.0
+            }
         );
         assert_eq!(
             check(&|limits| limits.gap = 2),
@@ -301,7 +340,7 @@ mod tests {
         let side: Vec<bool> = (0..nx * ny).map(|block| block % nx < 4).collect();
         for (k, change) in [
             &(|_: &mut Limits| {}) as &dyn Fn(&mut Limits),
-            &|limits| limits.feature = 4,
+            &|limits| limits.feature = 4.0,
             &|limits| limits.mirror = [true, true],
             &|limits| limits.copies = [2, 3],
             &|limits| limits.forbidden = Some(corner.clone()),
@@ -316,7 +355,7 @@ mod tests {
         {
             let mut limits = Limits {
                 coverage: [0.0, 15.0],
-                feature: 2,
+                feature: 2.0,
                 gap: 2,
                 ..Limits::default()
             };
@@ -336,7 +375,7 @@ mod tests {
                 assert!(!asked.is_empty(), "{limits:?}");
                 for (one, other) in asked.iter().zip(&again) {
                     assert_eq!(one.texture, other.texture);
-                    assert_eq!(limits.check(&grid, &one.texture), Ok(()), "{limits:?}");
+                    assert_eq!(limits.check(&grid, &one.texture, None), Ok(()), "{limits:?}");
                     assert!(seen.insert(one.texture.clone()));
                 }
                 // An arbitrary loss: the position of the texture along x.

@@ -39,7 +39,7 @@ pub(crate) fn named(
     // A strip has an odd number of blocks across if it is centred on a block, and an even number if it is
     // centred on an edge.
     let [edges, middles] = [0.0, 0.5].map(|shift| shifted(grid, percent, shift));
-    let textured = |named: Named| Some((limits.texture(grid, &named.draft)?, named));
+    let textured = |named: Named| Some((limits.texture(grid, &named.draft).ok()?, named));
     let larger = |(one, other): (Named, Named)| {
         let both = [textured(one), textured(other)].into_iter().flatten();
         both.max_by_key(|(texture, _)| count(texture))

@@ -29,7 +29,10 @@ impl PatchRanges {
         let width = 0.01 * limits.coverage[1] * size[0].min(size[1]);
         Self {
             size,
-            half: [0.35 * (size[0] + size[1]), 0.5 * width.max(limits.feature as f64)],
+            half: [
+                0.35 * (size[0] + size[1]),
+                0.5 * width.max(limits.feature_blocks() as f64),
+            ],
             coverage: limits.coverage,
         }
     }

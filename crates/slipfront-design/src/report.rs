@@ -12,7 +12,7 @@ use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::texture_file;
+use slipfront_case::texture_file::{self, Options};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionAxes, FrictionCurve};
 use slipfront_run::names::CASE;
 use slipfront_run::running;
@@ -21,6 +21,7 @@ use crate::design::{Design, Outcome};
 use crate::file::DesignFile;
 use crate::mean::Mean;
 use crate::numbers::{FoundNumber, columns_of_unknowns, numbers_at, numbers_found, table_of_numbers};
+use crate::search::Rejected;
 use crate::sensitivity::Changed;
 use crate::stages::{SearchLength, Tried};
 use crate::subject::{Fidelity, MASK, masked};
@@ -64,6 +65,7 @@ pub(crate) struct AsMeshed {
 #[derive(Serialize)]
 struct DesignJson<'a> {
     search: SearchLength,
+    rejected: &'a Rejected,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unknowns: Vec<FoundNumber>,
     as_meshed: &'a AsMeshed,
@@ -106,16 +108,18 @@ impl Report<'_> {
         let case = self.write_texture(design, texture, shares)?;
         for ending in MASK_ENDINGS {
             let name = format!("{MASK_NAME}.{ending}");
-            let (bytes, _) = texture_file::contents(&case, Path::new(&name), None)?;
+            let (bytes, _) = texture_file::contents(&case, Path::new(&name), Options::default())?;
             self.batch.write(&name, |to| to.write_all(&bytes))?;
         }
         self.write_pictures(design, outcome)?;
         self.batch
             .write(EVALUATIONS, |to| Ok(evaluations(design, outcome, to)?))?;
-        let as_meshed = self.as_meshed(design, texture, &case);
+        let drawn = shares.map(|_| texture_file::smallest(&case)).transpose()?;
+        let as_meshed = self.as_meshed(design, texture, &case, drawn.and_then(|drawn| drawn.feature));
         let [numbers, words] = VERDICT;
         let written = DesignJson {
             search: outcome.length,
+            rejected: &outcome.rejected,
             unknowns: numbers_found(design, shares),
             as_meshed: &as_meshed,
             unit: &design.evaluator.subjects[0].unit,
@@ -172,7 +176,8 @@ impl Report<'_> {
         )?)
     }
 
-    fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case) -> AsMeshed {
+    /// Properties of a texture. `drawn` is the smallest width of its shapes in blocks, if they are known.
+    fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case, drawn: Option<f64>) -> AsMeshed {
         let grid = &design.evaluator.grid;
         let size = case.scales.block_size;
         let width = |set: &[bool]| opening::width(&grid.lattice, set).map(|blocks| blocks as f64 * size);
@@ -180,7 +185,7 @@ impl Report<'_> {
         AsMeshed {
             coverage_percent: grid.percent(texture),
             features: opening::n_pieces(&grid.lattice, texture),
-            feature_m: width(texture),
+            feature_m: drawn.map_or_else(|| width(texture), |drawn| Some(drawn * size)),
             gap_m: width(&grid.others(texture)),
             writing_length_m: self.file.line_spacing().map(|spacing| area / spacing),
         }
@@ -289,8 +294,13 @@ impl Report<'_> {
         let thick = as_meshed
             .feature_m
             .and_then(|feature| case.thick_for_feature(feature));
-        let sentences = losses(&outcome.tried, verdict)
+        let rejected = outcome.rejected.in_words().map(|rejected| {
+            let tested = count(outcome.tried.len(), "draft");
+            format!("the search tested {tested}; {rejected}")
+        });
+        let sentences = rejected
             .into_iter()
+            .chain(losses(&outcome.tried, verdict))
             .chain(design.notes())
             .chain(numbers.iter().filter_map(FoundNumber::at_an_end))
             .chain(thick);

@@ -11,6 +11,9 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use serde::Serialize;
+use slipfront_base::number_format::count;
+
 use crate::named::Named;
 use crate::space::{Draft, Space};
 use crate::start::{GENERATION, Start};
@@ -75,6 +78,26 @@ pub(crate) struct Search {
     n_starts: usize,
     /// Whether every start begins with one of the best textures.
     is_refining: bool,
+    /// Number of drafts without a legal texture, and the reason of the last of them.
+    pub(crate) rejected: Rejected,
+}
+
+/// Drafts of a search that were not tried, since they have no legal texture.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Rejected {
+    /// Number of these drafts.
+    pub drafts: usize,
+    /// Reason why the last of them was rejected.
+    pub last: Option<String>,
+}
+
+impl Rejected {
+    /// A clause for a person; none if no draft was rejected.
+    pub(crate) fn in_words(&self) -> Option<String> {
+        let last = self.last.as_ref()?;
+        let drafts = count(self.drafts, "draft");
+        Some(format!("{drafts} rejected before a run; the last: {last}"))
+    }
 }
 
 impl Search {
@@ -92,6 +115,7 @@ impl Search {
             starts: Vec::new(),
             n_starts: 0,
             is_refining: false,
+            rejected: Rejected::default(),
         }
     }
 
@@ -107,7 +131,14 @@ impl Search {
             }
             let place = asked.len() / GENERATION;
             let (origin, draft, drawn) = self.draft(place);
-            let texture = self.space.texture(&draft);
+            let texture = match self.space.texture(&draft) {
+                Ok(texture) => Some(texture),
+                Err(why) => {
+                    self.rejected.drafts += 1;
+                    self.rejected.last = Some(why);
+                    None
+                }
+            };
             if let Some(texture) = texture.filter(|texture| self.seen.insert(hash(texture))) {
                 in_vain = 0;
                 asked.push(Proposal {

@@ -4,6 +4,7 @@ use serde::Serialize;
 use slipfront::Lattice;
 use slipfront_case::case_file::{CaseError, DriveSpeed};
 use slipfront_case::quantity::Speed;
+use slipfront_case::texture_file::textured_blocks;
 
 use crate::evaluate::{Evaluator, Keep, RunCache};
 use crate::judge::{Contender, Judge, Surfaces};
@@ -55,13 +56,9 @@ pub struct Sensitivity {
 
 impl Sensitivity {
     fn leave_out(&mut self, change: &str, error: &CaseError) {
-        let why = match error {
-            CaseError::Invalid(invalid) => invalid.sentence.clone(),
-            error => error.to_string(),
-        };
         self.left_out.push(LeftOut {
             change: change.to_owned(),
-            why,
+            why: error.without_place(),
         });
     }
 }
@@ -111,21 +108,8 @@ impl Judge<'_> {
             }
         }
         let change = "blocks of half the size";
-        match self.evaluator.on_finer_blocks() {
-            Ok(evaluator) => {
-                let size = self.evaluator.grid.size();
-                let finer = |contender: &Contender| -> Result<Contender, CaseError> {
-                    // Shapes are meshed again on finer blocks; a mask keeps its outline.
-                    let texture = match &contender.shapes {
-                        Some(shapes) => evaluator.subjects[0].textured(shapes)?,
-                        None => doubled(size, &contender.texture),
-                    };
-                    Ok(Contender {
-                        texture: texture.into(),
-                        ..contender.clone()
-                    })
-                };
-                let (design, other) = (finer(design)?, other.map(finer).transpose()?);
+        match self.on_finer_blocks(design, other) {
+            Ok((evaluator, design, other)) => {
                 let judge = self.with(&evaluator);
                 let changed = judge.under(change, &design, other.as_ref(), known, keep)?;
                 found.changed.push(changed);
@@ -133,6 +117,28 @@ impl Judge<'_> {
             Err(error) => found.leave_out(change, &error),
         }
         Ok(found)
+    }
+
+    /// The cases, a design and another texture on blocks of half the size. Shapes are meshed again; a mask
+    /// keeps its outline.
+    fn on_finer_blocks(
+        &self,
+        design: &Contender,
+        other: Option<&Contender>,
+    ) -> Result<(Evaluator, Contender, Option<Contender>), CaseError> {
+        let evaluator = self.evaluator.on_finer_blocks()?;
+        let finer = |contender: &Contender| -> Result<Contender, CaseError> {
+            let texture = match &contender.shapes {
+                Some(shapes) => textured_blocks(&evaluator.subjects[0].with_textures(shapes)?),
+                None => doubled(self.evaluator.grid.size(), &contender.texture),
+            };
+            Ok(Contender {
+                texture: texture.into(),
+                ..contender.clone()
+            })
+        };
+        let (design, other) = (finer(design)?, other.map(finer).transpose()?);
+        Ok((evaluator, design, other))
     }
 
     /// A judge of other cases.

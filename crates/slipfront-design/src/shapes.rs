@@ -2,6 +2,7 @@
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile, Override, Texture};
+use slipfront_case::texture_file::{smallest, textured_blocks};
 use slipfront_study::Unknown;
 use toml::Value;
 
@@ -52,7 +53,7 @@ impl Shapes {
             for end in [0.0, 1.0] {
                 let mut shares = shapes.middle();
                 shares[unknown] = end;
-                shapes.subject.textured(&shapes.textures(&shares)?)?;
+                shapes.subject.with_textures(&shapes.textures(&shares)?)?;
             }
         }
         Ok(shapes)
@@ -80,12 +81,22 @@ impl Shapes {
         Ok(CaseFile::parse(&self.base, "base", &set)?.texture)
     }
 
-    /// The textured blocks at these shares of the ranges; none if they break a limit, or if a case refuses
-    /// them.
-    pub(crate) fn texture(&self, shares: &[f64]) -> Option<Vec<bool>> {
-        let blocks = self.subject.textured(&self.textures(shares).ok()?).ok()?;
-        let is_legal = blocks.contains(&true) && self.limits.check(&self.grid, &blocks).is_ok();
-        is_legal.then_some(blocks)
+    /// The textured blocks at these shares of the ranges.
+    ///
+    /// # Errors
+    /// A sentence with a limit that they break, or with the reason why a case refuses them.
+    pub(crate) fn texture(&self, shares: &[f64]) -> Result<Vec<bool>, String> {
+        let drawn = || {
+            let case = self.subject.with_textures(&self.textures(shares)?)?;
+            Ok((textured_blocks(&case), smallest(&case)?.feature))
+        };
+        let (blocks, feature) = drawn().map_err(|error: CaseError| error.without_place())?;
+        if !blocks.contains(&true) {
+            return Err("the texture covers no block".to_owned());
+        }
+        let checked = self.limits.check(&self.grid, &blocks, feature);
+        checked.map_err(|illegal| illegal.to_string())?;
+        Ok(blocks)
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use slipfront_study::draws::Draws;
 
-use crate::limits::Limits;
+use crate::limits::{Illegal, Limits};
 use crate::patch::{Form, PatchDraft};
 use crate::ranges::{PatchRanges, is_angle};
 use crate::shapes::Shapes;
@@ -69,12 +69,17 @@ impl Space {
         }
     }
 
-    /// The legal texture of a draft, if it has one.
-    pub(crate) fn texture(&self, draft: &Draft) -> Option<Vec<bool>> {
+    /// The legal texture of a draft.
+    ///
+    /// # Errors
+    /// A sentence with a limit that the draft breaks, or with the reason why a case refuses it.
+    pub(crate) fn texture(&self, draft: &Draft) -> Result<Vec<bool>, String> {
         match (self, draft) {
-            (Self::Patches { grid, limits, .. }, Draft::Patches(patches)) => limits.texture(grid, patches),
+            (Self::Patches { grid, limits, .. }, Draft::Patches(patches)) => limits
+                .texture(grid, patches)
+                .map_err(|illegal| illegal.to_string()),
             (Self::Shapes { shapes, .. }, Draft::Shapes(shares)) => shapes.texture(shares),
-            _ => None,
+            _ => Err(Illegal::Nothing.to_string()),
         }
     }
 
@@ -130,7 +135,7 @@ impl Space {
                     if *n_anywhere > 1 {
                         shares.iter_mut().for_each(|share| *share = draws.uniform());
                     }
-                    if *n_anywhere == 1 || shapes.texture(&shares).is_some() {
+                    if *n_anywhere == 1 || shapes.texture(&shares).is_ok() {
                         break;
                     }
                 }

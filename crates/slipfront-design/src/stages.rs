@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use crate::evaluate::{Evaluator, Keep, RunCache};
-use crate::search::{Proposal, RatedTexture, Search};
+use crate::search::{Proposal, RatedTexture, Rejected, Search};
 use crate::start::GENERATION;
 use crate::subject::Fidelity;
 use slipfront_study::StudyError;
@@ -64,6 +64,8 @@ pub struct SearchProgress {
     pub of: usize,
     /// Number of textures that the search has tried.
     pub textures: usize,
+    /// Number of drafts that were not tried, since they have no legal texture.
+    pub rejected: usize,
     /// Present stage.
     pub stage: DesignStage,
     /// Value of the best draft of this stage, as in the report; NaN if there is none.
@@ -236,6 +238,20 @@ impl<'a> Stages<'a> {
         self.search.n_asked()
     }
 
+    /// Drafts that have no legal texture.
+    pub(crate) fn rejected(&self) -> &Rejected {
+        &self.search.rejected
+    }
+
+    /// The error if no texture was found.
+    pub(crate) fn no_design(&self) -> StudyError {
+        let lost = self.tried.iter().find_map(|tried| tried.lost.as_ref());
+        let reasons = self.rejected().in_words().into_iter();
+        let reasons = reasons.chain(lost.map(|why| format!("a tested draft failed: {why}")));
+        let why = reasons.map(|reason| format!(" ({reason})")).collect();
+        StudyError::NoDesign { why }
+    }
+
     /// The length of the search.
     pub(crate) fn length(&self, bounds: &Bounds) -> SearchLength {
         SearchLength {
@@ -303,6 +319,7 @@ impl<'a> Stages<'a> {
             runs: self.runs,
             of: bounds.runs,
             textures: self.n_textures(),
+            rejected: self.rejected().drafts,
             stage: if is_refined {
                 DesignStage::Refining
             } else {

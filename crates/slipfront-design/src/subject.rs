@@ -9,7 +9,6 @@ use slipfront_case::case_file::{
     Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DEFAULT_THRESHOLD, Mask, Pattern, RunTime, Shape,
     Snapshots, Texture, TimeStep,
 };
-use slipfront_case::texture_file::textured_blocks;
 
 use crate::wish::{FrictionUnit, Wish};
 use slipfront_study::identity::physics;
@@ -174,14 +173,14 @@ impl Subject {
         }
     }
 
-    /// The blocks of the case that textures cover.
+    /// The case with shapes as textures.
     ///
     /// # Errors
     /// When the case refuses the textures.
-    pub(crate) fn textured(&self, textures: &[Texture]) -> Result<Vec<bool>, CaseError> {
+    pub(crate) fn with_textures(&self, textures: &[Texture]) -> Result<Case, CaseError> {
         let mut file = self.file.clone();
         file.texture = textures.to_vec();
-        Ok(textured_blocks(&self.made_of(file, &self.files)?))
+        self.made_of(file, &self.files)
     }
 
     /// The case with a texture.

@@ -1037,7 +1037,67 @@ fn what_cannot_be_is_told_with_its_place() {
         &mut |_| Ok(()),
         &mut |_| {},
     );
-    assert!(matches!(error, Err(StudyError::NoDesign)));
+    assert!(matches!(error, Err(StudyError::NoDesign { .. })));
+}
+
+/// A texture whose load no block can bear does not end a search: a pattern is left out, and a draft is lost
+/// with its reason.
+#[test]
+fn what_a_case_refuses_is_left_out() {
+    let base = "[base]\nslider.blocks = [16, 16]\ndrive.v_star = 0.1\nload.redistribute = { within = '2 um' }\n\
+        friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\n[design]\n";
+    let keys = "wish = { least = 'static_friction' }\ncoverage = [0, 50]";
+    let file = |within: &str| file_of(&base.replace("2 um", within), keys);
+    let [of_all, legal] = ["20 um", "2 um"].map(|within| file(within).plan(40, 1).unwrap().patterns.len());
+    assert!(legal < of_all, "{legal} of {of_all}");
+    let folder = tempfile::tempdir().unwrap();
+    let mut opened = DesignFolder::open(folder.path(), &file("2 um"), false).unwrap();
+    let never = AtomicBool::new(false);
+    let told = opened.find(&bounds(40, &never), &mut |_| {}).unwrap();
+    assert!(told.contains("tested by the search failed"), "{told}");
+    let drafts = fs::read_to_string(folder.path().join("evaluations.csv")).unwrap();
+    let why = "no block in contact is within 2.0 blocks of the textured block";
+    assert!(drafts.contains(why), "{drafts}");
+    opened.expect_verdict().unwrap();
+}
+
+/// A disc 6 blocks across has features of 6 blocks, although no square of 5 blocks lies in it. Drafts that
+/// break a limit are counted.
+#[test]
+fn a_shape_is_as_wide_as_it_is_drawn() {
+    let base = SMOOTH.replace(
+        "[design]",
+        "texture = [{ shape = 'cavity', lambda = '3 um' }]\n[design]",
+    );
+    let told = |feature: &str| {
+        let keys = format!(
+            "wish = {{ value = 0.7, of = 'static_friction' }}\ncoverage = [0, 40]\nfeature = '{feature}'\n\
+             unknowns = {{ 'texture.0.lambda' = ['2 um', '3.2 um'] }}"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let mut opened = DesignFolder::open(folder.path(), &file_of(&base, &keys), false).unwrap();
+        let never = AtomicBool::new(false);
+        let told = opened.find(&bounds(40, &never), &mut |_| {});
+        let told = told.map(|told| told.split_whitespace().collect::<Vec<_>>().join(" "));
+        let numbers = fs::read(folder.path().join("design.json")).unwrap_or_default();
+        (told, serde_json::from_slice(&numbers).unwrap_or_default())
+    };
+    let (text, numbers): (_, serde_json::Value) = told("5.5 um");
+    let text = text.unwrap();
+    let width = numbers["as_meshed"]["feature_m"].as_f64().unwrap();
+    assert!((5.5e-6..=6.4e-6).contains(&width), "{text}");
+    let rejected = &numbers["rejected"];
+    assert!(rejected["drafts"].as_u64() > Some(0), "{rejected}");
+    let expected = format!(
+        "; {} drafts rejected before a run; the last: ",
+        rejected["drafts"]
+    );
+    assert!(text.contains(&expected) && !text.contains("violates"), "{text}");
+    let said = told("6.5 um").0.unwrap_err().to_string();
+    assert!(
+        said.contains("rejected before a run; the last: a feature is"),
+        "{said}"
+    );
 }
 
 /// Textures of a search have no pitch, within which a bulk body would redistribute the load, so the base must

@@ -17,11 +17,11 @@ pub(crate) struct BackgroundTask {
 }
 
 impl BackgroundTask {
-    /// Begins a job in a thread that holds `working`, with a pool of `threads` threads.
+    /// Begins a job in a thread that holds `working`, if there is one, with a pool of `threads` threads.
     ///
     /// # Errors
     /// A sentence, if the system refuses threads.
-    pub(crate) fn begin(job: Job, threads: usize, working: &Sender<()>) -> Result<Self, String> {
+    pub(crate) fn begin(job: Job, threads: usize, working: Option<Sender<()>>) -> Result<Self, String> {
         // The job has its own thread pool: in the global pool, steps of the run on the page would wait until
         // whole runs of the job have ended.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -33,7 +33,6 @@ impl BackgroundTask {
             stop: Arc::clone(&stop),
             began: Instant::now(),
         };
-        let working = working.clone();
         let begun = thread::Builder::new().spawn(move || {
             pool.install(|| job.run(&worker));
             drop((pool, working));

@@ -12,8 +12,9 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use slipfront_base::disk::{is_empty, write_atomic, write_with_folders};
+use slipfront_base::disk::{folder_of, make_folders, write_atomic, write_with_folders};
 use slipfront_base::text::display_path;
+use slipfront_base::unfinished::{UnfinishedFolder, is_unfinished};
 use slipfront_session::{Document, Presets};
 
 use crate::opening::{Start, StartSource};
@@ -200,14 +201,16 @@ impl Parts {
 /// # Errors
 /// When the module is not WebAssembly, the folder holds other things, or the system refuses to read or write.
 pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) -> Result<(), ExportError> {
-    let write = |path: &Path, contents: &[u8]| {
-        write_with_folders(path, contents).map_err(|source| ExportError::Write {
-            path: path.to_owned(),
-            source,
-        })
+    let failed = |source| ExportError::Write {
+        path: out.to_owned(),
+        source,
     };
-    let is_free = !out.exists() || out.join(MODULE).is_file() || is_empty(out).unwrap_or(false);
-    if !is_free {
+    // A killed export may have left its hidden folder.
+    let is_left = |entry: std::io::Result<fs::DirEntry>| {
+        entry.is_ok_and(|entry| is_unfinished(&entry.file_name().to_string_lossy()))
+    };
+    let is_free = || fs::read_dir(out).is_ok_and(|mut entries| entries.all(is_left));
+    if out.exists() && !out.join(MODULE).is_file() && !is_free() {
         return Err(ExportError::OtherThings(out.to_owned()));
     }
     let mut parts = Parts::new(start, module, notices)?;
@@ -223,11 +226,33 @@ pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) ->
     parts
         .files
         .insert("manifest.webmanifest".to_owned(), MANIFEST.as_bytes().to_vec());
-    let service_worker = service_worker(&parts.files);
-    for (name, contents) in &parts.files {
-        write(&out.join(name), contents)?;
+    let service_worker = service_worker(&parts.files).into_bytes();
+    parts.files.insert("service_worker.js".to_owned(), service_worker);
+    place(&parts.files, out).map_err(failed)
+}
+
+/// Writes files to a hidden folder, which gets its name when it is whole. In a folder that is there already,
+/// they get their names one by one, which needs no space on the disk.
+fn place(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> std::io::Result<()> {
+    let is_new = !out.exists();
+    make_folders(folder_of(out))?;
+    let beside = if is_new { out.to_owned() } else { out.join(MODULE) };
+    let hidden = UnfinishedFolder::beside(&beside)?;
+    for (name, contents) in files {
+        write_with_folders(&hidden.path().join(name), contents)?;
     }
-    write(&out.join("service_worker.js"), service_worker.as_bytes())
+    if is_new {
+        return hidden.persist(out);
+    }
+    // The module comes first: it tells that the folder may be written to again.
+    let mut names: Vec<&String> = files.keys().collect();
+    names.sort_by_key(|name| *name != MODULE);
+    for name in names {
+        let path = out.join(name);
+        make_folders(folder_of(&path))?;
+        fs::rename(hidden.path().join(name), path)?;
+    }
+    Ok(())
 }
 
 /// The script that caches these files in the browser, under a name derived from their contents.
@@ -383,6 +408,36 @@ mod tests {
         fs::write(&module, b"\0asm\x01\0\0\0\0").unwrap();
         export_folder(&Start::default(), &module, "notices", &again).unwrap();
         assert_ne!(kept, fs::read_to_string(again.join("service_worker.js")).unwrap());
+    }
+
+    /// An export that the system stops in between leaves nothing that is in the way of the next.
+    #[test]
+    fn a_folder_is_whole_or_not_there() {
+        let (folder, module) = with_modules();
+        let out = folder.path().join("lab");
+        // No file has a name of so many letters, as none finds room on a full disk.
+        let name = "n".repeat(300);
+        let mut files = BTreeMap::from([(MODULE.to_owned(), vec![1]), (name.clone(), vec![2])]);
+        for is_there in [false, true] {
+            if is_there {
+                fs::create_dir(&out).unwrap();
+            }
+            place(&files, &out).unwrap_err();
+            assert_eq!(out.exists(), is_there);
+            assert_eq!(
+                fs::read_dir(folder.path()).unwrap().count(),
+                2 + usize::from(is_there)
+            );
+        }
+        assert_eq!(fs::read_dir(&out).unwrap().count(), 0);
+        files.remove(&name);
+        place(&files, &out).unwrap();
+        fs::create_dir(out.join(".slipfront-0123456789abcdef-AbCdEf")).unwrap();
+        export_folder(&Start::default(), &module, "notices", &out).unwrap();
+        fs::write(out.join("mine"), "mine").unwrap();
+        fs::remove_file(out.join(MODULE)).unwrap();
+        let said = export_folder(&Start::default(), &module, "notices", &out).unwrap_err();
+        assert!(matches!(said, ExportError::OtherThings(_)), "{said}");
     }
 
     #[test]

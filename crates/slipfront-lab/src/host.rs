@@ -28,8 +28,9 @@ pub(crate) struct Setting {
 pub(crate) struct PageHost {
     pub(crate) setting: Arc<Setting>,
     pub(crate) outbox: Arc<Outbox>,
-    /// A sender that every thread holds while it works.
-    pub(crate) working: Sender<()>,
+    /// A sender that every job holds, for those who wait for the end of all jobs. A server does not, because
+    /// jobs write no files.
+    pub(crate) working: Option<Sender<()>>,
 }
 
 impl Host for PageHost {
@@ -80,7 +81,7 @@ impl Host for PageHost {
     }
 
     fn begin(&self, job: Job) -> Result<Box<dyn Task>, String> {
-        let task = BackgroundTask::begin(job, self.setting.threads, &self.working)?;
+        let task = BackgroundTask::begin(job, self.setting.threads, self.working.clone())?;
         Ok(Box::new(task))
     }
 
@@ -88,7 +89,7 @@ impl Host for PageHost {
         let setting = &self.setting;
         setting
             .saves
-            .begin(document, name, &setting.results, setting.threads, &self.working)
+            .begin(document, name, &setting.results, setting.threads)
     }
 
     fn stop_saving(&self, name: &str) {

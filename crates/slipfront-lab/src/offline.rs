@@ -17,6 +17,9 @@ use crate::saves::Saves;
 /// Longest time that a session works on a message.
 const MESSAGE_TIME: Duration = Duration::from_millis(20);
 
+/// Longest time to wait for a run that is being saved and was stopped.
+const WORK_TIMEOUT: Duration = Duration::from_secs(60);
+
 /// A session that answers in the calling thread.
 pub struct OfflineSession {
     session: Session,
@@ -43,7 +46,7 @@ impl OfflineSession {
         let host = PageHost {
             setting: Arc::clone(&setting),
             outbox: Arc::clone(&outbox),
-            working,
+            working: Some(working),
         };
         Self {
             session: Session::new(Rc::new(host)),
@@ -82,6 +85,7 @@ impl OfflineSession {
         drop(session);
         // Nothing is ever sent: the channel closes when the last working thread has ended.
         let _ = all_work.recv();
+        setting.saves.wait(WORK_TIMEOUT);
     }
 }
 

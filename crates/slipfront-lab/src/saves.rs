@@ -4,9 +4,9 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread;
+use std::time::Duration;
 
 use slipfront_base::text::display_path;
 use slipfront_session::{Document, refused, saved, saving};
@@ -20,6 +20,8 @@ const MAX_SAVES: usize = 4;
 /// All runs that are being saved, and the pages that are notified of them.
 pub(crate) struct Saves {
     list: Mutex<ActiveSaves>,
+    /// Tells that a save has ended.
+    ended: Condvar,
     /// Prints a sentence in the terminal.
     print: fn(&str),
 }
@@ -65,6 +67,7 @@ impl Saves {
     pub(crate) fn new(print: fn(&str)) -> Self {
         Self {
             list: Mutex::default(),
+            ended: Condvar::new(),
             print,
         }
     }
@@ -81,8 +84,7 @@ impl Saves {
         page.reply(list.reply());
     }
 
-    /// Begins to save a run of a case into the folder of this name in the results, in a thread that holds
-    /// `working`.
+    /// Begins to save a run of a case into the folder of this name in the results, in a thread of its own.
     ///
     /// # Errors
     /// A sentence, if the name is taken or invalid, or too many runs are being saved.
@@ -92,7 +94,6 @@ impl Saves {
         name: &str,
         results: &Path,
         threads: usize,
-        working: &Sender<()>,
     ) -> Result<(), String> {
         let out = save::folder(results, name)?;
         let mut list = self.list();
@@ -117,14 +118,13 @@ impl Saves {
             share: 0.0,
             stop: Arc::clone(&stop),
         });
-        let (saves, working) = (Arc::clone(self), working.clone());
+        let saves = Arc::clone(self);
         let begun = thread::Builder::new().name("save".to_owned()).spawn(move || {
             let report_progress = |share| saves.advance(&document.name, share);
             let work = || save::save(&document, &out, threads, &stop, report_progress);
             let outcome = catch_unwind(AssertUnwindSafe(work))
                 .unwrap_or_else(|_| Err("a defect of the simulation, which stands above".to_owned()));
             saves.finish(&document.name, &out, &outcome);
-            drop(working);
         });
         if let Err(error) = begun {
             list.under_way.retain(|one| one.name != name);
@@ -175,6 +175,7 @@ impl Saves {
         };
         let mut list = self.list();
         list.under_way.retain(|one| one.name != name);
+        self.ended.notify_all();
         for page in list.pages() {
             reply.iter().for_each(|reply| page.reply(reply.clone()));
         }
@@ -197,6 +198,12 @@ impl Saves {
         }
     }
 
+    /// Waits until no run is being saved, for `most` at most.
+    pub(crate) fn wait(&self, most: Duration) {
+        let is_saving = |list: &mut ActiveSaves| !list.under_way.is_empty();
+        drop(self.ended.wait_timeout_while(self.list(), most, is_saving));
+    }
+
     /// Prints in the terminal which runs have not ended although they were stopped.
     pub(crate) fn print_unfinished(&self, results: &Path) {
         for one in &self.list().under_way {
@@ -205,5 +212,23 @@ impl Saves {
                 "{folder} is not whole: its run could not be ended in time; remove the folder"
             ));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::presets;
+
+    /// A run that was stopped has removed its unfinished folder when the wait is over.
+    #[test]
+    fn the_end_waits_for_runs_that_are_being_saved() {
+        let results = tempfile::tempdir().unwrap();
+        let saves = Arc::new(Saves::new(|_| {}));
+        let document = presets::all().document("single_block").unwrap();
+        saves.begin(document, "one", results.path(), 1).unwrap();
+        saves.end();
+        saves.wait(Duration::from_secs(60));
+        assert!(saves.list().under_way.is_empty());
     }
 }

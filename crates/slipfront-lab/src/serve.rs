@@ -53,7 +53,7 @@ fn converse(mut session: Session, outbox: &Outbox, messages: &Receiver<Message>)
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
-    use std::sync::mpsc::{channel, sync_channel};
+    use std::sync::mpsc::sync_channel;
 
     use slipfront_session::{Document, Job, OpenedCase, Task};
 
@@ -162,7 +162,7 @@ mod tests {
                 let host: Rc<dyn Host> = Rc::new(DefectiveHost(PageHost {
                     setting,
                     outbox: Arc::clone(&outbox),
-                    working: channel().0,
+                    working: None,
                 }));
                 serve(&host, &outbox, &waiting);
             })

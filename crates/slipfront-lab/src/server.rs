@@ -5,7 +5,6 @@ use std::io;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use axum::Router;
@@ -133,20 +132,19 @@ impl Laboratory {
     /// # Errors
     /// When the system refuses what a server needs.
     pub fn serve(self, stop: impl Future<Output = ()>) -> io::Result<()> {
-        let (working, all_work) = channel();
         let setting = Arc::clone(&self.setting);
         let saves = Arc::clone(&setting.saves);
         let stopped = async move {
             stop.await;
             saves.end();
         };
-        let served = self.listen(stopped, working);
-        wait_for_threads(&all_work);
+        let served = self.listen(stopped);
+        setting.saves.wait(WORK_TIMEOUT);
         setting.saves.print_unfinished(&setting.results);
         served
     }
 
-    fn listen(self, stop: impl Future<Output = ()>, working: Sender<()>) -> io::Result<()> {
+    fn listen(self, stop: impl Future<Output = ()>) -> io::Result<()> {
         let (end, ends) = watch::channel(false);
         let pages = Arc::new(Semaphore::new(MAX_PAGES));
         let start_page = self.start_page.clone();
@@ -156,7 +154,6 @@ impl Laboratory {
             start_page: self.start_page,
             pages: Arc::clone(&pages),
             ends,
-            working,
             message_timeout: self.patience.message,
         };
         let router = Router::new()
@@ -181,9 +178,4 @@ impl Laboratory {
             Ok(())
         })
     }
-}
-
-/// Waits until all threads have ended, for at most [`WORK_TIMEOUT`].
-fn wait_for_threads(all_work: &Receiver<()>) {
-    let _ = all_work.recv_timeout(WORK_TIMEOUT);
 }

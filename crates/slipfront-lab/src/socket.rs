@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -48,8 +48,6 @@ pub(crate) struct Shared {
     pub(crate) pages: Arc<Semaphore>,
     /// A flag that turns true when the server ends.
     pub(crate) ends: watch::Receiver<bool>,
-    /// A sender that every thread holds while it works.
-    pub(crate) working: Sender<()>,
     /// How long a page may take to receive a message.
     pub(crate) message_timeout: Duration,
 }
@@ -118,7 +116,7 @@ async fn serve(mut to_page: ToPage, shared: &Shared) {
     let host = PageHost {
         setting: Arc::clone(&shared.setting),
         outbox: Arc::clone(&outbox),
-        working: shared.working.clone(),
+        working: None,
     };
     let begun = thread::Builder::new()
         .name("session".to_owned())

@@ -10,7 +10,7 @@ export type CaseKeys = Record<string, CaseValue | Texture[] | null>;
 
 /** A `[[texture]]` of the case with the keys of every shape; lengths are texts such as `25 um`. */
 export interface Texture {
-  shape: 'cavity' | 'groove' | 'polygon' | 'mask' | 'height_map';
+  shape: 'cavity' | 'groove' | 'polygon' | 'mask' | 'height_map' | 'drawing';
   s?: number;
   w?: number;
   coverage?: number;

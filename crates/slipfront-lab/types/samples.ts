@@ -245,4 +245,13 @@ export const textures = [
   {"shape":"height_map","lattice":"text"},
   {"shape":"height_map","repeat":{"array":[3,3]}},
   {"shape":"height_map","invert":true},
+  {"shape":"drawing"},
+  {"shape":"drawing","file":"text"},
+  {"shape":"drawing","pitch":"1 um"},
+  {"shape":"drawing","pitch":["1 um","1 um"]},
+  {"shape":"drawing","array":"auto"},
+  {"shape":"drawing","array":[3,3]},
+  {"shape":"drawing","lattice":"text"},
+  {"shape":"drawing","repeat":{"array":[3,3]}},
+  {"shape":"drawing","invert":true},
 ] satisfies Some<Texture>;

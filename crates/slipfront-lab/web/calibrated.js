@@ -15,10 +15,13 @@ let found = null;
 /** The name of the record's file. */
 let record = '';
 
-/** @param {UnknownReply} unknown */
-function row({ key, unit, median, interval: [low, high], is_determined: determined }) {
+/**
+ * @param {UnknownReply} unknown
+ * @param {boolean} refused
+ */
+function row({ key, unit, median, interval: [low, high], is_determined: determined }, refused) {
   const behind = unit === null || unit === '1' || unit === '' ? '' : ` ${unit}`;
-  const cells = [`${number(median)}${behind}`, `${number(low)} ${say('range_to')} ${number(high)}${behind}`, say(determined ? 'determined' : 'not_determined')];
+  const cells = [`${number(median)}${behind}`, `${number(low)} ${say('range_to')} ${number(high)}${behind}`, say(refused ? 'not_of_record' : determined ? 'determined' : 'not_determined')];
   // A long key is broken behind its table, where there is little room.
   const [table, ...parts] = key.split('.');
   return make('tr', {}, [make('th', { scope: 'row' }, [`${table}.`, make('wbr'), parts.join('.')]), ...cells.map((textContent) => make('td', { textContent }))]);
@@ -29,7 +32,7 @@ function show(results) {
   found = results;
   find('verdict').textContent = say(results.is_refused ? 'verdict_refused' : 'verdict_accepted');
   find('verdict').classList.toggle('refused', results.is_refused);
-  find('found-numbers').replaceChildren(...results.unknowns.map(row));
+  find('found-numbers').replaceChildren(...results.unknowns.map((unknown) => row(unknown, results.is_refused)));
   find('calibration-report').textContent = results.report;
   // Of a refused record it is the report that says what the model lacks.
   find('calibration-more').open = results.is_refused;

@@ -11,7 +11,8 @@ import { say } from './text.js';
 
 /** @import { RecordCurve, RecordFile, RecordReply } from '../types/protocol' */
 
-const ENDINGS = /\.(csv|tsv|txt|dat|xlsx|ods)$/i;
+// Any other file may be a table: instruments have endings of their own, and the reader tells what it found.
+const PICTURE = /\.(png|jpe?g|gif|webp|avif|bmp|tiff?|svg)$/i;
 
 /** The file that was given to be read last. @type {RecordFile|null} */
 let asked = null;
@@ -27,9 +28,9 @@ function ask(record) {
 /** Gives the bytes of a file to be read as a record. @param {string} name @param {Uint8Array} bytes */
 export const readRecord = (name, bytes) => ask({ name, bytes: toBase64(bytes) });
 
-/** Reads a file as a record; false if it is none by its name. @param {File} file */
+/** Reads a file as a record; false if it is a picture by its name. @param {File} file */
 export function openRecord(file) {
-  if (!ENDINGS.test(file.name)) return false;
+  if (PICTURE.test(file.name)) return false;
   const most = MOST_BYTES / 2 ** 20;
   if (file.size > MOST_BYTES) notice(say('record_too_large', { name: file.name, most }));
   else file.arrayBuffer().then((bytes) => readRecord(file.name, new Uint8Array(bytes))).catch(() => notice(say('record_unreadable', { name: file.name })));

@@ -14,8 +14,10 @@ use slipfront_base::disk::{make_folders, read_limited, write_atomic};
 use slipfront_base::unfinished::clear_unfinished;
 use slipfront_run::checksum;
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
+use slipfront_study::RunJournal;
 
 /// Largest size of a file in bytes; the data of a figure take some megabytes.
 pub(crate) const MAX_BYTES: u64 = 1 << 28;
@@ -90,6 +92,23 @@ impl FigureCache {
         Ok(write_atomic(&path, &self.with_checksum(&data))
             .map_err(|source| FolderError::Write { path, source })?)
     }
+}
+
+/// The files that the results in a folder follow from: the journal, and the stored data of figures.
+///
+/// # Errors
+/// When the system refuses to list or to read them.
+pub fn sources(folder: &Path, records: &RunJournal) -> Result<Vec<ManifestFile>, PaperError> {
+    let path = folder.join(FIGURE_CACHE);
+    let unreadable = FolderError::read(&path);
+    let mut sources = vec![records.listed()?];
+    for entry in std::fs::read_dir(&path).map_err(&unreadable)? {
+        let name = entry.map_err(&unreadable)?.file_name();
+        let name = format!("{FIGURE_CACHE}/{}", name.to_string_lossy());
+        sources.push(ManifestFile::of(folder, &name).map_err(&unreadable)?);
+    }
+    sources.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(sources)
 }
 
 #[cfg(test)]

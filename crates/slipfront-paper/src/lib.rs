@@ -24,7 +24,7 @@ mod step_rule;
 mod sweep;
 mod verify;
 
-pub use cache::FigureCache;
+pub use cache::{FigureCache, sources};
 pub use claims::{Claim, ClaimResult, ClaimVerdict, Reading, claims};
 pub use drawing::Drawing;
 pub use embedded_cases::cases;

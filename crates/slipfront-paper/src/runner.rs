@@ -132,6 +132,7 @@ impl FigureRunner<'_> {
                 instants: Vec::new(),
                 ..run.record.summary.clone()
             }),
+            kept: None,
         });
         self.records.append(&records.collect::<Vec<_>>())?;
         Ok((self.study(name)?, runs))

@@ -12,8 +12,8 @@ use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::verify::{Verdict, VerifyError, differences};
 use slipfront_study::project_folder::{Checksums, ResultFiles};
-use slipfront_study::project_folder::{Extent, VerifyStudyError, verify_checksums};
-use slipfront_study::{RunJournal, StudyError};
+use slipfront_study::project_folder::{Extent, verify_complete};
+use slipfront_study::{PAPER, RunJournal, StudyError};
 
 use crate::cache::MAX_BYTES;
 use crate::error::PaperError;
@@ -26,11 +26,7 @@ use crate::report::write;
 /// # Errors
 /// When the folder cannot be read, and after a stop.
 pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, PaperError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[RunJournal::FILE, FIGURE_CACHE], stop)?;
-    if verdict.differences.is_empty() && !is_complete {
-        let (what, path) = ("paper", folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path }.into());
-    }
+    let mut verdict = verify_complete(folder, &PAPER, &[FIGURE_CACHE], stop)?;
     if extent == Extent::Derived && verdict.differences.is_empty() {
         derive(folder, &mut verdict, stop)?;
     }
@@ -58,11 +54,11 @@ fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(),
         };
         // No figure is requested, so the result has those with stored data.
         let paper = run(&[], &RunJournal::open(&again)?, &options, &|_| {})?;
-        write(&paper, &ResultFiles::new(&again, "paper", false))?;
+        write(&paper, &ResultFiles::new(&again, "paper", false), Vec::new())?;
         let files = files_of(&again)?;
         if names(&files) == listed {
             verdict.differences = differences(&files, folder, "follow from the data of the figures", stop);
-            verdict.what += ", and as the data of the figures give them";
+            verdict.what += ", and as the data of the figures give them, which are not derived again";
             return Ok(());
         }
     }

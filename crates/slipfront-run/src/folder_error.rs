@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use slipfront_base::text::display_path;
+use slipfront_case::nearest::why_unread;
 use thiserror::Error;
 
 use crate::manifest::ManifestError;
@@ -66,7 +67,7 @@ pub enum FolderError {
         display_path(path)
     )]
     InputChanged { path: PathBuf },
-    #[error("cannot read {}: {source}", display_path(path))]
+    #[error("cannot read {}: {}", display_path(path), why_unread(path, source))]
     Read { path: PathBuf, source: std::io::Error },
 }
 

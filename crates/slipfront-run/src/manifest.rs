@@ -254,7 +254,7 @@ impl Manifest {
         };
         let manifest: Self =
             serde_json::from_slice(bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
-        if seal(bytes).as_ref() == Some(&manifest.checksum) {
+        if is_sealed(bytes) {
             return Ok(manifest);
         }
         let why = if manifest.checksum.is_empty() {
@@ -277,6 +277,13 @@ pub fn seal(manifest: &[u8]) -> Option<String> {
     let mut windows = manifest.windows(CHECKSUM_KEY.len());
     let before = windows.rposition(|bytes| bytes == CHECKSUM_KEY)?;
     Some(blake3::hash(&manifest[..before]).to_hex().to_string())
+}
+
+/// Whether a list of files is, to the byte, as it was written: its seal is right, and nothing follows but the
+/// end of the list.
+pub fn is_sealed(list: &[u8]) -> bool {
+    let Some(seal) = seal(list) else { return false };
+    list.ends_with(format!("\"seal\": \"{seal}\"\n}}\n").as_bytes())
 }
 
 /// A reader of a file that fails as soon as `stop` is set.
@@ -324,9 +331,14 @@ impl ManifestFile {
 
     /// A regular file of a folder as it is now; an error as soon as `stop` is set.
     pub fn of_until(folder: &Path, name: &str, stop: &AtomicBool) -> std::io::Result<Self> {
+        Self::of_beginning(folder, name, u64::MAX, stop)
+    }
+
+    /// The first bytes, at most `most`, of a regular file as it is now; an error as soon as `stop` is set.
+    pub fn of_beginning(folder: &Path, name: &str, most: u64, stop: &AtomicBool) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
         let file = open_regular(&folder.join(name))?;
-        hasher.update_reader(Until { file, stop })?;
+        hasher.update_reader(Until { file, stop }.take(most))?;
         Ok(Self::hashed(name, &hasher))
     }
 
@@ -354,7 +366,7 @@ impl ManifestFile {
     }
 
     /// An entry for a file of this name, from the hash of its bytes.
-    pub(crate) fn hashed(name: &str, hasher: &blake3::Hasher) -> Self {
+    pub fn hashed(name: &str, hasher: &blake3::Hasher) -> Self {
         Self {
             name: name.to_owned(),
             bytes: hasher.count(),

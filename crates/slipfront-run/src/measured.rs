@@ -13,6 +13,7 @@ use std::path::Path;
 use slipfront_base::disk::open_limited;
 use slipfront_base::number_format::{count, with_si_prefix};
 use slipfront_base::text::{display_path, truncated};
+use slipfront_case::extremes::Extremes;
 use slipfront_case::table::{
     HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, has_thousands, number,
 };
@@ -36,6 +37,10 @@ pub struct Column {
 /// whole path: anywhere, and if every third of the record goes back somewhere, unlike for a drive that
 /// reverses.
 const MOST_NOISE: [f64; 2] = [0.01, 0.05];
+
+/// Largest size of a number of a record, in any unit: meters write 9.9e37 or more for a reading beyond their
+/// range.
+const MAX_READING: f64 = 1e30;
 
 /// Length of a day, s.
 const DAY: f64 = 86_400.0;
@@ -62,6 +67,9 @@ pub struct MeasuredRecord {
     /// How displacements with the noise of a sensor were averaged, if they were: a sentence without its full
     /// stop.
     pub averaged: Option<String>,
+    /// Which ordinates are far from all others, as readings of an overloaded meter are: a sentence without
+    /// its full stop.
+    pub far_off: Option<String>,
 }
 
 /// Positions of two columns, and factors that convert their numbers to SI units.
@@ -83,6 +91,7 @@ impl MeasuredRecord {
             took: None,
             footer: None,
             averaged: None,
+            far_off: None,
         }
     }
 
@@ -101,7 +110,7 @@ impl MeasuredRecord {
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
         let open = || Ok(Box::new(open_limited(path, u64::MAX)?) as Box<dyn Read>);
-        Self::read_from(&open, path, columns, along, options)
+        Self::read_from(&open, path, columns, along, options, &[])
     }
 
     /// Reads two columns of a table in memory, as [`read`](Self::read) does for a file; messages name its
@@ -116,33 +125,40 @@ impl MeasuredRecord {
         along: Measure,
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| Ok(Box::new(bytes)), path, columns, along, options)
+        Self::read_from(&|| Ok(Box::new(bytes)), path, columns, along, options, &[])
     }
 
     /// Reads two columns of the table that `open` opens from its beginning, each time that it is called.
+    /// `shown` says how a workbook [shows](workbook::Sheet::shown) its columns.
     fn read_from<'t>(
         open: &dyn Fn() -> std::io::Result<Box<dyn Read + 't>>,
         path: &Path,
         columns: [&Column; 2],
         along: Measure,
         options: TableOptions,
+        shown: &[[bool; 2]],
     ) -> Result<Self, MeasuredError> {
         let failed = |source: TableError| MeasuredError::Table {
             path: path.to_owned(),
             source,
         };
+        let unreadable = |source: std::io::Error| MeasuredError::Unreadable {
+            path: path.to_owned(),
+            source,
+        };
         let mut head = Vec::new();
         let read = open().and_then(|table| table.take(HEAD_BYTES).read_to_end(&mut head));
-        read.map_err(|source| failed(source.into()))?;
+        read.map_err(unreadable)?;
         if workbook::is_workbook(&head) {
             let mut bytes = Vec::new();
             let read = open().and_then(|book| book.take(workbook::MOST_BYTES + 1).read_to_end(&mut bytes));
-            read.map_err(|source| failed(source.into()))?;
+            read.map_err(unreadable)?;
             let sheet = workbook::sheet(&bytes).map_err(|why| MeasuredError::Workbook {
                 path: path.to_owned(),
                 why,
             })?;
-            let mut record = Self::parse(sheet.text.as_bytes(), path, columns, along, options)?;
+            let open = || Ok(Box::new(sheet.text.as_bytes()) as Box<dyn Read>);
+            let mut record = Self::read_from(&open, path, columns, along, options, &sheet.shown)?;
             let took = record.took.take();
             let took = took.unwrap_or_else(|| display_path(path).to_string());
             record.took = Some(format!("{took}; sheet {:?} of the workbook", sheet.name));
@@ -160,12 +176,15 @@ impl MeasuredRecord {
             places,
             x_factor,
             y_factor,
-        } = record.columns(&layout, path, columns)?;
+        } = record.columns(&layout, path, columns, shown)?;
         let source = open().map_err(|source| failed(source.into()))?;
         let mut rows = TableRows::new(source, &layout, LINE_MAX_BYTES);
         let decimal = layout.decimal;
         let (mut clocks, mut midnights) = (None, 0.0);
         let mut has_numbers = false;
+        // Ordinates as the table has them.
+        let mut extremes = Extremes::default();
+        let mut beyond = None;
         let mut first_fall = None;
         // The first line without numbers after the last one with numbers, and the number of such lines.
         let mut footer: Option<(NoNumber, usize)> = None;
@@ -186,12 +205,27 @@ impl MeasuredRecord {
                     return Some(clock + midnights - *first);
                 }
                 let value = number(field, decimal).filter(|value| value.is_finite())?;
+                if value.abs() > MAX_READING {
+                    beyond.get_or_insert((line, value, k));
+                }
+                if k == 1 {
+                    extremes.add(&[value]);
+                }
                 has_numbers |= k == 0;
                 let factors = [*x_factor.as_ref().unwrap_or(&1.0), y_factor];
                 Some(factors[k] * value)
             };
-            let (Some(x), Some(y)) = (value(0), value(1)) else {
-                let without = usize::from(value(0).is_some());
+            let read = (value(0), value(1));
+            if let Some((line, value, k)) = beyond {
+                return Err(MeasuredError::Overload {
+                    path: path.to_owned(),
+                    line,
+                    column: columns[k].name.clone(),
+                    value,
+                });
+            }
+            let (Some(x), Some(y)) = read else {
+                let without = usize::from(read.0.is_some());
                 // Numbers with thousands separators often occur only at the end, where they must not be
                 // skipped.
                 let wanted = places.iter().filter_map(|place| fields.get(*place));
@@ -235,6 +269,7 @@ impl MeasuredRecord {
                 ));
             }
         }
+        record.far_off = far_off(&extremes, record.y.len(), path, &columns[1].name);
         if let [first, .., last] = record.x[..]
             && first == last
             && first_fall.is_none()
@@ -305,15 +340,21 @@ impl MeasuredRecord {
         (self.x, self.y) = counting.map(|(x, y)| (x, y_factor * y + y_offset)).unzip();
     }
 
-    /// Sentences for a reader of the record: how the table was read, and which lines were skipped.
+    /// Sentences for a reader of the record: how the table was read, which lines were skipped, and which
+    /// ordinates are doubtful.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let footer = self
             .footer
             .as_ref()
             .map(|footer| format!("{footer}: passed over"));
-        [self.took.clone(), footer, self.averaged.clone()]
-            .into_iter()
-            .flatten()
+        [
+            self.took.clone(),
+            footer,
+            self.averaged.clone(),
+            self.far_off.clone(),
+        ]
+        .into_iter()
+        .flatten()
     }
 
     /// Finds two columns of a table, and the quantity of the second one.
@@ -322,6 +363,7 @@ impl MeasuredRecord {
         layout: &TableLayout,
         path: &Path,
         columns: [&Column; 2],
+        shown: &[[bool; 2]],
     ) -> Result<Found, MeasuredError> {
         let names = ColumnName::all(layout);
         let mut places = [0; 2];
@@ -331,25 +373,64 @@ impl MeasuredRecord {
         let mut of_columns = units_of(layout, &names);
         of_columns.resize(layout.columns, None);
         let units = places.map(|place| of_columns[place].clone());
-        let [_, given] = columns.map(|column| column.unit.as_deref());
+        let mut given = columns.map(|column| column.unit.as_deref());
+        for k in 0..2 {
+            // Cells that are shown as percentages are stored as shares of 1, whatever the header says.
+            let Some([has_plain, true]) = shown.get(places[k]) else {
+                continue;
+            };
+            let unit = given[k].or(units[k].as_deref());
+            let is_share = unit.is_none_or(|unit| Measure::Coefficient.factor(unit).is_some());
+            if *has_plain || !is_share || k == 0 {
+                return Err(MeasuredError::Percentages {
+                    path: path.to_owned(),
+                    column: columns[k].name.clone(),
+                    why: match *has_plain {
+                        true => "shows some of its numbers as percentages and others not",
+                        false => "shows its numbers as percentages, and is no coefficient",
+                    },
+                });
+            }
+            given[k] = Some("1");
+        }
+        let [_, given_y] = given;
         if Measure::Coefficient
-            .factor(given.or(units[1].as_deref()).unwrap_or("N"))
+            .factor(given_y.or(units[1].as_deref()).unwrap_or("N"))
             .is_some()
         {
             self.of = Measure::Coefficient;
         }
-        let shown = |k: usize| {
+        let name_of = |k: usize| {
             let named = names.get(places[k]).filter(|name| !name.whole.is_empty());
             named.map_or(columns[k].name.as_str(), |name| name.whole)
         };
-        let factor =
-            |k: usize, measure, axis| factor(path, columns[k], shown(k), units[k].as_deref(), measure, axis);
+        let factor = |k: usize, measure, axis| {
+            let column = Column {
+                name: columns[k].name.clone(),
+                unit: given[k].map(str::to_owned),
+            };
+            factor(path, &column, name_of(k), units[k].as_deref(), measure, axis)
+        };
         Ok(Found {
             places,
             x_factor: factor(0, self.along, "x"),
             y_factor: factor(1, self.of, "y")?,
         })
     }
+}
+
+/// A sentence on readings that are far from all others, and larger: a record that begins at rest has its
+/// zeros far from the friction of sliding, and a peak of static friction may be far from it too.
+fn far_off(extremes: &Extremes, points: usize, path: &Path, column: &str) -> Option<String> {
+    let marks = extremes.marks();
+    let (value, n) = marks.iter().find(|(value, _)| extremes.exceeds_all(*value))?;
+    Some(format!(
+        "{} has {value} in column `{}` at {n} of {}, far from all others: if it is the reading of an overloaded meter, remove \
+         these lines, or begin them with #",
+        display_path(path),
+        truncated(column),
+        count(points, "point")
+    ))
 }
 
 /// A line without a number in one of the columns.
@@ -588,6 +669,32 @@ mod tests {
         assert!(took.ends_with("; sheet \"Daten\" of the workbook"), "{took}");
     }
 
+    /// Zeros before the drive begins lie as far from the friction of sliding as readings of an overloaded
+    /// meter do, on the other side.
+    #[test_case(&[(7, 32767.0)], Some("32767 in column `F` at 1 of 100 points"); "one")]
+    #[test_case(&[(7, 32767.0), (50, 32767.0), (51, 32767.0)], Some("32767 in column `F` at 3 of 100 points"); "equal ones")]
+    #[test_case(&[(7, 32767.0), (8, -32768.0)], Some("-32768 in column `F` at 1 of 100 points"); "both signs")]
+    #[test_case(&[(0, 0.0), (1, 0.0)], None; "zeros before the drive begins")]
+    #[test_case(&[(7, 900.0)], None; "a peak")]
+    fn readings_far_from_all_others_are_told(readings: &[(usize, f64)], wanted: Option<&str>) {
+        let mut forces = Vec::from_iter((0..100).map(|k| 500.0 + 0.1 * f64::from(k % 3)));
+        readings.iter().for_each(|&(at, reading)| forces[at] = reading);
+        let lines = forces
+            .iter()
+            .enumerate()
+            .map(|(k, force)| format!("{k},{force}\n"));
+        let record = read(
+            &format!("t (s),F (mN)\n{}", lines.collect::<String>()),
+            ["t", "F"],
+            [None; 2],
+        );
+        let notes = record.unwrap().notes().collect::<String>();
+        assert!(
+            notes.contains(wanted.unwrap_or("")) && notes.is_empty() == wanted.is_none(),
+            "{notes}"
+        );
+    }
+
     /// Dates give the day, so times that go back are out of order, and do not belong to the next day.
     #[test]
     fn times_with_a_date_do_not_pass_midnight_backwards() {
@@ -676,6 +783,8 @@ mod tests {
     #[test_case("t (s);F_max (N)\n0;1\n1;2\n", ["t", "F"], "has no column `F`"; "the beginning of a name")]
     #[test_case("t (s);F (N)\n1;997\n2;1,050\n", ["t", "F"], "can be read in two ways: \"1,050\" in line 3"; "thousands")]
     #[test_case("time_s,force_n\n0,998.5\n1,999.5\n2,\"1,000.5\"\n3,\"1,001.5\"\n", ["time", "force"], "has a thousands separator in line 4, \"1,000.5\""; "thousands at the end")]
+    #[test_case("time_s,force_n\n0,1\n1,9.91E+37\n2,1\n", ["time", "force"], "line 3 of"; "a meter beyond its range")]
+    #[test_case("time_s,force_n\n0,-1e38\n1,-1e38\n2,-1e38\n", ["time", "force"], "has -1e38 in column `force`, as meters write"; "a meter that is always beyond it")]
     #[test_case("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers"; "short")]
     #[test_case("time_s,force_n\n", ["time", "force"], "has 0 lines of numbers"; "header alone")]
     fn what_is_wrong_is_said(text: &str, names: [&str; 2], sentence: &str) {

@@ -18,7 +18,7 @@ const HIGHER_LATER: f64 = 0.01;
 
 /// Warnings that follow from the run itself.
 pub(crate) fn after_run(
-    (reason, is_held): (StopReason, bool),
+    (reason, is_held, has_usual_length): (StopReason, bool, bool),
     peak: &Peak,
     transition: bool,
     first_slip: Option<f64>,
@@ -85,6 +85,8 @@ pub(crate) fn after_run(
              time.kinetic_from_star"
                 .to_owned(),
         ),
+        // Nobody asked for more than the usual length, which shows onset and sliding.
+        Some(Err(NoUncertainty::TooShort { .. })) if has_usual_length => {}
         Some(Err(NoUncertainty::TooShort { needed_time_star })) => warnings.push(format!(
             "no uncertainty could be estimated for mu_k*: set time.duration_star to {:.0} or more",
             needed_time_star.ceil()
@@ -99,4 +101,25 @@ pub(crate) fn after_run(
         Some(Ok(_)) => {}
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront_case::case::Case;
+
+    use crate::run_summary::run_summary;
+
+    /// The usual length is too short for an uncertainty of kinetic friction, which is no news; of a length
+    /// that somebody chose, the one that is needed is told.
+    #[test]
+    fn only_a_chosen_length_is_called_too_short() {
+        let warnings = |time: &str| {
+            let text = format!("slider.blocks = [8, 8]\ndrive.v_star = 0.1\n{time}");
+            let case = Case::parse(&text, "case", "", &[]).unwrap();
+            run_summary(&case).unwrap().warnings.join("\n")
+        };
+        let said = "no uncertainty could be estimated for mu_k*: set time.duration_star to";
+        assert!(!warnings("").contains(said));
+        assert!(warnings("time.duration_star = 90").contains(said));
+    }
 }

@@ -7,7 +7,7 @@ use slipfront::lattice::SpringStiffness;
 use slipfront::observe::{Curve, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Quantiles, Scheduled};
 use slipfront::{Checkpoint, Scales, Simulation, StopReason};
 use slipfront_case::case::{Case, Topography};
-use slipfront_case::case_file::Motion;
+use slipfront_case::case_file::{AutoOr, Motion, RunTime};
 
 use crate::friction_unit::FrictionUnit;
 use crate::front::LatticeFront;
@@ -115,7 +115,11 @@ impl SummaryObservers {
         let [static_star, lateral_star, onset_star] = static_friction(&peak, transition);
         let si = si(case, static_star, kinetic_star, simulation.contact_stress_max());
         let after_run = after_run(
-            (reason, is_held),
+            (
+                reason,
+                is_held,
+                case.file.time.duration == RunTime::Star(AutoOr::Auto),
+            ),
             &peak,
             transition,
             first_slip,

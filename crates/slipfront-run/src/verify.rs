@@ -18,7 +18,7 @@ use slipfront_base::text::{single_line, truncated};
 use slipfront_base::unfinished::is_unfinished;
 
 /// Largest number of bytes of a description that is read, enough for thousands of runs with their keys.
-const DESCRIPTION_MAX_BYTES: u64 = 256 << 20;
+pub const DESCRIPTION_MAX_BYTES: u64 = 256 << 20;
 
 /// Result of verifying a folder.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -17,6 +17,9 @@ pub(crate) struct ShapeOutlines {
 /// Largest number of outlines of all textures; further textures are visible only in the field itself.
 const MAX_OUTLINES: usize = 2000;
 
+/// Largest number of corners of all copies of a texture, whether they lie on the slider or not.
+const MAX_CORNERS: usize = 1 << 22;
+
 /// Number of points on an ellipse.
 const POINTS: usize = 72;
 
@@ -40,6 +43,10 @@ pub(crate) fn outlines(case: &Case) -> Vec<ShapeOutlines> {
     )];
     let mut left = MAX_OUTLINES;
     let drawn = textures.iter().enumerate().filter_map(|(index, texture)| {
+        let shape = &texture.shape;
+        if shape.n_copies(&texture.arrays).saturating_mul(shape.n_corners()) > MAX_CORNERS {
+            return None;
+        }
         let shapes = contours(lattice, texture)?;
         let contours: Vec<Contour> = shapes.iter().flat_map(|shape| clip(shape, &slider)).collect();
         left = left.checked_sub(contours.len())?;
@@ -68,4 +75,26 @@ fn arc(ellipse: &Ellipse, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     let count = (((to - from) / TAU * POINTS as f64).ceil() as usize).max(1);
     let at = |k| ellipse.at(from + (to - from) * k as f64 / count as f64);
     (0..count).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::document::Document;
+
+    use super::*;
+
+    /// A shape of five corners is drawn in a thousand copies, and not in a million.
+    #[test]
+    fn outlines_of_many_copies_are_not_made() {
+        for (rows, drawn) in [(1, 1), (1000, 0)] {
+            let text = format!(
+                "slider.blocks = [30, 30]\ntexture = [{{ shape = 'polygon', array = [1000, {rows}], pitch = '1 nm', \
+                 points = [{}] }}]",
+                "['1 um', '1 um'], ['2 um', '1 um'], ['2 um', '2 um'], ['1 um', '2 um'], ['1 um', '1.5 um']"
+            );
+            let document = Document::new("case", &text, |_| Err("there is none".to_owned())).unwrap();
+            let case = document.case(&mut |_| true).unwrap();
+            assert_eq!(outlines(&case).len(), drawn);
+        }
+    }
 }

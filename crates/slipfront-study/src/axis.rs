@@ -1,6 +1,6 @@
 //! An axis of a study: levels of one key, of several keys together, or of a set of named variants.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Bound;
 
 use serde::Deserialize;
@@ -209,22 +209,25 @@ impl Axis {
                 earlier.insert(key);
             }
         }
-        let mut seen = HashSet::new();
-        // 5 and 5.0 are the same number.
-        let value = |set: &Override| match set.value() {
-            Value::Integer(number) => (number as f64).to_string(),
-            Value::Float(number) => number.to_string(),
-            other => other.to_string(),
-        };
-        let values = |level: &Level| -> Vec<(String, String)> {
+        let mut seen = HashMap::new();
+        let values = |level: &Level| -> BTreeMap<String, String> {
             let sets = level.overrides.iter();
-            sets.map(|set| (set.key().to_owned(), value(set))).collect()
+            sets.map(|set| (set.key().to_owned(), meaning(set.key(), &set.value())))
+                .collect()
         };
-        if let Some(twice) = self.levels.iter().find(|level| !seen.insert(values(level))) {
-            let labels = twice.labels.join(", ");
-            return Err(format!(
-                "the level {labels} is twice on the axis of `{columns}`: keep one"
-            ));
+        for level in &self.levels {
+            let labels = level.labels.join(", ");
+            if let Some(first) = seen.insert(values(level), &level.labels) {
+                let first = first.join(", ");
+                let also = if first == labels {
+                    String::new()
+                } else {
+                    format!(", also as {first}")
+                };
+                return Err(format!(
+                    "the level {labels} is twice on the axis of `{columns}`{also}: keep one"
+                ));
+            }
         }
         Ok(())
     }
@@ -376,6 +379,29 @@ fn number(value: &Value) -> Option<f64> {
             _ => None,
         },
         _ => None,
+    }
+}
+
+/// A text that is equal for values that mean the same: 5 and 5.0, -0.0 and 0, `"1 mm/s"` and `"1000 um/s"`,
+/// tables with the same keys in another order.
+fn meaning(key: &str, value: &Value) -> String {
+    match value {
+        Value::Integer(number) => number.to_string(),
+        // Integers up to this one are the only numbers with their digits.
+        Value::Float(number) if number.fract() == 0.0 && number.abs() < 9e15 => (*number as i64).to_string(),
+        Value::String(text) if !names_a_file(key) => match WrittenQuantity::read(text) {
+            Some(quantity) => quantity.in_base_units(),
+            None => value.to_string(),
+        },
+        Value::Array(values) => {
+            let values: Vec<String> = values.iter().map(|value| meaning(key, value)).collect();
+            format!("[{}]", values.join(", "))
+        }
+        Value::Table(keys) => {
+            let values = keys.iter().map(|(key, value)| (key, meaning(key, value)));
+            format!("{:?}", values.collect::<BTreeMap<_, _>>())
+        }
+        other => other.to_string(),
     }
 }
 
@@ -670,8 +696,31 @@ mod tests {
 
     #[test]
     fn a_level_twice_is_refused_and_repeated_numbers_are_names() {
-        assert!(axis("key = 'a.b'\nlist = [1, 2, 1]").is_err());
-        assert!(axis("key = 'a.b'\nlist = [5, 5.0, 10]").is_err());
+        for list in [
+            "[1, 2, 1]",
+            "[5, 5.0, 10]",
+            "[0.0, 1.0, -0.0]",
+            "['1 mm/s', '1000 um/s']",
+            "['-0 m', '0 um']",
+            "[['1 um', 2], ['1000 nm', 2.0]]",
+            "[{ x = 1, y = '1 kPa' }, { y = '1000 Pa', x = 1.0 }]",
+            "['auto', '1 s', 'auto']",
+        ] {
+            let said = axis(&format!("key = 'a.b'\nlist = {list}")).unwrap_err();
+            assert!(said.contains("is twice on the axis of `a.b`"), "{said}");
+        }
+        let variants =
+            "name = 'v'\nvariants = { a = { b.c = '1 m', b.d = 1 }, e = { b.d = 1.0, b.c = '1000 mm' } }";
+        assert!(axis(variants).unwrap_err().contains("is twice"));
+        for list in [
+            "['1 m', '1 s']",
+            "[9007199254740992, 9007199254740993]",
+            "['1 m', '1.0000000000000002 m']",
+        ] {
+            axis(&format!("key = 'a.b'\nlist = {list}")).unwrap();
+        }
+        // A name of a file means no quantity.
+        axis("key = 'texture.0.file'\nlist = ['1 m', '1000 mm']").unwrap();
         let zipped = axis("zip = { 'a.b' = [1, 1], 'c.d' = [1, 2] }").unwrap();
         assert_eq!(zipped.spacing, Spacing::Named);
     }

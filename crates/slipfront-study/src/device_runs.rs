@@ -119,6 +119,7 @@ impl DeviceRuns<'_> {
                     id: task.id,
                     wall_time_s,
                     outcome: Outcome::of(summary),
+                    kept: None,
                 })),
                 // A run that failed is repeated, which writes the folder that is kept of it.
                 Some(Err(_)) => self.make_on_cpu(task),
@@ -138,11 +139,12 @@ impl DeviceRuns<'_> {
 
     fn make_on_cpu(&self, Task { run, id }: Task) -> TaskResult {
         let began = Instant::now();
-        let outcome = run_one(self.plan, self.runs, run, &|_, _, _| true, self.is_stopped)?;
-        Ok(outcome.map(|outcome| FinishedRun {
+        let made = run_one(self.plan, self.runs, run, &|_, _, _| true, self.is_stopped)?;
+        Ok(made.map(|(outcome, kept)| FinishedRun {
             id,
             wall_time_s: began.elapsed().as_secs_f64(),
             outcome,
+            kept,
         }))
     }
 }

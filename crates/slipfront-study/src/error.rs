@@ -86,7 +86,7 @@ pub enum StudyError {
     Changed { what: &'static str, path: PathBuf },
     #[error(
         "the folder {path} of a {of} contains files that were edited, or were not written by slipfront: {}; move them away, \
-        choose another folder with --out, or replace them with --force",
+        choose another folder with --out, or replace those that were edited with --force",
         single_line(&names.join(", "))
     )]
     Edited {
@@ -141,8 +141,22 @@ pub enum StudyError {
         of_others(*others)
     )]
     Missing { runs: usize, others: usize },
+    #[error(
+        "{path} is not the folder of the run that the journal names there: it was exchanged or replaced; put the \
+        original back"
+    )]
+    NotItsRun { path: PathBuf },
     #[error("{other} and {first} belong to different studies: merge only shards of the same study")]
     Foreign { first: PathBuf, other: PathBuf },
+    #[error(
+        "{path} holds part {there} of this study, not part {part}: choose another folder with --out; with `--shard slurm`, submit \
+        the whole array again, or write the part in figures, such as --shard {there}"
+    )]
+    OtherPart {
+        path: PathBuf,
+        there: String,
+        part: String,
+    },
     #[error("invalid shard `{given}`: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard { given: String, why: String },
     #[error("cannot draw {name}: {source}")]
@@ -200,7 +214,7 @@ pub enum StudyError {
     )]
     NotOnMeshes { path: PathBuf },
     #[error(
-        "the model cannot reproduce these records, so the intervals are not valid: {} gives the reasons, and what to check",
+        "the model cannot reproduce these records, so its numbers do not describe them: {} gives the reasons, and what to check",
         display_path(path)
     )]
     Refused { path: PathBuf },
@@ -210,9 +224,9 @@ pub enum StudyError {
     )]
     NoVerdict { path: PathBuf },
     #[error(
-        "no texture satisfies these limits: widen `design.coverage`, reduce `design.feature` or `design.gap`, or allow more features"
+        "no texture satisfies these limits{why}: widen `design.coverage`, reduce `design.feature` or `design.gap`, or allow more features"
     )]
-    NoDesign,
+    NoDesign { why: String },
     #[error("a comparison with the untextured slider is not possible: {why}")]
     Reference { why: String },
     #[error("stopped by a signal: finished runs are safe, and the same command resumes from there")]

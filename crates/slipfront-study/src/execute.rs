@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, Sender};
 use std::time::Instant;
 
 use crate::error::StudyError;
-use crate::finished_run::{FinishedRun, Outcome};
+use crate::finished_run::{FinishedRun, Outcome, mark_of};
 use crate::plan::{Plan, RunKey};
 use crate::run_journal::RunJournal;
 use crate::scheduler::{Scheduler, Task, TaskResult};
@@ -27,7 +27,10 @@ use slipfront_run::{clock, pictures, results, running};
 type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
 
 /// Function that runs a case; no outcome if the run was aborted.
-type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
+type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<MadeRun>, StudyError> + Sync + 'a;
+
+/// Outcome of a run, and the mark of its folder if that was kept.
+pub(crate) type MadeRun = (Outcome, Option<String>);
 
 /// Callback that receives a finished run before its results are written, and returns whether the run counts
 /// as done. If not, the run counts as stopped, not as failed.
@@ -101,12 +104,13 @@ fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<TaskResult
     } else {
         // A panic is recorded as a failed run; otherwise, the scheduler would wait for it forever.
         catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
-            .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
+            .unwrap_or_else(|panic| Ok(Some((Outcome::Failed(panicked(panic.as_ref())), None))))
     };
-    let record = |outcome| FinishedRun {
+    let record = |(outcome, kept)| FinishedRun {
         id,
         wall_time_s: began.elapsed().as_secs_f64(),
         outcome,
+        kept,
     };
     // If the scheduler has ended, it needs no more results.
     let _ = finished.send(outcome.map(|outcome| outcome.map(record)));
@@ -126,7 +130,7 @@ pub(crate) fn run_one(
     run: RunKey,
     look: &LookAtRun,
     is_stopped: &IsStopped,
-) -> Result<Option<Outcome>, StudyError> {
+) -> Result<Option<MadeRun>, StudyError> {
     let started = clock::now();
     // The point was valid when the study began. If it is invalid now, a file that it reads has changed. This
     // ends the study, and is not recorded as a failure of the run.
@@ -148,14 +152,17 @@ pub(crate) fn run_one(
         RetainRuns::None => false,
         RetainRuns::Failed => record.is_err(),
     };
+    let mut kept = None;
     if is_kept {
         let path = runs.join(plan.folder_name(run));
         write_folder(&case, record.as_mut().ok(), &path, started)?;
+        kept = mark_of(&path, record.is_ok());
     }
-    Ok(Some(match record {
+    let outcome = match record {
         Ok(record) => Outcome::of(record.summary),
         Err(error) => Outcome::Failed(error.to_string()),
-    }))
+    };
+    Ok(Some((outcome, kept)))
 }
 
 /// Writes a run folder. The folder of a failed run is marked as interrupted and contains only the case, from
@@ -199,13 +206,14 @@ mod tests {
     }
 
     /// A simulated run: its result depends on seed and point, and its duration on neither.
-    fn pretend(run: RunKey) -> Outcome {
+    fn pretend(run: RunKey) -> MadeRun {
         let mixed = (run.replicate as u64 * 7919 + run.point as u64 * 104_729) % 1000;
-        Outcome::Done(Box::new(Summary {
+        let summary = Summary {
             static_friction_star: 0.8 + 1e-4 * mixed as f64,
             transition: true,
             ..Summary::default()
-        }))
+        };
+        (Outcome::Done(Box::new(summary)), None)
     }
 
     /// Executes a plan with `threads` simultaneous runs; the pool has one more thread, which waits for them.
@@ -284,7 +292,7 @@ mod tests {
     fn failures_and_faults_do_not_stop_the_rest() {
         let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 6");
         let runner = |run: RunKey, _: &IsStopped| match run.replicate {
-            1 => Ok(Some(Outcome::Failed("it diverged".to_owned()))),
+            1 => Ok(Some((Outcome::Failed("it diverged".to_owned()), None))),
             3 => panic!("out of bounds"),
             _ => Ok(Some(pretend(run))),
         };

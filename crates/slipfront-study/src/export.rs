@@ -20,10 +20,11 @@ use thiserror::Error;
 use crate::error::StudyError;
 use crate::folder::is_of_figures;
 use crate::project_folder::{
-    CHECKSUMS, Checksums, Derivation, Journal, JournalEntry, ProjectKind, verify_checksums,
+    CHECKSUMS, Checksums, Derivation, Journal, JournalEntry, ProjectKind, VerifyStudyError, verify_checksums,
 };
 use crate::study_file::STUDIES;
 use crate::summary_values::{AFTER_AXES, BEFORE_AXES};
+use crate::verify::verify_kept;
 
 /// Reason why a folder is not exported.
 #[derive(Debug, Error)]
@@ -37,6 +38,8 @@ pub enum ExportFolderError {
     Figures { path: PathBuf },
     #[error(transparent)]
     Folder(#[from] StudyError),
+    #[error(transparent)]
+    Kept(#[from] VerifyStudyError),
     #[error(transparent)]
     Results(#[from] ExportError),
 }
@@ -57,10 +60,10 @@ impl JournalEntry for RecordedRun {
 /// # Errors
 /// When it is not such a folder, was not finished, cannot be read, or was changed after it was written.
 pub fn exported(folder: &Path, others: &[Derivation]) -> Result<Exported, ExportFolderError> {
-    if STUDIES.is_in(folder) {
+    if STUDIES.has_results_in(folder) {
         return study(folder);
     }
-    if let Some(other) = others.iter().find(|other| other.kind.is_in(folder)) {
+    if let Some(other) = others.iter().find(|other| other.kind.has_results_in(folder)) {
         return project(folder, other.kind, other.kind.name);
     }
     if is_of_figures(folder) {
@@ -86,7 +89,11 @@ fn study(folder: &Path) -> Result<Exported, ExportFolderError> {
 /// The folder of a project, as in its list of files. The project is an action of this `kind`: its project
 /// file and the given files are the inputs, and all others are the results.
 fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Exported, ExportFolderError> {
-    let (verdict, is_complete) = verify_checksums(folder, &[], &AtomicBool::new(false))?;
+    let never = AtomicBool::new(false);
+    let (mut verdict, is_complete) = verify_checksums(folder, of, &[], &never)?;
+    if of.name == STUDIES.name {
+        verify_kept(folder, &mut verdict, &never)?;
+    }
     ExportError::expect_none(verdict.differences)?;
     if !is_complete {
         let path = folder.to_owned();

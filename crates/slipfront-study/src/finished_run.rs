@@ -1,8 +1,13 @@
 //! The outcome of a run of a study, as its journal records it.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use slipfront_base::disk::json;
+use slipfront_run::manifest::{Manifest, ManifestFile};
+use slipfront_run::names::CASE;
+use slipfront_run::run_copy::file_names;
 
 use crate::project_folder::JournalEntry;
 use crate::summary_values::SummaryValues;
@@ -54,6 +59,24 @@ pub struct FinishedRun {
     pub wall_time_s: f64,
     /// Outcome of the run.
     pub outcome: Outcome,
+    /// Seal of the manifest of its folder, or of a run that failed a hash of its case; none if no folder was
+    /// kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kept: Option<String>,
+}
+
+/// Tells a kept run folder from any other: the seal of the manifest, or of a run that failed a hash of the
+/// case and the files that it reads. None if the folder has no such files, or they are damaged.
+pub(crate) fn mark_of(folder: &Path, is_done: bool) -> Option<String> {
+    if is_done {
+        return Some(Manifest::read(folder).ok()?.checksum);
+    }
+    let mut names = file_names(folder).ok()?;
+    names.retain(|name| name == CASE || name.starts_with("inputs/"));
+    names.sort();
+    let files = names.iter().map(|name| ManifestFile::of(folder, name));
+    let files = files.collect::<std::io::Result<Vec<_>>>().ok()?;
+    (names.iter().any(|name| name == CASE)).then(|| blake3::hash(&json(&files)).to_hex().to_string())
 }
 
 impl JournalEntry for FinishedRun {

@@ -5,9 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
+use crate::finished_run::mark_of;
 use crate::plan::{Plan, RunKey};
-use crate::project_folder::{Batch, Others, ResultFiles};
+use crate::project_folder::{Batch, Checksums, Others, ProjectKind, ResultFiles};
 use crate::run_journal::RunJournal;
+use crate::shard::Shard;
 use crate::study_file::{STUDIES, StudyFile};
 use crate::study_results::StudyResults;
 use crate::{pictures, tables};
@@ -15,8 +17,7 @@ use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited, read_limited};
 use slipfront_base::machine::free_disk;
 use slipfront_base::number_format::{byte_size, count};
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::Manifest;
-use slipfront_run::names::{CASE, FIGURE_CACHE, RUNS, TABLES};
+use slipfront_run::names::{FIGURE_CACHE, RUNS, TABLES};
 use slipfront_run::run_copy::copy_run;
 
 const STUDY: &str = STUDIES.file;
@@ -37,13 +38,18 @@ pub struct StudyFolder {
 
 impl StudyFolder {
     /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process uses.
-    /// If the study has changed since then, its tables and pictures are removed: they can be made again from
-    /// the records.
+    /// It is for the points of a `part`, or for all. If the study has changed since then, its tables and
+    /// pictures are removed: they can be made again from the records.
     ///
     /// # Errors
-    /// When the folder contains other things, or results that were edited afterwards, unless `force` is set;
-    /// when another process uses it, or it cannot be written to.
-    pub fn open(path: &Path, study: &StudyFile, force: bool) -> Result<Self, StudyError> {
+    /// When the folder contains other things or another part of the study, or results that were edited
+    /// afterwards, unless `force` is set; when another process uses it, or it cannot be written to.
+    pub fn open(
+        path: &Path,
+        study: &StudyFile,
+        part: Option<Shard>,
+        force: bool,
+    ) -> Result<Self, StudyError> {
         STUDIES.is_used(path)?;
         if is_of_figures(path) {
             return Err(STUDIES.other_things(path));
@@ -56,6 +62,18 @@ impl StudyFolder {
         };
         let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
         let changed = given.differs_in(&STUDIES, path);
+        if let (
+            Some(part),
+            Ok(Some(Checksums {
+                part: Some(there), ..
+            })),
+            false,
+        ) = (part, Checksums::read(path), changed)
+            && part.to_string() != there
+        {
+            let (path, part) = (path.to_owned(), part.to_string());
+            return Err(StudyError::OtherPart { path, there, part });
+        }
         // A user may change the study in the folder, and run that.
         let is_this = |before: &Vec<u8>| {
             let there = parse(&String::from_utf8_lossy(before)).ok();
@@ -65,6 +83,7 @@ impl StudyFolder {
         if before.is_some_and(|before| is_this(&before)) {
             batch.may_replace(STUDY);
         }
+        batch.is_of_part(part);
         let files = batch.place_given(if changed { Others::Go } else { Others::Stay })?;
         Ok(Self {
             path: path.to_owned(),
@@ -94,16 +113,17 @@ impl StudyFolder {
             .collect()
     }
 
-    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard if they are
+    /// Copies complete run folders, and the cases of failed runs, from the folders of shards if they are
     /// missing here.
     ///
     /// # Errors
-    /// When the system refuses to read or to write, and after a stop.
+    /// When the folder of a run is not the one that the journal names; when the system refuses to read or to
+    /// write; after a stop.
     pub fn take_kept(
         &self,
         plan: &Plan,
         results: &StudyResults,
-        shard: &Path,
+        shards: &[PathBuf],
         stop: &AtomicBool,
     ) -> Result<(), StudyError> {
         for (run, result) in &results.runs {
@@ -111,14 +131,23 @@ impl StudyFolder {
                 return Err(StudyError::Interrupted);
             }
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match result {
-                // The run folder may be incomplete if the process was killed.
-                Ok(_) => Manifest::read(folder).is_ok(),
-                Err(_) => folder.join(CASE).is_file(),
-            };
-            let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
-            if is_whole(&from) && !is_whole(&to) {
-                copy_run(&from, &to)?;
+            let recorded = self.records.mark(&plan.identity(*run));
+            // The run folder may be incomplete if the process was killed.
+            let mark = |folder: &Path| mark_of(folder, result.is_ok());
+            let is_its = |mark: &String| recorded.as_ref().is_none_or(|recorded| recorded == mark);
+            let to = self.path.join(RUNS).join(&name);
+            if mark(&to).is_some_and(|mark| is_its(&mark)) {
+                continue;
+            }
+            let there = shards.iter().map(|shard| shard.join(RUNS).join(&name));
+            let there: Vec<_> = there.filter_map(|path| Some((mark(&path)?, path))).collect();
+            match there.iter().find(|(mark, _)| is_its(mark)) {
+                Some((_, from)) => copy_run(from, &to)?,
+                None if there.is_empty() => {}
+                None => {
+                    let path = there[0].1.clone();
+                    return Err(StudyError::NotItsRun { path });
+                }
             }
         }
         Ok(())
@@ -153,16 +182,6 @@ pub(crate) fn stage(
     if !rows.is_empty() {
         batch.write(anisotropy, |file| Ok(tables::anisotropy(&rows, file)?))?;
     }
-    stage_pictures(plan, results, batch, stop)
-}
-
-/// Writes the pictures of a study to a batch of files, in the look of the batch, until a stop.
-pub(crate) fn stage_pictures(
-    plan: &Plan,
-    results: &StudyResults,
-    batch: &mut Batch,
-    stop: &AtomicBool,
-) -> Result<(), StudyError> {
     let look = batch.look().clone();
     pictures::draw(plan, results, &look, |name, picture| {
         if stop.load(Ordering::Relaxed) {
@@ -172,9 +191,19 @@ pub(crate) fn stage_pictures(
     })
 }
 
+/// Folders of `slipfront paper`.
+pub const PAPER: ProjectKind = ProjectKind {
+    name: "paper",
+    table: "paper",
+    file: "report.html",
+    journal: RunJournal::FILE,
+    given: &[],
+    found: &[],
+};
+
 /// Whether the folder is one of `slipfront paper`, which has records but no study file.
 pub fn is_of_figures(folder: &Path) -> bool {
-    folder.join(FIGURE_CACHE).is_dir() && !is_study(folder)
+    (folder.join(FIGURE_CACHE).is_dir() || PAPER.has_results_in(folder)) && !is_study(folder)
 }
 
 /// Whether the folder is the results folder of a study.
@@ -225,7 +254,7 @@ mod tests {
         let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
         let plan = Plan::new(&file, None).unwrap();
         let run = plan.runs(1).next().unwrap();
-        let out = StudyFolder::open(&folder.path().join("out"), &file, false).unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file, None, false).unwrap();
         std::fs::write(&original, table(0.8)).unwrap();
         let said = plan.case(run, &mut |_| true).unwrap_err().to_string();
         assert!(said.contains("was changed after the study began"), "{said}");

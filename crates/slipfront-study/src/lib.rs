@@ -61,7 +61,7 @@ pub use estimate_cost::{CostLimits, estimated_time};
 pub use execute::{LookAtRun, collect, execute, execute_and_look};
 pub use export::{ExportFolderError, exported};
 pub use finished_run::{FinishedRun, Outcome, RunResult};
-pub use folder::{StudyFolder, is_of_figures, is_study, refuse_foreign, study_of};
+pub use folder::{PAPER, StudyFolder, is_of_figures, is_study, refuse_foreign, study_of};
 pub use friction_tensor::Principal;
 pub use identity::SOURCE_HASH;
 pub use idle_axes::idle_axes;

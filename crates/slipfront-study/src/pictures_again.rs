@@ -10,12 +10,8 @@ use slipfront_plot::{PictureFormat, PictureLook};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::verify::VerifyError;
 
-use crate::error::StudyError;
-use crate::execute::collect;
-use crate::folder::{StudyFolder, stage_pictures, study_of};
-use crate::plan::Plan;
-use crate::project_folder::{Checksums, Derivation, Others, VerifyStudyError};
-use crate::study_file::STUDIES;
+use crate::project_folder::{Checksums, Derivation, VerifyStudyError};
+use crate::write::STUDY_FOLDERS;
 
 /// Largest number of bytes of a picture.
 const MAX_BYTES: u64 = 1 << 30;
@@ -26,8 +22,8 @@ type PictureFiles = Vec<(String, Vec<u8>)>;
 /// The folder of a finished study, or of another finished project.
 pub struct PicturesOf<'f> {
     folder: &'f Path,
-    /// The kind of the project; none for a study.
-    derivation: Option<&'f Derivation>,
+    /// The kind of the project.
+    derivation: &'f Derivation,
     /// Names of its pictures, without their endings.
     pub names: Vec<String>,
 }
@@ -40,20 +36,18 @@ pub fn pictures_of<'f>(
     folder: &'f Path,
     others: &'f [Derivation],
 ) -> Result<Option<PicturesOf<'f>>, VerifyStudyError> {
-    let derivation = others.iter().find(|other| other.kind.is_in(folder));
-    let kind = match derivation {
-        Some(derivation) => derivation.kind,
-        None if STUDIES.is_in(folder) => &STUDIES,
-        None => return Ok(None),
+    let mut all = others.iter().chain([&STUDY_FOLDERS]);
+    let Some(derivation) = all.find(|kind| kind.kind.is_in(folder)) else {
+        return Ok(None);
     };
     let list = Checksums::read(folder)?.unwrap_or_default();
     if !list.is_complete {
         return Err(VerifyStudyError::UnfinishedSearch {
-            what: kind.name,
+            what: derivation.kind.name,
             path: folder.to_owned(),
         });
     }
-    let no_pictures = derivation.map_or(&[][..], |derivation| derivation.no_pictures);
+    let no_pictures = derivation.no_pictures;
     let names = list.files.iter().map(|file| file.name.as_str());
     Ok(Some(PicturesOf {
         folder,
@@ -79,15 +73,8 @@ impl PicturesOf<'_> {
     /// stop.
     pub fn draw(&self, look: &PictureLook, stop: &AtomicBool) -> Result<PictureFiles, VerifyStudyError> {
         let temporary = TemporaryFolder::new(self.folder).map_err(VerifyError::Temporary)?;
-        match self.derivation {
-            None => self.draw_study(temporary.path(), look, stop)?,
-            Some(derivation) => {
-                (derivation.find_again)(self.folder, temporary.path(), look, stop)?;
-            }
-        }
-        let no_pictures = self
-            .derivation
-            .map_or(&[][..], |derivation| derivation.no_pictures);
+        self.derivation.again(self.folder, temporary.path(), look, stop)?;
+        let no_pictures = self.derivation.no_pictures;
         let is_picture = |name: &str| {
             let mut formats = look.formats.iter();
             formats.any(|format| picture_name(name, *format, no_pictures).is_some())
@@ -101,31 +88,5 @@ impl PicturesOf<'_> {
                 Ok((file.name, bytes))
             })
             .collect()
-    }
-
-    /// Draws the pictures of a study in another folder.
-    fn draw_study(
-        &self,
-        other: &Path,
-        look: &PictureLook,
-        stop: &AtomicBool,
-    ) -> Result<(), VerifyStudyError> {
-        let file = study_of(self.folder)?;
-        let plan = Plan::new(&file, None)?;
-        plan.check_memory(0)?;
-        let mut again = StudyFolder::open(other, &file, false)?;
-        again.files = again.files.with_look(look.clone());
-        again.records.merge(self.folder)?;
-        let results = collect(&plan, &again.records).map_err(|error| match error {
-            StudyError::Missing { runs, others } => VerifyStudyError::Unfinished {
-                path: self.folder.to_owned(),
-                runs,
-                others,
-            },
-            error => error.into(),
-        })?;
-        let mut batch = again.files.begin();
-        stage_pictures(&plan, &results, &mut batch, stop)?;
-        Ok(batch.place(Others::Go)?)
     }
 }

@@ -417,7 +417,7 @@ impl Plan {
     /// Name of the folder of a run, if it is kept: the beginning of its identity, so that the name does not
     /// change when the study grows.
     pub fn folder_name(&self, run: RunKey) -> String {
-        self.identity(run)[..12].to_owned()
+        folder_of_run(&self.identity(run)).unwrap_or_default()
     }
 
     /// Expected number of steps of a run, and its number of blocks: the measure of its cost.
@@ -573,6 +573,11 @@ fn meshed_coverage(case: &Case) -> Option<f64> {
     } else {
         textured
     })
+}
+
+/// Name of the folder of the run with this identity; none if it is no identity of a run.
+pub(crate) fn folder_of_run(id: &str) -> Option<String> {
+    Some(id.get(..12)?.to_owned())
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::RUN_JOURNAL;
 
 use crate::error::StudyError;
@@ -22,7 +23,8 @@ pub struct RunJournal {
 #[derive(Debug)]
 struct JournalState {
     journal: Journal,
-    results: HashMap<String, RunResult>,
+    /// Results of the runs, and marks of the folders that were kept.
+    results: HashMap<String, (RunResult, Option<String>)>,
 }
 
 impl RunJournal {
@@ -56,7 +58,20 @@ impl RunJournal {
 
     /// The result of the run with this identity, if it is recorded.
     pub fn get(&self, id: &str) -> Option<RunResult> {
-        self.state().results.get(id).cloned()
+        self.state().results.get(id).map(|(result, _)| result.clone())
+    }
+
+    /// The mark of the folder of this run, if the folder was kept.
+    pub(crate) fn mark(&self, id: &str) -> Option<String> {
+        self.state().results.get(id)?.1.clone()
+    }
+
+    /// The file with its present checksum.
+    ///
+    /// # Errors
+    /// When the system refuses to read it.
+    pub fn listed(&self) -> Result<ManifestFile, StudyError> {
+        self.state().journal.listed()
     }
 
     /// Number of runs recorded.
@@ -93,9 +108,9 @@ impl RunJournal {
     }
 }
 
-/// Identity and result of a run, which are kept in memory.
-fn result_of(run: &FinishedRun) -> (String, RunResult) {
-    (run.id.clone(), run.outcome.result())
+/// The part of a run that stays in memory, by its identity.
+fn result_of(run: &FinishedRun) -> (String, (RunResult, Option<String>)) {
+    (run.id.clone(), (run.outcome.result(), run.kept.clone()))
 }
 
 /// Number of lines per write: each write waits for the disk.
@@ -115,6 +130,7 @@ mod tests {
             id: id.to_owned(),
             wall_time_s: 0.5,
             outcome: Outcome::Done(Box::default()),
+            kept: None,
         }
     }
 

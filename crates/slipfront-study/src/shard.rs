@@ -33,7 +33,14 @@ impl Shard {
         let number = read("SLURM_ARRAY_TASK_ID")?
             .saturating_add(1)
             .saturating_sub(first);
-        Self::new(number, read("SLURM_ARRAY_TASK_COUNT")?, given)
+        let count = read("SLURM_ARRAY_TASK_COUNT")?;
+        if read("SLURM_ARRAY_TASK_MAX")
+            .is_ok_and(|last| last.saturating_add(1) != first.saturating_add(count))
+        {
+            let why = "the indices of the array have gaps, so that they name no parts";
+            return Err(refused(given, why.to_owned()));
+        }
+        Self::new(number, count, given)
     }
 
     fn new(number: usize, count: usize, given: &str) -> Result<Self, StudyError> {

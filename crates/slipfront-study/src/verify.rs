@@ -1,29 +1,30 @@
-//! Verifies the folder of a study: compares it with the list of its files, and then with the tables and
-//! pictures that follow from its recorded runs; compares the kept run folders with their manifests. Other
-//! folders are verified by their kind.
+//! Verifies a folder by its kind. The run folders that a study has kept are compared with their manifests and
+//! with the lines of the journal that name them.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Component, Path};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use slipfront_base::disk::read_limited;
 use slipfront_base::number_format::{are, count};
-use slipfront_base::unfinished::TemporaryFolder;
+use slipfront_base::text::single_line;
+use slipfront_base::unfinished::is_unfinished;
+use slipfront_run::export::folders_in;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::names::{FIGURE_CACHE, RUNS};
-use slipfront_run::verify::{Verdict, VerifyError, first_line, inspect, verify_run};
+use slipfront_run::manifest::Manifest;
+use slipfront_run::names::{FIGURE_CACHE, MANIFEST, RO_CRATE, RUNS};
+use slipfront_run::verify::{DESCRIPTION_MAX_BYTES, Verdict, inspect, unlisted_files, verify_run};
 
-use crate::converge;
 use crate::error::StudyError;
-use crate::execute::collect;
-use crate::folder::{StudyFolder, is_of_figures, stage, study_of};
-
-use crate::plan::Plan;
-use crate::project_folder::verify::{differences_from, verify_project};
-use crate::project_folder::{Derivation, Extent, Others, VerifyStudyError, verify_checksums};
+use crate::finished_run::{FinishedRun, mark_of};
+use crate::folder::{PAPER, is_of_figures, study_of};
+use crate::plan::folder_of_run;
+use crate::project_folder::verify::verify_project;
+use crate::project_folder::{Checksums, Derivation, Extent, Journal, VerifyStudyError, verify_complete};
 use crate::run_journal::RunJournal;
 use crate::study_file::{RetainRuns, STUDIES};
-use crate::study_results::StudyResults;
+use crate::write::STUDY_FOLDERS;
 
 /// Whether a study has been run in the folder.
 pub fn has_records(folder: &Path) -> bool {
@@ -40,12 +41,12 @@ pub fn verify(
     extent: Extent,
     stop: &AtomicBool,
 ) -> Result<Verdict, VerifyStudyError> {
-    let verdict = if has_records(folder) {
+    let verdict = if STUDIES.has_results_in(folder) {
         verify_study(folder, extent, stop)?
-    } else if let Some(derivation) = others.iter().find(|other| other.kind.is_in(folder)) {
-        verify_project(folder, derivation, extent, stop)?
+    } else if let Some(derivation) = others.iter().find(|other| other.kind.has_results_in(folder)) {
+        verify_project(folder, derivation, &[], extent, stop)?
     } else if is_of_figures(folder) {
-        let (verdict, _) = verify_checksums(folder, &[RunJournal::FILE, FIGURE_CACHE], stop)?;
+        let verdict = verify_complete(folder, &PAPER, &[FIGURE_CACHE], stop)?;
         Verdict {
             not_derived: Some(format!(
                 "the figures in {} were not drawn again: `slipfront verify` draws them",
@@ -53,6 +54,8 @@ pub fn verify(
             )),
             ..verdict
         }
+    } else if !folder.join(MANIFEST).exists() && folder.join(RO_CRATE).is_file() {
+        verify_crate(folder, others, extent, stop)?
     } else {
         verify_run(&inspect(folder)?, stop)?
     };
@@ -62,87 +65,71 @@ pub fn verify(
     Ok(verdict)
 }
 
-/// Compares a study with its list, makes its tables and pictures again from its records, and compares its run
+/// Verifies every folder of results in a crate that `slipfront export` has made.
+fn verify_crate(
+    folder: &Path,
+    others: &[Derivation],
+    extent: Extent,
+    stop: &AtomicBool,
+) -> Result<Verdict, VerifyStudyError> {
+    let path = folder.join(RO_CRATE);
+    let mut verdict = Verdict::default();
+    let description = read_limited(&path, DESCRIPTION_MAX_BYTES).map_err(FolderError::read(&path))?;
+    let names = folders_in(&description).unwrap_or_default();
+    if names.is_empty() {
+        let damage = format!("{} is damaged: it names no folder of results", path.display());
+        verdict.differences.push(damage);
+    }
+    for name in &names {
+        let part = folder.join(name);
+        let is_inside = Path::new(name)
+            .components()
+            .all(|part| matches!(part, Component::Normal(_)));
+        if !is_inside || !part.is_dir() {
+            verdict
+                .differences
+                .push(single_line(&format!("{} is missing", part.display())));
+            continue;
+        }
+        let of_part = verify(&part, others, extent, stop)?;
+        verdict.differences.extend(of_part.differences);
+        verdict.notes.extend(of_part.notes);
+        let seal = Checksums::read(&part).ok().flatten().map(|list| list.seal);
+        let seal = seal.or_else(|| Some(Manifest::read(&part).ok()?.checksum));
+        let is_described = |seal: String| {
+            description
+                .windows(seal.len())
+                .any(|text| text == seal.as_bytes())
+        };
+        if !seal.is_none_or(is_described) {
+            verdict.differences.push(single_line(&format!(
+                "{} has other results than {} describes: it was replaced; export the original again",
+                part.display(),
+                path.display()
+            )));
+        }
+    }
+    let known = names.iter().map(String::as_str).chain([RO_CRATE]).collect();
+    verdict
+        .notes
+        .extend(unlisted_files(folder, &known, is_unfinished));
+    verdict.what = format!("a crate of {}, unchanged", count(names.len(), "folder"));
+    Ok(verdict)
+}
+
+/// Compares a study with its list and with the results that follow from its recorded runs, and its run
 /// folders with their manifests.
 fn verify_study(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[RunJournal::FILE, RUNS], stop)?;
-    let mut derived = None;
-    if extent == Extent::Derived && verdict.differences.is_empty() {
-        derived = derive_study(folder, &mut verdict, stop)?;
-    }
-    if verdict.differences.is_empty() && !is_complete {
-        let (what, path) = ("study", folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
-    }
-    let kept = verify_kept(folder, derived.as_ref(), &mut verdict, stop)?;
+    let mut verdict = verify_project(folder, &STUDY_FOLDERS, &[RUNS], extent, stop)?;
+    let kept = verify_kept(folder, &mut verdict, stop)?;
     verdict.what += &format!(", {} as they were written", count(kept, "run folder"));
     Ok(verdict)
 }
 
-/// Makes tables and pictures of a study again from its records, and compares the folder with them. Returns
-/// the plan and the results of its runs, unless damaged lines have lost them.
-fn derive_study(
+/// Compares the run folders that a study has kept with the lines of its journal, and looks for those that it
+/// lacks; returns their number.
+pub(crate) fn verify_kept(
     folder: &Path,
-    verdict: &mut Verdict,
-    stop: &AtomicBool,
-) -> Result<Option<(Plan, StudyResults)>, VerifyStudyError> {
-    let made = study_of(folder).and_then(|file| Ok((Plan::new(&file, None)?, file)));
-    let (plan, file) = match made {
-        Ok(made) => made,
-        Err(error) => {
-            let (path, line) = (folder.join("study.toml"), first_line(&error));
-            let difference = format!("{} is not a valid study for this version: {line}", path.display());
-            verdict.differences.push(difference);
-            return Ok(None);
-        }
-    };
-    plan.check_memory(0)?;
-    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
-    let mut again = StudyFolder::open(temporary.path(), &file, false)?;
-    again.records.merge(folder)?;
-    let records = folder.join(RunJournal::FILE);
-    let (damaged, records) = (again.records.damaged, records.display());
-    let results = match collect(&plan, &again.records) {
-        Ok(results) => results,
-        Err(StudyError::Missing { runs, others }) if damaged == 0 => {
-            let path = folder.to_owned();
-            return Err(VerifyStudyError::Unfinished { path, runs, others });
-        }
-        // The damaged lines are needed to derive the tables again.
-        Err(StudyError::Missing { .. }) => {
-            let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
-            verdict.differences.push(damage);
-            return Ok(None);
-        }
-        Err(error) => return Err(error.into()),
-    };
-    let mut batch = again.files.begin();
-    stage(&plan, &results, &mut batch, stop)?;
-    if converge::is_written(folder, &plan.axes) {
-        converge::stage(&plan, &results, &mut batch)?;
-    }
-    batch.place(Others::Go)?;
-    let how = "follow from the records";
-    verdict.differences = differences_from(temporary.path(), folder, how, stop)?;
-    if damaged > 0 {
-        let damage = format!(
-            "{records} has {}, whose runs are recorded once more or not needed",
-            count(damaged, "damaged line")
-        );
-        verdict.notes.push(damage);
-    }
-    verdict.what = format!(
-        "tables and pictures as its {} give them",
-        count(again.records.len(), "recorded run")
-    );
-    Ok(Some((plan, results)))
-}
-
-/// Verifies the run folders that a study has kept, and looks for those that it lacks if its plan and results
-/// are known; returns their number.
-fn verify_kept(
-    folder: &Path,
-    derived: Option<&(Plan, StudyResults)>,
     verdict: &mut Verdict,
     stop: &AtomicBool,
 ) -> Result<usize, VerifyStudyError> {
@@ -153,37 +140,59 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error).into()),
     };
-    // For a failed run, only the case is kept.
-    let done = derived.map(|(plan, results)| {
-        let done = results.runs.iter().filter(|(_, result)| result.is_ok());
-        done.map(|(run, _)| plan.folder_name(*run)).collect()
-    });
-    let done: HashSet<String> = done.unwrap_or_default();
-    let (mut kept, mut missing) = (0, done.clone());
+    // Differences of the journal itself are told already.
+    let (lines, damaged) = Journal::read::<FinishedRun>(folder, RunJournal::FILE).unwrap_or_default();
+    if damaged > 0 {
+        verdict.notes.push(format!(
+            "{} has {}, whose runs are recorded once more or not needed",
+            folder.join(RunJournal::FILE).display(),
+            count(damaged, "damaged line")
+        ));
+    }
+    let mut recorded: HashMap<String, (bool, Option<String>)> = lines
+        .into_iter()
+        .filter_map(|run| Some((folder_of_run(&run.id)?, (run.outcome.result().is_ok(), run.kept))))
+        .collect();
+    let mut kept = 0;
     for entry in entries.into_iter().flatten() {
-        let entry = entry.map_err(&unreadable)?;
-        let is_done = missing.remove(&*entry.file_name().to_string_lossy());
-        if !is_done && !entry.path().is_dir() {
+        let path = entry.map_err(&unreadable)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let Some((is_done, mark)) = recorded.remove(&*name) else {
+            verdict
+                .notes
+                .push(format!("{} is of no run in the journal", path.display()));
             continue;
-        }
-        match inspect(&entry.path()).and_then(|run| verify_run(&run, stop)) {
-            Ok(of_run) => {
-                verdict.differences.extend(of_run.differences);
-                verdict.notes.extend(of_run.notes);
-                kept += 1;
+        };
+        if is_done {
+            match inspect(&path).and_then(|run| verify_run(&run, stop)) {
+                Ok(of_run) => {
+                    verdict.differences.extend(of_run.differences);
+                    verdict.notes.extend(of_run.notes);
+                    kept += 1;
+                }
+                Err(error) => {
+                    verdict.differences.push(error.to_string());
+                    continue;
+                }
             }
-            Err(error) if is_done => verdict.differences.push(error.to_string()),
-            Err(_) => {}
+        }
+        if mark.is_some() && mark_of(&path, is_done) != mark {
+            verdict
+                .differences
+                .push(StudyError::NotItsRun { path }.to_string());
         }
     }
-    // They may have been removed on purpose, or the runs are older than the setting `keep`.
-    let keeps_all = derived.is_some_and(|(plan, _)| plan.settings.keep == RetainRuns::All);
-    if keeps_all && !missing.is_empty() {
-        verdict.notes.push(format!(
-            "{} of {} not in {}, where the study keeps all",
-            missing.len(),
-            are(done.len(), "run folder"),
-            runs.display()
+    let keep = study_of(folder).map_or(RetainRuns::All, |study| study.settings.keep);
+    let is_missing = |(is_done, mark): &&(bool, Option<String>)| {
+        mark.is_some() && (keep == RetainRuns::All || (keep == RetainRuns::Failed && !is_done))
+    };
+    let missing = recorded.values().filter(is_missing).count();
+    if missing > 0 {
+        verdict.differences.push(format!(
+            "{} missing in {}: put back what was removed, or set `study.keep = \"none\"` in {} and run it again",
+            are(missing, "run folder"),
+            runs.display(),
+            folder.join(STUDIES.file).display()
         ));
     }
     Ok(kept)

@@ -7,8 +7,9 @@ use crate::vector_field::length;
 
 impl Model {
     /// Earliest and latest t* at which the onset is expected. The later one is Eq. 12 for blocks that each
-    /// bear their load alone: where only some blocks are in contact, it is later by the [load
-    /// factor](crate::Surface::load_factor) f. The earlier one is Eq. 12 for blocks that bear the load
+    /// bear their load alone: it is later by the factor f of the [largest
+    /// load](crate::Surface::largest_load), which exceeds 1 where only some blocks are in contact or the
+    /// pressure differs from block to block. The earlier one is Eq. 12 for blocks that bear the load
     /// together, with a share c of all in contact, or, if that is later, for single blocks that their free
     /// neighbours push too:
     ///
@@ -18,15 +19,15 @@ impl Model {
     ///
     /// with A = [`springs_on_a_lone_block`] and the [loading speed](Self::loading_speed) in place of V*; c f
     /// is 1 if the load of textured blocks is redistributed. The pull that a sheet of free blocks transmits
-    /// to blocks in contact is known only for a drive on every block. Any other drive has no `load_factor`,
+    /// to blocks in contact is known only for a drive on every block. Any other drive has no `largest_load`,
     /// and pulls all blocks together. A dead load tau shortens each path by tau/k_2, and adhesion lengthens
     /// it by its part of the threshold over k_2. Contact springs take longer to load, by the factor
     /// (k_s + k_t)/k_t. Under a program the results are the times at which the drive has moved by these
     /// paths.
-    pub fn onset_estimate(&self, load_factor: Option<f64>) -> [f64; 2] {
+    pub fn onset_estimate(&self, largest_load: Option<f64>) -> [f64; 2] {
         let speed = self.loading_speed();
         let together = ONSET_PATH * self.share_of_load();
-        let [early, late] = match load_factor {
+        let [early, late] = match largest_load {
             None => [together; 2],
             Some(factor) => {
                 let late = ONSET_PATH * factor.max(1.0);

@@ -68,6 +68,8 @@ replay! {
     csv_table
     mask_png
     height_map
+    svg
+    dxf
     measured
     workbook
     run_journal

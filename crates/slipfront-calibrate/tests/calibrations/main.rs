@@ -419,6 +419,17 @@ fn records_of_another_law_are_refused_and_conditions_count() {
         "{text}"
     );
     assert!(numbers(&foreign)["is_refused"].as_bool().unwrap());
+    // Each number is marked, and nothing is said of how far they can be trusted.
+    let marked = text.matches("does not describe the records").count();
+    assert_eq!(
+        marked,
+        numbers(&foreign)["unknowns"].as_array().unwrap().len(),
+        "{text}"
+    );
+    assert!(
+        !text.contains("90 %. This") && !text.contains("determine"),
+        "{text}"
+    );
 }
 
 /// A record that was computed at the step of the case passes, although its slips begin at whole steps, unlike
@@ -613,6 +624,23 @@ fn the_block_of_the_written_case_has_the_medians() {
         differences.iter().all(|difference| difference.abs() > 1e-3),
         "{differences:?}"
     );
+}
+
+/// A record without friction is refused before a run: it has no share of its mean to scatter by.
+#[test]
+fn a_record_of_zeros_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("zero.csv");
+    let rows: String = (0..100).map(|k| format!("{k}e-10,0\n")).collect();
+    fs::write(&record, format!("time_s,force_n\n{rows}")).unwrap();
+    let out = folder.path().join("out");
+    let refused = open(&out, None, &file(&format!("{BASE}{KEYS}")), &[record], false);
+    let said = refused.unwrap_err().to_string();
+    assert!(
+        said.contains("zero.csv is 0 in each of its 100 values of friction"),
+        "{said}"
+    );
+    assert!(!out.exists());
 }
 
 /// A file or record that cannot be calibrated is refused, with the name of the key.

@@ -5,13 +5,16 @@ use std::path::{Path, PathBuf};
 
 use slipfront_base::text::single_line;
 
+use crate::nearest::why_unread;
+
 /// An error of an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ArrayError {
     #[error(
-        "cannot read `{}`: {source}; check the path (relative to the case file) and its permissions",
-        path.display()
+        "cannot read `{}`: {}; check the path (relative to the case file) and its permissions",
+        path.display(),
+        why_unread(path, source)
     )]
     Read { path: PathBuf, source: io::Error },
     #[error(

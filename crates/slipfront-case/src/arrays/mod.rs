@@ -7,6 +7,7 @@
 //! A file is never in memory as a whole: only the requested rows are kept. Where several ranks read their
 //! rows of one file, the error of the lowest rank is the error of reading all rows.
 
+mod drawing;
 mod error;
 mod head;
 mod height_map;
@@ -21,6 +22,8 @@ use std::fs::File;
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
+pub(crate) use drawing::SLIDER_LAYER;
+pub use drawing::{Drawing, drawing, limit_length_of_drawing};
 pub use error::{ArrayError, extension};
 pub use height_map::{HeightMap, HeightMapUnits, Preparation, Room, Roughness, height_map};
 pub use mask::{mask_png, png_of_mask};

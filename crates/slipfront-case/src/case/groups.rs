@@ -27,7 +27,7 @@ pub struct Groups {
 /// Largest strain of the load, because the model assumes small deformations.
 const MAX_EPSILON: f64 = 0.5;
 const MIN_V_STAR: f64 = 1e-9;
-const MAX_V_STAR: f64 = 10.0;
+pub(super) const MAX_V_STAR: f64 = 10.0;
 const MAX_OMEGA_STAR: f64 = 1000.0;
 /// Smallest unit of a displacement, speed or stress, in SI: fields are written in single precision, which
 /// ends at 1e-38 and must resolve eight digits below the unit.

@@ -10,7 +10,7 @@ use slipfront::{Communicator, Lattice};
 
 use super::files::{Files, OpenFile, Watch, Watched};
 use super::ranks::Ranks;
-use crate::arrays::{self, ArrayError, Slab};
+use crate::arrays::{self, ArrayError, Drawing, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
 use crate::same::{NamedInputs, expect_same, of_all, words_of};
 use slipfront_base::disk::open_regular;
@@ -309,6 +309,7 @@ fn open(
     match holds {
         FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
         FileUse::HeightMap => arrays::limit_length_of_height_map(original, length)?,
+        FileUse::Drawing => arrays::limit_length_of_drawing(original, length)?,
         FileUse::State => arrays::limit_length(original, length, nx, 4 * ny)?,
     }
     Ok((opened, length))
@@ -393,6 +394,19 @@ impl Inputs {
         read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
         self.read(file, (key, name), FileUse::HeightMap, watch, read)
+    }
+
+    /// Reads the drawing with this name in the case, given by `key`, for blocks with an edge of `block` mm.
+    pub(super) fn read_drawing(
+        &self,
+        file: &CaseFile,
+        (key, name): (&str, &str),
+        block: f64,
+        watch: &mut Watch,
+    ) -> Result<Drawing, CaseError> {
+        self.read(file, (key, name), FileUse::Drawing, watch, |path, source| {
+            arrays::drawing(path, source, block)
+        })
     }
 
     /// Reads one number per block from the file with this name, if the case names one.

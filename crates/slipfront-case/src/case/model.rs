@@ -22,13 +22,15 @@ use crate::case_file::{self, CaseError, CaseFile};
 /// The texture as requested and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
-    /// Requested A*, %; none if there is a mask, a polygon or the depth of a height map: their area is known
-    /// only after meshing.
+    /// Requested A*, %; none if there is a mask, a polygon, a drawing or the depth of a height map, which
+    /// have an area only after meshing.
     pub asked_percent: Option<f64>,
     /// A* as meshed, % (Eq. 15).
     pub meshed_percent: f64,
     /// The height maps.
     pub topographies: Vec<Topography>,
+    /// Sentences on what files of drawings contain besides texture.
+    pub notes: Vec<String>,
     /// Positions in the case file, from 0, of the textures that a free edge clips.
     pub clipped: Vec<usize>,
     /// Positions of the textures that cover no block.
@@ -87,6 +89,7 @@ pub(super) fn make(
     let texture = TextureReport {
         asked_percent: in_blocks.asked_percent,
         topographies: in_blocks.topographies,
+        notes: in_blocks.notes,
         meshed_percent: surface.texture_percent(),
         clipped: meshed.clipped,
         empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),

@@ -20,7 +20,7 @@ use super::output::Output;
 use super::ranks::Ranks;
 use super::shear::AtOnce;
 use super::textures;
-use super::time_plan::{TimePlan, auto_onset_end, load_factor};
+use super::time_plan::{TimePlan, auto_onset_end, largest_load};
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 use crate::same::expect_same;
@@ -80,7 +80,7 @@ impl Expected {
             steady_level: model.steady_level(ranks),
             steady_drag: model.steady_drag(ranks),
             first_slip_star: model.first_slip_estimate(ranks),
-            onset_star: model.onset_estimate(load_factor(file, model)),
+            onset_star: model.onset_estimate(largest_load(file, model)),
             critical_size: model.critical_size(ranks),
             onset_end_star: auto_onset_end(file, scales, model),
             at_once: AtOnce::of(model, ranks),

@@ -26,6 +26,8 @@ pub(super) struct InBlocks {
     pub(super) asked_percent: Option<f64>,
     /// The height maps among the textures.
     pub(super) topographies: Vec<Topography>,
+    /// Notes about files of drawings.
+    pub(super) notes: Vec<String>,
 }
 
 /// The textured blocks of the rows of this rank, with the textures; masks and height maps are read.
@@ -56,7 +58,9 @@ pub(super) fn shapes_in_blocks(
     let mut textures = Vec::new();
     let mut asked = Some(0.0);
     let mut topographies = Vec::new();
+    let mut notes = Vec::new();
     let mut masks = Masks::default();
+    let (mut steps, most_steps) = (0.0, STEPS + STEPS_PER_BLOCK * (lattice.nx * lattice.ny) as f64);
     // A height map covers all rows, so a rank must know which blocks exist in all of them.
     let exists = match count_height_maps(file) {
         0 => None,
@@ -91,8 +95,23 @@ pub(super) fn shapes_in_blocks(
                 topographies.push(topography);
                 (surface::Shape::Tile(tile), percent)
             }
+            Inside::Drawing(drawing) => {
+                let key = format!("{key}.file");
+                let block = scales.block_size * 1e3;
+                let read = inputs.read_drawing(file, (&key, &drawing.file), block, watch)?;
+                notes.extend(read.notes.iter().map(|note| format!("{}: {note}", drawing.file)));
+                (surface::Shape::Drawing(read.parts.into()), None)
+            }
         };
         within_reach(&shape, &arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
+        steps += meshing_steps(&shape, &arrays);
+        if steps > most_steps {
+            let sentence = format!(
+                "with this texture, outlines cross rows of blocks and masks cover blocks {steps:.1e} times, more than \
+                 {most_steps:.1e}: reduce the number of copies, their size or their corners"
+            );
+            return Err(file.source.error(&key, sentence));
+        }
         let inverted = texture.pattern.invert;
         textures.push(surface::Texture {
             shape,
@@ -112,6 +131,7 @@ pub(super) fn shapes_in_blocks(
         textures,
         asked_percent: asked,
         topographies,
+        notes,
     })
 }
 
@@ -309,6 +329,32 @@ fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lat
         "the texture extends over {reach:.1e} blocks, more than {REACH} times the {slider} blocks of the slider: check its \
          units, and `slider.block_size`"
     ))
+}
+
+/// Largest number of steps in which the textures of a small slider are meshed: half a minute where outlines
+/// cross each row many times, else a second.
+const STEPS: f64 = 1e9;
+/// Number of steps by which it grows with each block: a hundred textures may cover a large slider.
+const STEPS_PER_BLOCK: f64 = 100.0;
+
+/// Number of steps in which a texture is meshed: crossings of outlines with rows of blocks, corners for each
+/// row of copies, blocks of masks.
+fn meshing_steps(shape: &surface::Shape, arrays: &[surface::Array]) -> f64 {
+    let of_copy = match shape {
+        surface::Shape::Polygon(points) => {
+            let next = points.iter().cycle().skip(1);
+            points.iter().zip(next).map(|(p, q)| (q[1] - p[1]).abs()).sum()
+        }
+        surface::Shape::Drawing(parts) => {
+            let rings = parts.iter().flat_map(|part| &part.rings);
+            let sides = rings.flat_map(|ring| ring.windows(2));
+            sides.map(|side| (side[1][1] - side[0][1]).abs()).sum()
+        }
+        surface::Shape::Tile(tile) => (tile.size[0] * tile.size[1]) as f64,
+        surface::Shape::Cavity(_) | surface::Shape::Groove(_) => 4.0 * shape.reach(),
+    };
+    let rows: usize = arrays.iter().map(|array| array.count[1]).product();
+    shape.n_copies(arrays) as f64 * of_copy + (rows * shape.n_corners()) as f64
 }
 
 fn in_blocks(scales: &Scales, [x, y]: &[Length; 2]) -> [f64; 2] {

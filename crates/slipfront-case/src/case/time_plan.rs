@@ -5,11 +5,11 @@ use slipfront::lattice::K_DRIVE;
 use slipfront::observe::KineticStart;
 use slipfront::{Increments, Loading, Model, ONSET_PATH, Scales, Stop, StopReason};
 
-use super::groups::Groups;
+use super::groups::{Groups, MAX_V_STAR};
 use crate::case_file::{
     self, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
 };
-use slipfront_base::number_format::four_digits;
+use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Duration and time step of a run, its end, and the averaging window of kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,11 +29,11 @@ pub struct TimePlan {
     pub loading: Loading,
 }
 
-/// Ratio of the load of a block in contact to its load if every block touched. The onset is later by this
-/// factor. None unless every block has a drive spring that can bear its load.
-pub(super) fn load_factor(file: &CaseFile, model: &Model) -> Option<f64> {
+/// Ratio of the largest load of a block to that of every block if all touched under a uniform pressure. The
+/// onset is later by up to this factor. None unless every block has a drive spring that can bear its load.
+pub(super) fn largest_load(file: &CaseFile, model: &Model) -> Option<f64> {
     match file.drive.attached {
-        Attached::At(AttachedEdge::All) => Some(model.surface.load_factor()),
+        Attached::At(AttachedEdge::All) => Some(model.surface.largest_load()),
         Attached::At(_) | Attached::File(_) => None,
     }
 }
@@ -89,9 +89,9 @@ impl TimePlan {
         let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
         if steps > MAX_STEPS {
             let sentence = format!(
-                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: shorten the \
-                 run or increase the step",
-                four_digits(dt_star)
+                "a run to t* = {end_star:.4e} in steps of {} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: {}",
+                four_digits(dt_star),
+                shorter(file, groups.v_star, steps / MAX_STEPS)
             );
             return Err(file.source.error(key, sentence));
         }
@@ -169,11 +169,13 @@ impl TimePlan {
     }
 }
 
-/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where only some
-/// blocks touch and bear f times the load, the onset comes before their own drive springs bear the whole load
-/// at f/(k_s V*). The 2.5/V* before the kinetic window must follow this time, which takes longer than 8/V*
-/// where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead load
-/// against the drive delay the onset. Under a program of speeds, the duration counts from the last of them.
+/// Duration of "auto": 8/V*, which shows onset and sliding of the paper's slider, or longer. Where some
+/// blocks bear up to f times the load, because others do not touch or the pressure differs from place to
+/// place, the onset comes before their own drive springs bear their load at f/(k_s V*). The 2.5/V* before the
+/// kinetic window must follow this time, which takes longer than 8/V* for an f above 2.06: under a uniform
+/// pressure, where less than 48 % of the blocks touch. A drive that loads more slowly, adhesion, and a dead
+/// load against the drive delay the onset. Under a program of speeds, the duration counts from the last of
+/// them.
 fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -184,9 +186,44 @@ fn auto_duration(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     };
     let path = f64::max(
         8.0,
-        load_factor(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
+        largest_load(file, model).unwrap_or(1.0) / K_DRIVE + ONSET_PATH,
     );
     last.unwrap_or(0.0) + path / model.loading_speed() * delay(file, scales) + time_against_load(model)
+}
+
+/// Advice on a run with `times` as many steps as can be made. The drive is then too slow, or its springs are
+/// too soft, by this factor.
+fn shorter(file: &CaseFile, v_star: f64, times: f64) -> String {
+    if file.time.duration != RunTime::Star(AutoOr::Auto) {
+        return format!(
+            "reduce its duration by a factor of {} or more",
+            four_digits(times)
+        );
+    }
+    // Rounded up to two digits, so that the speed that is named suffices.
+    let enough = |speed: f64| {
+        let unit = libm::pow(10.0, libm::floor(libm::log10(speed * times)) - 1.0);
+        (speed * times / unit).ceil() * unit
+    };
+    let speed = match &file.drive.speed {
+        _ if enough(v_star) > MAX_V_STAR => None,
+        DriveSpeed::VStar(v_star) => Some(format!("`drive.v_star` = {}", four_digits(enough(*v_star)))),
+        DriveSpeed::Speed(speed) => Some(format!(
+            "`drive.speed` = \"{}\"",
+            with_si_prefix(enough(speed.si()), "m/s")
+        )),
+        DriveSpeed::Program(_) => None,
+    };
+    let speed = speed.map_or(String::new(), |speed| {
+        format!(
+            ", or {speed} or more; with `drive.loading` = \"held\" such a speed still gives the static friction of slow loading"
+        )
+    });
+    format!(
+        "the drive loads the slider too slowly for a model that resolves waves; drive springs that are {} times stiffer would \
+         do{speed}. `slipfront check` of such a case lists speeds with their errors and times",
+        four_digits(times)
+    )
 }
 
 /// Time by which a dead load against the drive delays the onset.
@@ -201,12 +238,11 @@ fn delay(file: &CaseFile, scales: &Scales) -> f64 {
 }
 
 /// Time t* of a held drive up to which the largest mu* counts as static friction: twice the time of the onset
-/// (Eq. 12), or the time at which the drive springs of the blocks in contact bear the whole load, if that is
-/// later.
+/// (Eq. 12), or the time at which the drive springs of all blocks bear their loads, if that is later.
 pub(super) fn auto_onset_end(file: &CaseFile, scales: &Scales, model: &Model) -> f64 {
     let path = f64::max(
         2.0 * ONSET_PATH,
-        load_factor(file, model).unwrap_or(1.0) / K_DRIVE,
+        largest_load(file, model).unwrap_or(1.0) / K_DRIVE,
     );
     path / model.loading_speed() * delay(file, scales) + time_against_load(model)
 }

@@ -9,7 +9,8 @@ use super::runnable::Case;
 use super::textures::arrays;
 use super::topography::Topography;
 use crate::case_file::{
-    Count, DEFAULT_THRESHOLD, Law, Mask, Outlined, Pattern, Pitch, Shape, Texture, friction_warning,
+    Count, DEFAULT_THRESHOLD, DriveSpeed, Law, Mask, Outlined, Pattern, Pitch, Shape, Texture,
+    friction_warning,
 };
 use slipfront_base::number_format::{are, count, four_digits, with_si_prefix};
 
@@ -48,12 +49,30 @@ const LARGE_INCREMENT: f64 = 2.25e-3;
 const FEW_BLOCKS: usize = 625;
 
 impl Case {
+    /// Note on speeds of a program that begin when the run has ended.
+    fn program_after_the_end(&self) -> Option<String> {
+        let DriveSpeed::Program(segments) = &self.file.drive.speed else {
+            return None;
+        };
+        let end_star = self.time_plan.end_star();
+        let begins = segments.iter().filter_map(|segment| segment.until_star);
+        let late: Vec<f64> = begins.filter(|begin_star| *begin_star >= end_star).collect();
+        let (first, n) = (late.first()?, late.len());
+        Some(format!(
+            "the run ends at t* = {end_star:.4}, before the last {} of `drive.program` begin{}, the first at t* = {first}: lengthen \
+             `time.duration_star`",
+            count(n, "speed"),
+            if n == 1 { "s" } else { "" }
+        ))
+    }
+
     /// Warnings about a case outside the range in which the model is valid, or different from what was
     /// requested.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.texture_warnings();
         warnings.extend(self.friction_warnings());
         warnings.extend(self.level_warnings());
+        warnings.extend(self.program_after_the_end());
 
         let mut warn = |is_wrong: bool, sentence: &dyn Fn() -> String| {
             if is_wrong {
@@ -200,6 +219,7 @@ impl Case {
                 ));
             }
         }
+        warnings.extend(report.notes.iter().cloned());
         for topography in &report.topographies {
             warnings.extend(self.other_scale(topography));
             let notes = topography.notes.iter();
@@ -361,6 +381,12 @@ impl Case {
         if self.file.load.pressure_field.is_some() && differs(mean, 1.0) {
             warnings.push(format!(
                 "the given pressures have a mean of {mean:.4} times `pressure`: starred quantities are relative to `pressure`"
+            ));
+        }
+        let pressure = &self.file.load.pressure;
+        if pressure.si() < 1.0 {
+            warnings.push(format!(
+                "`load.pressure` is \"{pressure}\", less than 1 Pa: if megapascals were meant, write \"MPa\""
             ));
         }
         warnings.extend(friction_warning(&self.model));

@@ -9,6 +9,7 @@ use super::key_table::Section;
 use super::keys;
 use super::source::Source;
 use super::synonyms::advice_on;
+use crate::nearest::nearest;
 use slipfront_base::text::truncated;
 
 /// Messages of the parser about common mistakes, by their beginnings, and the advice to the user on each.
@@ -177,7 +178,7 @@ fn unknown_word(word: &str, known: &[&str], subject: &str) -> String {
     let list = quoted.join(", ");
     let table = subject.split('.').next().unwrap_or(subject);
     let advice = advice_on(word).filter(|advice| advice.contains(&format!("`{table}.")));
-    match (keys::nearest(word, known), advice) {
+    match (nearest(word, known), advice) {
         (Some(near), _) => format!("unknown word {word:?}: did you mean \"{near}\"? It can be {list}"),
         (None, Some(advice)) => format!("unknown word {word:?}: {advice}. It can be {list}"),
         (None, None) => format!("unknown word {word:?}: it can be {list}"),

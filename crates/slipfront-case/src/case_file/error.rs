@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::nearest::why_unread;
 use crate::same::Difference;
 use slipfront_base::text::{MAX_EXCERPT, single_line, truncated};
 
@@ -15,7 +16,7 @@ use slipfront_base::text::{MAX_EXCERPT, single_line, truncated};
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CaseError {
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {}", path.display(), why_unread(path, source))]
     Unreadable { path: PathBuf, source: io::Error },
     #[error("there is no file {}: did you mean {}?", path.display(), near.display())]
     Misspelt { path: PathBuf, near: PathBuf },
@@ -56,6 +57,14 @@ impl CaseError {
     pub fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
         let sentence = single_line(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
+    }
+
+    /// The error without its place, for a value that no file contains.
+    pub fn without_place(&self) -> String {
+        match self {
+            Self::Invalid(invalid) => invalid.sentence.clone(),
+            error => error.to_string(),
+        }
     }
 }
 

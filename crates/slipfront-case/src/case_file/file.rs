@@ -107,6 +107,7 @@ impl CaseFile {
             match &mut texture.shape {
                 Shape::Mask(mask) => Some(named(&key, &mut mask.file, FileUse::Blocks)),
                 Shape::HeightMap(map) => Some(named(&key, &mut map.file, FileUse::HeightMap)),
+                Shape::Drawing(drawing) => Some(named(&key, &mut drawing.file, FileUse::Drawing)),
                 _ => None,
             }
         });
@@ -261,6 +262,8 @@ pub enum FileUse {
     Blocks,
     /// Measured heights, with any number of points.
     HeightMap,
+    /// Outlines in true size.
+    Drawing,
     /// Displacements and velocities of each block, four numbers.
     State,
 }

@@ -7,13 +7,7 @@ use super::error::CaseError;
 use super::key_table::{SECTIONS, TEXTURE, partners};
 use super::source::Source;
 use super::synonyms::advice_on;
-
-/// Largest length of a name that is compared with the known ones, in bytes.
-const MAX_NAME: usize = 100;
-
-/// Length in bytes of the shortest word that matches a longer name as a part of it, such as "stress" in
-/// "contact_stress_star".
-const MIN_PART: usize = 4;
+use crate::nearest::nearest;
 
 /// The names of the tables, in the order of the design.
 pub const TABLES: [&str; 8] = [
@@ -155,26 +149,5 @@ pub(super) fn unknown_shape(shape: Option<&str>) -> String {
         (Some(advice), _) => format!("unknown shape {shape:?}: {advice}. In full, {choice}"),
         (None, Some(near)) => format!("unknown shape {shape:?}: did you mean \"{near}\"? In full, {choice}"),
         (None, None) => format!("unknown shape {shape:?}: {choice}"),
-    }
-}
-
-/// The closest match for `word` among the `known` words.
-pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
-    // The time and memory for the distance grow with the length of the word, which may be as long as the
-    // file.
-    if word.len() > MAX_NAME {
-        return None;
-    }
-    let distances = known
-        .iter()
-        .map(|key| (strsim::damerau_levenshtein(word, key), *key));
-    let (distance, key) = distances.min()?;
-    let mut around = known
-        .iter()
-        .filter(|key| word.len() >= MIN_PART && key.contains(word));
-    match (around.next(), around.next()) {
-        _ if distance <= (key.len() / 3).max(1) => Some(key),
-        (Some(only), None) => Some(only),
-        _ => None,
     }
 }

@@ -2,10 +2,10 @@
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::CaseError;
-use super::keys::nearest;
+use crate::nearest::similar_file;
 
 /// Largest case file that is read, in MiB.
 const MAX_MIB: u64 = 16;
@@ -71,40 +71,4 @@ fn is_utf16(bytes: &[u8]) -> bool {
         bytes,
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [1..=127, 0, ..] | [0, 1..=127, ..]
     )
-}
-
-/// Largest number of entries of a folder that are searched for a similar name.
-const MAX_ENTRIES: usize = 10_000;
-
-/// The file that was probably meant by a missing path: a file with a similar name, or with the extension
-/// .toml, in the same folder, or otherwise in its folder `cases`, `cases/studies`, `cases/designs` or
-/// `cases/calibrations`.
-fn similar_file(path: &Path) -> Option<PathBuf> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let stem = path.file_name()?.to_str()?.trim_end_matches(".toml");
-    let within = [
-        "",
-        "cases",
-        "cases/studies",
-        "cases/designs",
-        "cases/calibrations",
-    ]
-    .map(|inner| folder.join(inner));
-    within.iter().find_map(|folder| {
-        let listed = if folder.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            folder
-        };
-        let entries = std::fs::read_dir(listed).ok()?.take(MAX_ENTRIES).flatten();
-        let mut stems: Vec<String> = entries
-            .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
-            .collect();
-        // The order of a folder is not sorted by name.
-        stems.sort();
-        let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
-        let near = folder.join(format!("{}.toml", nearest(stem, &stems)?));
-        // A dangling link is listed under its own name.
-        (near != path).then_some(near)
-    })
 }

@@ -46,7 +46,7 @@ pub use key::{Bounds, Key, KeyKind, StarUnit, Title, key, whole};
 pub(crate) use key_table::star_unit;
 pub use key_table::{SECTIONS, Section, names_a_file, title_of};
 pub use keys::{
-    STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, nearest, partners_of,
+    STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
 };
 pub use length_of_a_block::LengthOfABlock;

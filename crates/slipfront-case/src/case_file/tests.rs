@@ -17,6 +17,7 @@ fn the_table_has_the_keys_of_the_structs() {
         names_of::<Polygon>(),
         names_of::<Mask>(),
         names_of::<HeightMap>(),
+        names_of::<Drawing>(),
     ];
     for (section, own) in SECTIONS.iter().zip(read) {
         let listed: Vec<&str> = section.keys.iter().map(|key| key.name).collect();

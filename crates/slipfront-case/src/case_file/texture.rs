@@ -114,6 +114,7 @@ impl<'i> Tables<'_, 'i> {
             "groove" => Shape::Groove(self.read_keys(table, &header, Some(section))?),
             "polygon" => Shape::Polygon(self.read_keys(table, &header, Some(section))?),
             "height_map" => Shape::HeightMap(self.read_keys(table, &header, Some(section))?),
+            "drawing" => Shape::Drawing(self.read_keys(table, &header, Some(section))?),
             _ => Shape::Mask(self.read_keys(table, &header, Some(section))?),
         };
         let pattern = Spanned::new(span, DeValue::Table(pattern));

@@ -96,6 +96,15 @@ fn messages_say_what_to_write() {
         error::<kind::Pressure>("100 kpa"),
         "unknown unit `kpa` in \"100 kpa\": did you mean `kPa`?"
     );
+    // Of units that differ by capitals alone, the one with the usual size.
+    for (said, near) in [("2 mpa", "MPa"), ("0.5 MPA", "MPa"), ("210000 mpa", "MPa")] {
+        assert!(
+            error::<kind::Pressure>(said).ends_with(&format!("did you mean `{near}`?")),
+            "{said}"
+        );
+    }
+    assert!(error::<kind::Duration>("5 MS").ends_with("did you mean `ms`?"));
+    assert!(error::<kind::Force>("30 mn").ends_with("did you mean `mN`?"));
     assert!(error::<kind::Length>("3 parsec").contains("the units are m, g"));
     assert!(error::<kind::Length>("3 m^2").contains("is another quantity (m^2)"));
     assert!(error::<kind::Length>("3 m/m").contains("is another quantity (1)"));

@@ -25,7 +25,8 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
 
 /// Time of day in seconds.
 ///
-/// - From midnight: `10:04:31`, `10:04:31,250` or `1:04:31 PM`.
+/// - From midnight: `10:04:31`, `10:04:31,250` or `1:04:31 PM`; of Greenwich with a zone, `10:04:31+01:00`.
+/// - From the full hour: `04:31.250`, with decimals, since `04:31` may be hours and minutes.
 /// - From the first midnight of 2000, after a date: `2024-01-31T10:04:31` or `31.01.2024 10:04:31`.
 /// - From midnight too, after a date with slashes and the year last: it does not show which number is the
 ///   month.
@@ -40,6 +41,8 @@ pub fn number(field: &str, decimal: char) -> Option<f64> {
 pub fn clock_time(field: &str) -> Option<f64> {
     // Most fields are not times, and are rejected here at little cost.
     field.find(':')?;
+    let field = field.replace(['\u{a0}', '\u{202f}'], " ");
+    let field = field.as_str();
     let is_half = |half: &&str| ["AM", "PM"].iter().any(|known| half.eq_ignore_ascii_case(known));
     let (rest, half) = match field.rsplit_once(' ').filter(|(_, half)| is_half(half)) {
         Some((rest, half)) => (rest, Some(half)),
@@ -49,8 +52,13 @@ pub fn clock_time(field: &str) -> Option<f64> {
         Some((date, clock)) => (day(date)?, clock.trim()),
         None => (0, rest),
     };
-    let mut parts = clock.split(':');
-    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
+    let (clock, ahead) = without_zone(clock)?;
+    let parts: Vec<&str> = clock.split(':').collect();
+    let (hours, minutes, seconds) = match parts[..] {
+        [hours, minutes, seconds] => (hours, minutes, seconds),
+        [minutes, seconds] if seconds.contains(['.', ',']) => ("0", minutes, seconds),
+        _ => return None,
+    };
     let whole = |text: &str, most: u32| text.parse::<u32>().ok().filter(|number| *number <= most);
     let hours = match half {
         Some(half) => whole(hours, 12)? % 12 + 12 * u32::from(half.eq_ignore_ascii_case("PM")),
@@ -58,7 +66,29 @@ pub fn clock_time(field: &str) -> Option<f64> {
     };
     let seconds = number(&seconds.replace(',', "."), '.').filter(|seconds| (0.0..60.0).contains(seconds))?;
     let whole = 86_400.0 * date as f64 + 3600.0 * f64::from(hours) + 60.0 * f64::from(whole(minutes, 59)?);
-    parts.next().is_none().then_some(whole + seconds)
+    Some(whole + seconds - ahead)
+}
+
+/// A clock without its zone, and the seconds by which the zone is ahead of Greenwich: `Z`, `+01`, `+0100` or
+/// `+01:00`.
+fn without_zone(clock: &str) -> Option<(&str, f64)> {
+    if let Some(clock) = clock.strip_suffix('Z') {
+        return Some((clock, 0.0));
+    }
+    let Some(at) = clock.rfind(['+', '-']) else {
+        return Some((clock, 0.0));
+    };
+    let (clock, zone) = clock.split_at(at);
+    let (sign, digits) = zone.split_at(1);
+    let digits = digits.replacen(':', "", 1);
+    if !matches!(digits.len(), 2 | 4) || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let (hours, minutes) = digits.split_at(2);
+    let minutes = if minutes.is_empty() { "0" } else { minutes };
+    let [hours, minutes]: [u32; 2] = [hours.parse().ok()?, minutes.parse().ok()?];
+    let ahead = f64::from(3600 * hours + 60 * minutes);
+    (hours <= 14 && minutes < 60).then_some((clock, if sign == "-" { -ahead } else { ahead }))
 }
 
 /// Days from 2000-01-01 to a date in the Gregorian calendar.
@@ -130,6 +160,17 @@ mod tests {
     #[test_case("1/2/2024 00:00:03", Some(3.0); "month not known")]
     #[test_case("2024-13-01 00:00:00", None; "no month")]
     #[test_case("Probe 00:00:00", None; "no date")]
+    #[test_case("2000-01-01T01:00:02.5+01:00", Some(2.5); "zone")]
+    #[test_case("2000-01-01T00:00:02Z", Some(2.0); "Greenwich")]
+    #[test_case("1999-12-31 19:00:02-0500", Some(2.0); "behind")]
+    #[test_case("00:00:02+24:00", None; "no zone")]
+    #[test_case("00:00:02+1", None; "half a zone")]
+    #[test_case("2000-01-01\u{a0}00:00:03", Some(3.0); "no-break space")]
+    #[test_case("12:00:01\u{202f}AM", Some(1.0); "narrow no-break space")]
+    #[test_case("04:31.250", Some(271.25); "minutes and seconds")]
+    #[test_case("04:31,2", Some(271.2); "minutes and seconds with a comma")]
+    #[test_case("04:31", None; "hours or minutes")]
+    #[test_case("04:61.0", None; "no seconds")]
     fn times_of_the_day(field: &str, seconds: Option<f64>) {
         assert_eq!(clock_time(field), seconds);
     }

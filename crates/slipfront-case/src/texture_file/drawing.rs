@@ -5,6 +5,7 @@ use slipfront::surface::{
 };
 
 use super::error::TextureFileError;
+use super::even_odd::textures;
 use crate::case::Case;
 use crate::case_file::Outline;
 
@@ -26,24 +27,35 @@ pub struct OutlineDrawing {
     pub notes: Vec<String>,
 }
 
-/// Outlines that are filled together.
+/// Outlines whose inside the even-odd rule defines, as in programs for lasers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Name of the layer: that of its texture, counted from 1.
     pub name: String,
-    /// Fill rule of the outlines.
-    pub fill: Fill,
+    /// Number of its colour.
+    pub color: usize,
+    /// Whether some of the outlines may be holes of others.
+    pub nests: bool,
     /// Outlines of the layer.
     pub contours: Vec<Contour>,
 }
 
-/// Fill rule of outlines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
-    /// The points inside any of the outlines.
-    Each,
-    /// The points inside an odd number of the outlines.
-    EvenOdd,
+/// Colours of layers, each as it is written in SVG and in DXF: those that programs for lasers tell apart.
+const COLORS: [(&str, u16); 7] = [
+    ("#ff0000", 1),
+    ("#0000ff", 5),
+    ("#00ff00", 3),
+    ("#ff00ff", 6),
+    ("#00ffff", 4),
+    ("#ff7f00", 30),
+    ("#ffff00", 2),
+];
+
+impl Layer {
+    /// Colour of the layer in SVG and in DXF.
+    pub(super) fn color(&self) -> (&'static str, u16) {
+        COLORS[self.color % COLORS.len()]
+    }
 }
 
 impl OutlineDrawing {
@@ -58,53 +70,60 @@ impl OutlineDrawing {
             layers: Vec::new(),
             notes: Vec::new(),
         };
-        let textures = case.textures_in_blocks()?;
+        let textures = textures(case)?;
         let corners = textures.iter().map(corners).sum();
         if corners > MAX_CORNERS {
             let most = MAX_CORNERS;
             return Err(TextureFileError::TooManyCorners { corners, most });
         }
-        for (texture, number) in textures.iter().zip(1..) {
-            let name = format!("TEXTURE_{number}");
+        for (color, texture) in textures.iter().enumerate() {
+            let number = color + 1;
             let parts = |shape: &Contour| clip(shape, &drawing.slider);
             let shapes: Option<Vec<Vec<Contour>>> =
                 contours(lattice, texture).map(|shapes| shapes.iter().map(parts).collect());
-            // Parts of one shape may enclose each other, if it crosses itself or the slider has holes.
-            let may_nest = matches!(texture.shape, Shape::Polygon(_)) || drawing.slider.len() > 1;
-            let nests = may_nest && shapes.iter().flatten().any(|parts| parts.len() > 1);
-            let is_even_odd = texture.inverted || nests;
-            let overlaps = is_even_odd && copies_overlap(lattice, texture);
-            match shapes.filter(|_| !overlaps) {
-                Some(shapes) if !is_even_odd => drawing.add(name, Fill::Each, shapes.concat()),
+            let overlaps = shapes.is_some() && copies_overlap(lattice, texture);
+            let is_drawing = matches!(texture.shape, Shape::Drawing(_));
+            let (contours, nests) = match shapes.filter(|_| !overlaps) {
                 Some(mut shapes) => {
+                    // Parts of one shape may enclose each other, if it crosses itself or the slider has
+                    // holes.
+                    let may_nest = matches!(texture.shape, Shape::Polygon(_)) || drawing.slider.len() > 1;
+                    let nests = may_nest && shapes.iter().any(|parts| parts.len() > 1);
                     if texture.inverted {
                         shapes.push(drawing.slider.clone());
                     }
-                    drawing.add(name, Fill::EvenOdd, shapes.concat());
+                    (shapes.concat(), nests || texture.inverted || is_drawing)
                 }
                 None => {
                     let blocks = mesh(lattice, std::slice::from_ref(texture)).textured;
                     let edges = block_edges(&blocks, size);
-                    drawing.add(name, Fill::EvenOdd, edges.iter().flat_map(parts).collect());
-                    if overlaps {
+                    if overlaps || is_drawing {
+                        let why = if overlaps { "copies" } else { "parts" };
                         drawing.notes.push(format!(
-                            "the outlines of texture {number} are the edges of blocks, since its copies overlap and are filled together"
+                            "the outlines of texture {number} are the edges of blocks, since its {why} may overlap, and lasers leave \
+                             out what lies in two outlines"
                         ));
                     }
+                    (edges.iter().flat_map(parts).collect(), true)
                 }
+            };
+            if !contours.is_empty() {
+                let name = format!("TEXTURE_{number}");
+                drawing.layers.push(Layer {
+                    name,
+                    color,
+                    nests,
+                    contours,
+                });
             }
         }
-        Ok(drawing)
-    }
-
-    fn add(&mut self, name: String, fill: Fill, contours: Vec<Contour>) {
-        let name = match fill {
-            Fill::Each => name,
-            Fill::EvenOdd => name + "_EVEN_ODD",
-        };
-        if !contours.is_empty() {
-            self.layers.push(Layer { name, fill, contours });
+        if drawing.layers.len() > COLORS.len() {
+            drawing.notes.push(format!(
+                "the colours of layers repeat after {} textures: choose layers by name",
+                COLORS.len()
+            ));
         }
+        Ok(drawing)
     }
 }
 

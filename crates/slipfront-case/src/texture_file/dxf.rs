@@ -1,5 +1,5 @@
-//! Outlines as DXF of AutoCAD 2000, the oldest version with ellipses, in millimetres: one layer per texture,
-//! and one for the slider.
+//! Outlines as DXF of AutoCAD 2000, the oldest version with ellipses, in millimetres: a layer of its own
+//! colour for each texture, and one for the slider.
 
 use std::f64::consts::TAU;
 use std::fmt::Display;
@@ -7,6 +7,7 @@ use std::fmt::Display;
 use slipfront::surface::{Contour, Piece};
 
 use super::drawing::OutlineDrawing;
+use crate::arrays::SLIDER_LAYER;
 
 /// Handles of the parts of every drawing; entities and layers have handles from [`FIRST_FREE`] up.
 const MODEL_SPACE: u64 = 0x1f;
@@ -17,13 +18,17 @@ const SPACES: [(&str, u64); 2] = [("*Model_Space", MODEL_SPACE), ("*Paper_Space"
 
 /// The drawing as the text of a file.
 pub(super) fn text(drawing: &OutlineDrawing) -> String {
-    let layers: Vec<&str> = drawing.layers.iter().map(|layer| layer.name.as_str()).collect();
+    let layers: Vec<(&str, u16)> = drawing
+        .layers
+        .iter()
+        .map(|layer| (layer.name.as_str(), layer.color().1))
+        .collect();
     let mut entities = File::new();
     let outlines = drawing
         .layers
         .iter()
         .map(|layer| (layer.name.as_str(), &layer.contours));
-    for (layer, contours) in std::iter::once(("SLIDER", &drawing.slider)).chain(outlines) {
+    for (layer, contours) in std::iter::once((SLIDER_LAYER, &drawing.slider)).chain(outlines) {
         for contour in contours {
             entities.contour(layer, contour, drawing.block);
         }
@@ -172,7 +177,7 @@ impl File {
     }
 
     /// The required tables of a drawing, and its layers.
-    fn tables(&mut self, layers: &[&str]) {
+    fn tables(&mut self, layers: &[(&str, u16)]) {
         self.section("TABLES");
         self.table("VPORT", "8", &[]);
         let line_types = ["ByBlock", "ByLayer", "Continuous"];
@@ -182,9 +187,16 @@ impl File {
             "5",
             &line_types.map(|name| ("AcDbLinetypeTableRecord", name, solid)),
         );
-        let layer: &[GroupPair] = &[(70, &0), (62, &7), (6, &"Continuous")];
-        let names = ["0", "SLIDER"].into_iter().chain(layers.iter().copied());
-        let records: Vec<TableRecord> = names.map(|name| ("AcDbLayerTableRecord", name, layer)).collect();
+        // 7 is black on white, and white on black.
+        let layers = [&[("0", 7), (SLIDER_LAYER, 7)], layers].concat();
+        let pairs: Vec<[GroupPair; 3]> = layers
+            .iter()
+            .map(|(_, color)| -> [GroupPair; 3] { [(70, &0), (62, color), (6, &"Continuous")] })
+            .collect();
+        let records = layers.iter().zip(&pairs);
+        let records: Vec<TableRecord> = records
+            .map(|((name, _), pairs)| ("AcDbLayerTableRecord", *name, &pairs[..]))
+            .collect();
         self.table("LAYER", "2", &records);
         let style: &[GroupPair] = &[
             (70, &0),

@@ -12,14 +12,23 @@ pub(super) const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum TextureFileError {
     #[error(
-        "cannot determine the format of `{path}`; use the extension .svg or .dxf for outlines, .png for a picture, or .gsf for \
-         a height field"
+        "cannot determine the format of `{path}`; use the extension .svg or .dxf for outlines, .png for a picture, .gsf for \
+         a height field, or .stl for a solid"
     )]
     Extension { path: String },
     #[error(
         "`--scale` applies to pictures only, and `{path}` is not a picture: outlines and height fields have their true size"
     )]
     Scale { path: String },
+    #[error(
+        "a solid is a .stl with a depth of its texture, and only it has one: write `--depth \"20 um\" -o face.stl`, or leave \
+         `--depth` out for `{path}`"
+    )]
+    Depth { path: String },
+    #[error(
+        "the solid would have more than {most} triangles: use fewer blocks, or write a .svg or .gsf instead"
+    )]
+    TooManyTriangles { most: usize },
     #[error(
         "the picture would have {width} x {height} pixels; at most {} along a side and {} in total can be read again: reduce `--scale`",
         MAX_PIXELS[0],

@@ -1,14 +1,16 @@
 //! The texture of a case as a file for other programs, in true size: as outlines for a laser or a drawing
-//! program (SVG and DXF), or as blocks in a picture or a height field (PNG and GSF).
+//! program (SVG and DXF), or as blocks in a picture, a height field or a solid (PNG, GSF and STL).
 
 mod drawing;
 mod dxf;
 mod error;
+mod even_odd;
 mod gsf;
+mod stl;
 mod svg;
 mod textured_blocks;
 
-pub use self::drawing::{Fill, Layer, OutlineDrawing};
+pub use self::drawing::{Layer, OutlineDrawing};
 use self::error::MAX_PIXELS;
 pub use self::error::TextureFileError;
 pub use self::textured_blocks::textured_blocks;
@@ -23,17 +25,25 @@ use slipfront_base::disk::write_atomic;
 
 /// The smallest feature and the smallest gap of the texture, in blocks.
 pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
-    Ok(clearance(&case.model.lattice, &case.textures_in_blocks()?))
+    Ok(clearance(&case.model.lattice, &even_odd::textures(case)?))
 }
 
-/// Writes the texture of a case to `path`, in the format of its extension. `scale` is the number of pixels
-/// per block along a side of a picture, by default one. Returns notes about the file.
+/// Options of the file of a texture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Number of pixels per block along a side of a picture, by default one.
+    pub scale: Option<usize>,
+    /// Depth of the texture of a solid, m.
+    pub depth: Option<f64>,
+}
+
+/// Writes the texture of a case to `path`, in the format of its extension. Returns notes about the file.
 ///
 /// # Errors
 /// [`TextureFileError`] if the extension names no format, or if the file would be too large or cannot be
 /// written.
-pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<String>, TextureFileError> {
-    let (bytes, notes) = contents(case, path, scale)?;
+pub fn write(case: &Case, path: &Path, options: Options) -> Result<Vec<String>, TextureFileError> {
+    let (bytes, notes) = contents(case, path, options)?;
     write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
         path: path.to_owned(),
         source,
@@ -48,12 +58,15 @@ pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<Strin
 pub fn contents(
     case: &Case,
     path: &Path,
-    scale: Option<usize>,
+    Options { scale, depth }: Options,
 ) -> Result<(Vec<u8>, Vec<String>), TextureFileError> {
     let name = || path.display().to_string();
     let ending = extension(path);
     if ending != "png" && scale.is_some() {
         return Err(TextureFileError::Scale { path: name() });
+    }
+    if (ending == "stl") != depth.is_some() {
+        return Err(TextureFileError::Depth { path: name() });
     }
     let (nx, ny) = (case.model.lattice.nx, case.model.lattice.ny);
     Ok(match ending.as_str() {
@@ -74,6 +87,7 @@ pub fn contents(
             (bytes.map_err(failed)?, Vec::new())
         }
         "gsf" => (gsf::field(case), Vec::new()),
+        "stl" => (stl::solid(case, depth.unwrap_or_default())?, Vec::new()),
         "svg" | "dxf" => {
             let drawing = OutlineDrawing::of(case)?;
             let text = if ending == "svg" {

@@ -1,11 +1,12 @@
-//! Outlines as SVG, with millimetres as user units and y downwards: one group per texture, and the edge of
-//! the slider.
+//! Outlines as SVG, with millimetres as user units and y downwards: a layer of its own colour for
+//! each texture, and one for the edge of the slider.
 
 use std::fmt::Write;
 
 use slipfront::surface::{Contour, Ellipse, Piece};
 
-use super::drawing::{Fill, OutlineDrawing};
+use super::drawing::OutlineDrawing;
+use crate::arrays::SLIDER_LAYER;
 
 /// Line width of the slider's edge relative to a block edge; a program that cuts follows the centre line.
 const EDGE_WIDTH: f64 = 0.05;
@@ -14,30 +15,41 @@ const EDGE_WIDTH: f64 = 0.05;
 pub(super) fn text(drawing: &OutlineDrawing) -> String {
     let [width, height] = drawing.size.map(|blocks| blocks as f64 * drawing.block);
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n"
     );
-    for layer in &drawing.layers {
-        let name = &layer.name;
-        svg += &format!("<g id=\"{name}\" fill=\"black\" fill-rule=\"evenodd\">\n");
-        svg += &elements(drawing, layer.fill, &layer.contours);
-        svg += "</g>\n";
-    }
     let stroke = EDGE_WIDTH * drawing.block;
-    svg += &format!("<g id=\"SLIDER\" fill=\"none\" stroke=\"black\" stroke-width=\"{stroke}\">\n");
-    svg += &elements(drawing, Fill::Each, &drawing.slider);
-    svg + "</g>\n</svg>\n"
+    let mut group = |name: &str, fill: &str, line: &str, elements: &str| {
+        svg += &format!(
+            "<g id=\"{name}\" inkscape:groupmode=\"layer\" inkscape:label=\"{name}\" fill=\"{fill}\" fill-rule=\"evenodd\" \
+             stroke=\"{line}\" stroke-width=\"{stroke}\">\n{elements}</g>\n"
+        );
+    };
+    for layer in &drawing.layers {
+        let (color, _) = layer.color();
+        group(
+            &layer.name,
+            color,
+            color,
+            &elements(drawing, layer.nests, &layer.contours),
+        );
+    }
+    group(
+        SLIDER_LAYER,
+        "none",
+        "#000000",
+        &elements(drawing, false, &drawing.slider),
+    );
+    svg + "</svg>\n"
 }
 
-fn elements(drawing: &OutlineDrawing, fill: Fill, contours: &[Contour]) -> String {
+fn elements(drawing: &OutlineDrawing, nests: bool, contours: &[Contour]) -> String {
     let page = SvgPage(drawing);
-    match fill {
-        // Holes need a single path for all outlines.
-        Fill::EvenOdd => {
-            let path: Vec<String> = contours.iter().map(|contour| page.path(contour)).collect();
-            format!("<path d=\"{}\"/>\n", path.join(" "))
-        }
-        Fill::Each => contours.iter().map(|contour| page.element(contour)).collect(),
+    if !nests {
+        return contours.iter().map(|contour| page.element(contour)).collect();
     }
+    // Holes need a single path for all outlines.
+    let path: Vec<String> = contours.iter().map(|contour| page.path(contour)).collect();
+    format!("<path d=\"{}\"/>\n", path.join(" "))
 }
 
 /// The page of a drawing.

@@ -265,6 +265,117 @@ fn runs_last_longer_where_few_blocks_touch() {
     }
 }
 
+/// A block with a multiple of the mean pressure slips long after the others, and a dead load against the
+/// drive delays every block by the path on which its drive spring takes it up: the run follows both, and so
+/// does the expected onset.
+#[test]
+fn runs_last_until_the_block_with_the_largest_load_slips() {
+    let folder = tempfile::tempdir().unwrap();
+    // A mean pressure of 1: half of the blocks bear 20 times the load of the others.
+    let row = [2.0 / 21.0, 40.0 / 21.0]
+        .map(|pressure| pressure.to_string())
+        .join(",");
+    std::fs::write(folder.path().join("half.csv"), format!("{row}\n").repeat(2)).unwrap();
+    let one = [[4.0 / 23.0; 3], [4.0 / 23.0, 80.0 / 23.0, 4.0 / 23.0]];
+    let one: Vec<String> = one
+        .iter()
+        .map(|row| row.map(|pressure| pressure.to_string()).join(","))
+        .collect();
+    std::fs::write(folder.path().join("one.csv"), one.join("\n")).unwrap();
+    let found = |text: &str| {
+        let case = Case::parse(&format!("drive.v_star = 0.1\n{text}"), "case", folder.path(), &[]).unwrap();
+        (case.time_plan.end_star(), case.expected.onset_star[1])
+    };
+    // Rounded up to a whole step.
+    let close = |found: f64, expected: f64| (0.0..0.1 + 1e-9).contains(&(found - expected));
+    for (text, largest) in [
+        ("slider.blocks = [2, 2]", 1.0),
+        (
+            "slider.blocks = [2, 2]\nload.pressure_field = 'half.csv'",
+            40.0 / 21.0,
+        ),
+        (
+            "slider.blocks = [3, 2]\nload.pressure_field = 'one.csv'",
+            80.0 / 23.0,
+        ),
+    ] {
+        let (end, onset) = found(text);
+        // 3/8 is the stiffness of a drive spring.
+        assert!(
+            close(end, f64::max(8.0, largest / 0.375 + 2.5) / 0.1),
+            "{text}: {end}"
+        );
+        assert!(
+            (onset / (2.5 * largest / 0.1) - 1.0).abs() < 1e-12,
+            "{text}: {onset}"
+        );
+    }
+    let plain = "slider.blocks = [2, 2]\nload.shear_star = ";
+    for (shear, later) in [(-0.3, 0.3 / 0.375 / 0.1), (0.3, 0.0)] {
+        let (end, _) = found(&format!("{plain}{shear}"));
+        assert!(close(end, 80.0 + later), "{shear}: {end}");
+    }
+}
+
+/// A run of too many steps is refused with a speed that suffices, as far as a speed can.
+#[test]
+fn too_slow_a_drive_is_refused_with_one_that_does() {
+    let parse = |keys: &str| Case::parse(&format!("slider.blocks = [4, 4]\n{keys}"), "case", "", &[]);
+    let said = |keys: &str| parse(keys).unwrap_err().to_string();
+    let slow = said("drive = { v_star = 1e-8, stiffness_star = 0.01 }");
+    // 8/V* at 0.01/0.375 of the paper's stiffness, in steps of 0.1: 75 times too many.
+    assert!(
+        slow.contains("75 times stiffer would do, or `drive.v_star` = 7.500e-7"),
+        "{slow}"
+    );
+    assert!(parse("drive = { v_star = 7.5e-7, stiffness_star = 0.01 }").is_ok());
+    assert!(parse("drive = { v_star = 1e-8, stiffness_star = 0.75 }").is_ok());
+    let soft = said("drive = { v_star = 9, stiffness_star = 1e-12 }");
+    assert!(
+        soft.contains("times stiffer") && !soft.contains("drive.v_star"),
+        "{soft}"
+    );
+    let long = said("time = { duration_star = 1e9, step = 1e-4 }");
+    assert!(long.contains("reduce its duration by a factor of 2500"), "{long}");
+}
+
+/// Speeds of a program that no step has are named.
+#[test]
+fn speeds_after_the_end_of_the_run_have_a_note() {
+    let note = |duration: &str| {
+        let text = format!(
+            "slider.blocks = [30, 30]\ntime.duration_star = {duration}\ndrive.program = [{{ v_star = 0.03, until_star = 110 }}, \
+             {{ v_star = -0.03, until_star = 330 }}, {{ v_star = 0.03 }}]"
+        );
+        let warnings = Case::parse(&text, "case", "", &[]).unwrap().warnings();
+        warnings
+            .into_iter()
+            .find(|warning| warning.contains("drive.program"))
+    };
+    let said = note("60").unwrap();
+    assert!(
+        said.contains("the last 2 speeds of `drive.program` begin, the first at t* = 110"),
+        "{said}"
+    );
+    let said = note("330").unwrap();
+    assert!(
+        said.contains("the last 1 speed of `drive.program` begins, the first at t* = 330"),
+        "{said}"
+    );
+    assert_eq!(note("340"), None);
+}
+
+/// A pressure in millipascals is read as it is written, with a note on the unit that was probably meant.
+#[test]
+fn a_pressure_below_a_pascal_has_a_note() {
+    let notes = |pressure: &str| {
+        let text = format!("slider.blocks = [30, 30]\nload.pressure = '{pressure}'");
+        Case::parse(&text, "case", "", &[]).unwrap().warnings().join("\n")
+    };
+    assert!(notes("2 mPa").contains("`load.pressure` is \"2 mPa\", less than 1 Pa"));
+    assert!(!notes("2 MPa").contains("less than 1 Pa"));
+}
+
 /// Times are compared with the end of the run, which the drive springs of the slider determine: later than
 /// 8/V* for a soft slider, earlier for a stiff one. The moduli are known only when a file is read.
 #[test]

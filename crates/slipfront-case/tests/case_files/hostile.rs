@@ -1,6 +1,7 @@
 use std::fs;
 use std::path::Path;
 
+use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile};
 
 fn refused(text: &str, overrides: &[&str]) -> String {
@@ -132,4 +133,15 @@ fn a_misspelt_file_is_named() {
         };
         assert!(said.starts_with(&expected), "{said}");
     }
+    // Files of a case, too: with their own extension.
+    fs::write(folder.path().join("mask.png"), "").unwrap();
+    let text = "slider.blocks = [5, 5]\ntexture = [{ shape = 'mask', file = 'maskk.png' }]";
+    let said = Case::parse(text, "case", folder.path(), &[])
+        .unwrap_err()
+        .to_string();
+    let expected = format!(
+        "there is no such file (did you mean {}?)",
+        folder.path().join("mask.png").display()
+    );
+    assert!(said.contains(&expected), "{said}");
 }

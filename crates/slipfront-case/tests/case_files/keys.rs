@@ -10,6 +10,7 @@ fn base(section: &Section) -> (String, String) {
     let needed = match section.name {
         "cavity" | "groove" => "coverage = 10",
         "mask" => "file = 'mask.png'",
+        "drawing" => "file = 'cavity.svg'",
         "height_map" => "file = 'map.gsf'\nbearing_percent = 50",
         _ => "points = [['0 um', '0 um'], ['1 um', '0 um'], ['0 um', '1 um']]",
     };

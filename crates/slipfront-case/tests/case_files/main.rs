@@ -10,6 +10,7 @@ mod reference_page;
 mod bad;
 mod bulk;
 mod coarse;
+mod drawings;
 mod few_blocks;
 mod good;
 mod heights;

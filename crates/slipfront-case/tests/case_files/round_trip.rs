@@ -7,10 +7,10 @@ use slipfront::{Edges, Face, StopReason, next_side};
 use slipfront_case::case_file::{
     AfterBreak, Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr,
     AutoOrStiffness, Bearing, Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping,
-    Drive, DriveSpeed, DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap, Initial,
-    KineticFriction, Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output, Pattern, Pitch,
-    Polygon, Profile, Redistribute, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots, Source,
-    SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    Drawing, Drive, DriveSpeed, DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap,
+    Initial, KineticFriction, Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output,
+    Pattern, Pitch, Polygon, Profile, Redistribute, RunTime, Shape, Slider,
+    SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -470,7 +470,8 @@ fn texture() -> impl Strategy<Value = Texture> {
         .prop_map(|points| Shape::Polygon(Polygon { points }));
     let mask = (file(&["png", "npy"]), 0.01..0.99)
         .prop_map(|(file, threshold)| Shape::Mask(Mask { file, threshold }));
-    let shape = prop_oneof![cavity(), groove, polygon, mask, height_map()];
+    let drawing = file(&["svg", "dxf"]).prop_map(|file| Shape::Drawing(Drawing { file }));
+    let shape = prop_oneof![cavity(), groove, polygon, mask, height_map(), drawing];
     let parts = (shape, array(), prop::option::of(array()), any::<bool>());
     parts.prop_filter_map(
         "repeat needs a count or a pitch",

@@ -8,6 +8,7 @@ use slipfront_study::StudyError;
 
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
 use crate::progress::calibrate::CalibrateProgress;
@@ -22,7 +23,7 @@ use crate::threads::{count_from_one, set_threads};
 #[command(after_help = "Examples:
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv
   slipfront calibrate cases/calibrations/sliding.toml cases/calibrations/sliding.csv --training results/training -o results/first
-  slipfront calibrate cases/calibrations/single_block.toml --dry-run --until \"20 s\"
+  slipfront calibrate cases/calibrations/paper.toml --dry-run --until \"2 s\"
 
 If the command is stopped in any way, the same command resumes it. The folder contains the intervals, a picture of each record with
 the calibrated model, and a case with the medians.")]
@@ -49,9 +50,8 @@ pub(crate) struct CalibrateCommand {
     /// Folder for training runs, which calibrations of other records can share [default: the results folder]
     #[arg(long, value_name = "DIR")]
     training: Option<PathBuf>,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -81,7 +81,7 @@ impl CalibrateCommand {
         let notes: Vec<String> = records.iter().flat_map(SampledRecord::notes).collect();
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = CalibrationFolder::open(&out, training, &file, records, self.force);
+        let folder = CalibrationFolder::open(&out, training, &file, records, self.force.given);
         let mut folder = folder.map_err(Failure::of_folder)?;
         if !self.quiet && !self.json {
             print_notes(notes);

@@ -12,6 +12,7 @@ use crate::bounds::within;
 use crate::case_args::CaseArgs;
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print::{print, print_message};
 use crate::ranks::CommandRanks;
 use crate::report::text_of;
@@ -42,9 +43,8 @@ pub(crate) struct ConvergeCommand {
     /// Random surfaces per mesh [default: 5 if coefficients are random, else 1]
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     replicates: Option<u16>,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -94,7 +94,7 @@ impl ConvergeCommand {
         limits.check(&plan, threads).map_err(Failure::input)?;
         let device = self.device.open(None, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let folder = StudyFolder::open(&out, &file, None, self.force.given).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;

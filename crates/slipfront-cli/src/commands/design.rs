@@ -10,6 +10,7 @@ use slipfront_study::StudyError;
 
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print::{print, print_file, print_message};
 use crate::print_stderr::print_notes;
 use crate::progress::design::DesignProgress;
@@ -43,9 +44,8 @@ pub(crate) struct DesignCommand {
     /// machine
     #[arg(long, value_name = "TIME")]
     time: Option<SignedDuration>,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -80,7 +80,7 @@ impl DesignCommand {
         let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = DesignFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let folder = DesignFolder::open(&out, &file, self.force.given).map_err(Failure::of_folder)?;
         let mut folder = folder.on_device(device);
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
@@ -116,7 +116,7 @@ impl DesignCommand {
                 let sentence = format!("stopped by a signal: {so_far}the same command resumes from there");
                 Failure::stopped(&signals, anyhow::anyhow!(sentence))
             }
-            StudyError::NoDesign => Failure::input(error),
+            StudyError::NoDesign { .. } => Failure::input(error),
             error => Failure::of_results(&signals, error),
         })?;
         if self.json {

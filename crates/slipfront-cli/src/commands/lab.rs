@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use clap::Args;
 use slipfront_base::text::display_path;
-use slipfront_lab::{Laboratory, Patience, ServerOptions, Start, export_folder, export_single, find_module};
+use slipfront_lab::{
+    ExportError, Laboratory, Patience, ServerOptions, Start, export_folder, export_single, find_module,
+};
 
 use super::licences::NOTICES;
 use crate::browser;
@@ -140,15 +142,19 @@ impl LabCommand {
     fn export(&self, start: &Start, module_folder: Option<&Path>) -> Result<(), Failure> {
         let folders = module_folder.map_or_else(places_of_module, |folder| vec![folder.to_owned()]);
         let module = find_module(&folders).map_err(Failure::input)?;
+        let failed = |error| match error {
+            ExportError::Write { .. } => Failure::running(error),
+            error => Failure::input(error),
+        };
         if let Some(out) = &self.export {
-            export_folder(start, &module, NOTICES, out).map_err(Failure::input)?;
+            export_folder(start, &module, NOTICES, out).map_err(failed)?;
             print_message(&format!(
                 "The laboratory is written to {}: serve the folder with a web server, such as `python3 -m http.server`.\n",
                 display_path(out)
             ));
         }
         if let Some(out) = &self.single {
-            export_single(start, &module, NOTICES, out).map_err(Failure::input)?;
+            export_single(start, &module, NOTICES, out).map_err(failed)?;
             print_message(&format!(
                 "The laboratory is written to {}: open it in a browser.\n",
                 display_path(out)

@@ -10,6 +10,7 @@ use slipfront_study::project_folder::ResultFiles;
 use slipfront_study::{RunJournal, is_study};
 
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print::print_message;
 use crate::progress::paper::PaperProgress;
 use crate::signals::Signals;
@@ -31,9 +32,8 @@ pub(crate) struct PaperCommand {
     /// Folder for the results; figures that an earlier call finished there are not run again
     #[arg(short, long, value_name = "DIR", default_value = "results/paper")]
     out: PathBuf,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -56,7 +56,7 @@ impl PaperCommand {
             refuse_foreign(docs)?;
         }
         let records = open(&self.out)?;
-        let files = ResultFiles::new(&self.out, "paper", self.force);
+        let files = ResultFiles::new(&self.out, "paper", self.force.given);
         files.expect_unedited().map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let options = PaperOptions {
@@ -77,7 +77,8 @@ impl PaperCommand {
                 Failure::running(error)
             }
         })?;
-        slipfront_paper::write(&paper, &files).map_err(|error| match error {
+        let sources = slipfront_paper::sources(&self.out, &records).map_err(Failure::running)?;
+        slipfront_paper::write(&paper, &files, sources).map_err(|error| match error {
             PaperError::Study(error) => Failure::of_results(&signals, error),
             error => Failure::running(error),
         })?;

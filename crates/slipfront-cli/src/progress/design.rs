@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use slipfront_base::number_format::four_digits;
+use slipfront_base::number_format::{count, four_digits};
 use slipfront_design::{DesignStage, SearchProgress};
 
 use super::display::{ProgressDisplay, duration_left};
@@ -45,7 +45,16 @@ fn text(now: &SearchProgress, passed: Duration) -> String {
     } else {
         String::new()
     };
-    format!("{} of {} runs{left}  {stage}{best}", now.runs.min(now.of), now.of)
+    let rejected = if now.rejected == 0 {
+        String::new()
+    } else {
+        format!("  {} rejected", count(now.rejected, "draft"))
+    };
+    format!(
+        "{} of {} runs{left}  {stage}{best}{rejected}",
+        now.runs.min(now.of),
+        now.of
+    )
 }
 
 #[cfg(test)]
@@ -61,6 +70,7 @@ mod tests {
             runs: 50,
             of: 100,
             textures: 20,
+            rejected: 0,
             stage: DesignStage::Exploring,
             best: 31.25,
             best_texture: None,
@@ -71,6 +81,11 @@ mod tests {
             text(&now(1e8), Duration::from_secs(4)),
             "50 of 100 runs  at most 40 seconds left  one surface  best 31.25"
         );
+        let rejected = SearchProgress {
+            rejected: 7,
+            ..now(0.0)
+        };
+        assert!(text(&rejected, Duration::ZERO).ends_with("best 31.25  7 drafts rejected"));
         // All runs were made by an earlier call.
         assert_eq!(
             text(&now(0.0), Duration::from_secs(4)),

@@ -76,8 +76,11 @@ fn onset(case: &Case) -> String {
     }
     let [from, to] = expected.onset_star;
     text += &if from < to {
-        let factor = case.model.surface.load_factor();
-        let load = if factor > 1.0 {
+        let surface = &case.model.surface;
+        let factor = surface.largest_load();
+        let load = if factor > surface.load_factor() {
+            format!("carry up to {} times the mean load", four_digits(factor))
+        } else if factor > 1.0 {
             format!("each carry {} times the load", four_digits(factor))
         } else {
             "are also pulled by the others".to_owned()

@@ -89,7 +89,7 @@ fn verify_holds_what_meshes_found_against_the_records() {
         workspace.write(&path, digit);
         is_told(name, "differs: other bytes were written");
         list_as_written(&workspace, "meshes", name);
-        is_told(name, "differs: other bytes follow from the records");
+        is_told(name, "differs: other bytes follow from its runs");
         workspace.write(&path, workspace.read_text(&format!("other/{name}")));
         is_told(name, "differs: ");
         workspace.remove(&path);

@@ -108,6 +108,32 @@ fn studies_and_runs_are_one_crate() {
         let said = workspace.succeed(&format!("verify both/{folder}"));
         assert!(!said.contains("note:"), "{said}");
     }
+    let said = workspace.succeed("verify both");
+    assert!(said.contains("both: a crate of 2 folders, unchanged"), "{said}");
+    workspace.succeed("run small.toml -o other --quiet --set drive.v_star=0.2");
+    let whole = workspace.files("both");
+    for (damage, sentence) in [
+        (
+            "rm -r both/run && cp -r other both/run",
+            "both/run has other results than both/ro-crate-metadata.json describes",
+        ),
+        ("rm -r both/first", "both/first is missing"),
+        ("echo > both/first/points.csv", "both/first/points.csv differs"),
+        (
+            "echo >> both/run/manifest.json",
+            "both/run/manifest.json is damaged",
+        ),
+        (
+            "echo > both/ro-crate-metadata.json",
+            "both/ro-crate-metadata.json is damaged",
+        ),
+    ] {
+        assert!(workspace.shell(damage).status.success());
+        let (status, said, _) = verified(&workspace, "both");
+        assert!(status == 1 && said.contains(sentence), "{said}");
+        workspace.remove("both");
+        workspace.fill("both", &whole);
+    }
     let study = described.of_type("CreateAction")[0]["description"]
         .as_str()
         .unwrap();

@@ -29,12 +29,17 @@ pub(crate) const RUN_FILES: [&str; 12] = [
     "summary.json",
 ];
 
-/// Updates the checksum of a file in a results folder to its present contents, as a forger would.
+/// Updates the checksum of a file in a results folder to its present contents, as a forger would. The journal
+/// is not listed, as in lists of earlier versions.
 pub(crate) fn list_as_written(workspace: &Workspace, folder: &str, name: &str) {
     let bytes = workspace.read(&format!("{folder}/{name}"));
-    let mut batch = ResultFiles::new(&workspace.path(folder), "study", true).begin();
+    let list = workspace.read_text(&format!("{folder}/checksums.json"));
+    let of = ["study", "design", "calibration", "paper"]
+        .into_iter()
+        .find(|of| list.contains(&format!("\"of\": \"{of}\"")));
+    let mut batch = ResultFiles::new(&workspace.path(folder), of.unwrap(), true).begin();
     batch.write(name, |to| to.write_all(&bytes)).unwrap();
-    batch.place(Others::Stay).unwrap();
+    batch.place(Others::Stay, Vec::new()).unwrap();
 }
 
 impl Workspace {

@@ -24,12 +24,9 @@ fn help_names_every_subcommand_and_says_what_it_does() {
             "{own}"
         );
     }
-    // All commands have the same table of exit statuses.
-    let statuses = &help[help.find("\nExit status:\n").unwrap()..];
-    for command in ["run", "study", "study merge", "verify", "lab"] {
-        let own = workspace.succeed(&format!("{command} --help"));
-        assert!(own.ends_with(statuses), "{own}");
-    }
+    // The table of exit statuses is the same for all commands, so it is printed once.
+    assert!(help.contains("\nExit status:\n"), "{help}");
+    assert!(!workspace.succeed("run --help").contains("Exit status"));
     let version = format!("slipfront {}\n", env!("CARGO_PKG_VERSION"));
     assert_eq!(workspace.succeed("-V"), version);
     let told = workspace.succeed("--version");

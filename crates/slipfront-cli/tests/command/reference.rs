@@ -1,5 +1,7 @@
 //! The page of the command line lists every subcommand and option, like help and manual pages.
 
+use std::path::Path;
+
 use clap::{Arg, Command};
 
 use crate::reference_page::expect_page;
@@ -18,6 +20,30 @@ fn the_page_of_the_command_line_has_every_option() {
     });
 }
 
+/// The files that the examples of the help name are in the repository.
+#[test]
+fn the_help_names_files_that_exist() {
+    fn examples(command: &Command) -> String {
+        let own = command
+            .get_after_help()
+            .map_or(String::new(), ToString::to_string);
+        command
+            .get_subcommands()
+            .map(examples)
+            .fold(own, |all, below| all + "\n" + &below)
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let all = examples(&slipfront_cli::command_line());
+    let named: Vec<&str> = all
+        .split_whitespace()
+        .filter(|word| word.starts_with("cases/"))
+        .collect();
+    assert!(named.len() > 20, "{named:?}");
+    for name in named {
+        assert!(root.join(name).is_file(), "{name}");
+    }
+}
+
 /// The section of a subcommand, followed by the sections of its own subcommands.
 fn section(command: &Command, level: usize) -> String {
     if command.get_name() == "help" {
@@ -30,8 +56,7 @@ fn section(command: &Command, level: usize) -> String {
     let help = command
         .get_after_help()
         .map_or(String::new(), ToString::to_string);
-    // The statuses are the same for all subcommands.
-    let (help, _) = help.split_once("Exit status").unwrap();
+    let (help, _) = help.split_once("Exit status").unwrap_or((&help, ""));
     let help = match help.trim() {
         "" => String::new(),
         help => format!("\n```text\n{help}\n```\n"),

@@ -5,16 +5,25 @@ use crate::fixtures::{MASKED, SMALL};
 use crate::support::process::{send, stderr, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
 
-/// An array that takes minutes to mesh: a million outlines wrap around a small slider many times.
-const LONG: &str = "slider = { blocks = [200, 200], edges = ['periodic', 'periodic'] }\n[[texture]]\nshape = 'cavity'\n\
-                    s = 64\nw = 0.015\nlambda = '9 mm'\narray = [1000, 1000]\n";
+/// An array that takes long to mesh: combs of 5000 teeth over all rows, on top of each other.
+fn long() -> String {
+    let tooth = |k: usize| {
+        let x = k as f64 * 0.038;
+        format!("['{x:.3} um', '0 um'], ['{:.3} um', '190 um'], ", x + 0.019)
+    };
+    let teeth: String = (0..5000).map(tooth).collect();
+    format!(
+        "slider.blocks = [200, 200]\n[[texture]]\nshape = 'polygon'\npoints = [{teeth}['190 um', '-1 um'], ['0 um', '-1 um']]\n\
+         array = [22, 22]\n"
+    )
+}
 
 /// A signal ends a texture that takes long.
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_a_texture_that_takes_long() {
     let workspace = Workspace::small();
-    workspace.write("long.toml", LONG);
+    workspace.write("long.toml", long());
     for command in [
         "check long.toml",
         "run long.toml",

@@ -12,12 +12,13 @@ pub(crate) const MAX_TIME: Duration = Duration::from_secs(300);
 
 /// Variables of the environment that change what the command does or prints. The tests may themselves run in
 /// a Slurm task.
-const SETTINGS: [&str; 6] = [
+const SETTINGS: [&str; 7] = [
     "CLICOLOR_FORCE",
     "COLUMNS",
     "SLIPFRONT_SIMD",
     "SLURM_ARRAY_TASK_COUNT",
     "SLURM_ARRAY_TASK_ID",
+    "SLURM_ARRAY_TASK_MAX",
     "SLURM_ARRAY_TASK_MIN",
 ];
 

@@ -397,13 +397,21 @@ pub(crate) fn expect_nothing_temporary(workspace: &Workspace) -> Result<(), Stri
     }
 }
 
+/// The list of result files of a folder, without the checksum of the journal, which tells times.
+fn listed(files: &Files) -> Option<Value> {
+    let mut list: Value = serde_json::from_slice(files.get("checksums.json")?).ok()?;
+    list.as_object_mut()?
+        .retain(|key, _| !["sources", "seal"].contains(&key.as_str()));
+    Some(list)
+}
+
 /// Asserts that a folder contains all expected files; it may also contain unfinished ones.
 pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
     if let Some(missing) = whole.keys().find(|name| !now.contains_key(*name)) {
         return Err(format!("{missing} is missing"));
     }
     expect_sound(now, whole)?;
-    if now.get("checksums.json") != whole.get("checksums.json") {
+    if listed(now) != listed(whole) {
         return Err("checksums.json is wrong".to_owned());
     }
     if let (Some(now), Some(whole)) = (now.get("runs.jsonl"), whole.get("runs.jsonl")) {

@@ -14,13 +14,15 @@ use crate::paper::Paper;
 use slipfront_base::disk::{begins_with, write_with_folders};
 use slipfront_plot::Picture;
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::ManifestFile;
 use slipfront_study::project_folder::{Batch, Others, ResultFiles};
 
-/// Writes pictures, tables and the report to a folder.
+/// Writes pictures, tables and the report to a folder, whose list also gets the [`sources`](crate::sources)
+/// that they follow from.
 ///
 /// # Errors
 /// When a picture cannot be drawn, a file cannot be written, or an existing file was edited.
-pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
+pub fn write(paper: &Paper, files: &ResultFiles, sources: Vec<ManifestFile>) -> Result<(), PaperError> {
     let figures = paper.figures.par_iter();
     let drawn: Vec<Vec<Picture>> = figures.map(|(_, data)| draw(data)).collect::<Result<_, _>>()?;
     let mut batch = files.begin();
@@ -36,7 +38,7 @@ pub fn write(paper: &Paper, files: &ResultFiles) -> Result<(), PaperError> {
         batch.write(name, |to| to.write_all(&bytes))?;
     }
     // Keep figures of earlier calls, which took hours.
-    Ok(batch.place(Others::Stay)?)
+    Ok(batch.place(Others::Stay, sources)?)
 }
 
 /// Writes the pictures and tables of a figure.

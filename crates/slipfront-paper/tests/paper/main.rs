@@ -43,7 +43,7 @@ fn verified(folder: &Path) {
     // If the list fits a changed file, the results that follow from the data show the change.
     let mut spoilt = ResultFiles::new(folder, "paper", true).begin();
     spoilt.write("claims.csv", |to| to.write_all(b"spoilt")).unwrap();
-    spoilt.place(Others::Stay).unwrap();
+    spoilt.place(Others::Stay, Vec::new()).unwrap();
     assert!(verify(Extent::Checksums).differences.is_empty());
     let differences = verify(Extent::Derived).differences;
     assert_eq!(differences.len(), 1);
@@ -75,7 +75,12 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     assert!(unexpected_verdicts.is_empty(), "{unexpected_verdicts:#?}");
     assert!(paper.results.len() >= 60);
 
-    slipfront_paper::write(&paper, &ResultFiles::new(folder.path(), "paper", false)).unwrap();
+    slipfront_paper::write(
+        &paper,
+        &ResultFiles::new(folder.path(), "paper", false),
+        Vec::new(),
+    )
+    .unwrap();
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(report.contains("Every figure and claim of <cite>"));
     let pictures: usize = paper.figures.iter().map(|(_, found)| found.panels.len()).sum();

@@ -24,6 +24,7 @@ pub use self::citation::{bibtex, cff};
 pub use self::error::ExportError;
 pub use self::exported::{Action, Exported, ExportedFile, MadeBy};
 pub use self::parameters::Parameter;
+pub use self::ro_crate::folders_in;
 use crate::clock;
 use crate::names::RO_CRATE;
 

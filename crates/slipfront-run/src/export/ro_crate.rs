@@ -143,6 +143,16 @@ fn file_id(at: &str, name: &str) -> String {
     encoded(&format!("{at}{name}"))
 }
 
+/// Names of the folders of results in a crate, from its description; none if it is no description.
+pub fn folders_in(description: &[u8]) -> Option<Vec<String>> {
+    let description: Value = serde_json::from_slice(description).ok()?;
+    let datasets = description["@graph"].as_array()?.iter();
+    let datasets = datasets.filter(|entity| entity["@type"] == "Dataset" && entity["@id"] != "./");
+    datasets
+        .map(|entity| entity["name"].as_str().map(str::to_owned))
+        .collect()
+}
+
 fn action_id(action: &Action) -> String {
     format!("#{}", encoded(&action.id))
 }

@@ -57,7 +57,11 @@ pub fn columns_of(bytes: &[u8], path: &Path) -> Result<Vec<TableColumn>, Measure
             path: path.to_owned(),
             why,
         })?;
-        return columns_of(sheet.text.as_bytes(), path);
+        let mut columns = columns_of(sheet.text.as_bytes(), path)?;
+        for (column, [_, has_percentages]) in columns.iter_mut().zip(&sheet.shown) {
+            column.unit = column.unit.take().or(has_percentages.then(|| "%".to_owned()));
+        }
+        return Ok(columns);
     }
     let layout = TableLayout::find(head, TableOptions::default()).and_then(|layout| {
         layout.check_names()?;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use slipfront_base::text::display_path;
+use slipfront_case::nearest::why_unread;
 use slipfront_case::table::TableError;
 use thiserror::Error;
 
@@ -10,6 +11,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum MeasuredError {
+    #[error("cannot read {}: {}", display_path(path), why_unread(path, source))]
+    Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{} {source}", display_path(path))]
     Table { path: PathBuf, source: TableError },
     #[error("{} {why}", display_path(path))]
@@ -54,6 +57,15 @@ pub enum MeasuredError {
         axis: &'static str,
         example: Option<&'static str>,
     },
+    #[error(
+        "column `{column}` of {} {why}: give its cells the number format General, and the column the unit that they then have",
+        display_path(path)
+    )]
+    Percentages {
+        path: PathBuf,
+        column: String,
+        why: &'static str,
+    },
     #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
     Unit {
         path: PathBuf,
@@ -69,6 +81,17 @@ pub enum MeasuredError {
         line: u64,
         text: String,
         column: String,
+    },
+    #[error(
+        "line {line} of {} has {value:e} in column `{column}`, as meters write where their range is exceeded: remove such lines, \
+         or begin them with #",
+        display_path(path)
+    )]
+    Overload {
+        path: PathBuf,
+        line: u64,
+        column: String,
+        value: f64,
     },
     #[error(
         "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a single \

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_case::texture_file;
+use slipfront_case::texture_file::{self, Options};
 
 use crate::document::Document;
 use crate::protocol::{DrawingFormat, DrawingReply};
@@ -26,7 +26,7 @@ pub(super) fn draw(
         DrawingFormat::Dxf => "texture.dxf",
         DrawingFormat::Svg => "texture.svg",
     };
-    let drawn = texture_file::contents(&case, Path::new(name), None);
+    let drawn = texture_file::contents(&case, Path::new(name), Options::default());
     let (bytes, notes) = drawn.map_err(|error| error.to_string())?;
     Ok(DrawingReply {
         format,

@@ -31,7 +31,7 @@ fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
     let allowed = limits(case);
     let limits = Limits {
         coverage: [0.0, allowed.most_percent],
-        feature: allowed.width_blocks,
+        feature: allowed.width_blocks as f64,
         gap: allowed.width_blocks,
         ..Limits::default()
     };
@@ -39,7 +39,7 @@ fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
     let mut design = Design::new(&[(case, wish)], false, limits, 1)?;
     let painted = Some(textured_blocks(case)).filter(|painted| painted.contains(&true));
     if let Some(painted) = &painted {
-        design.begin_with("painted".to_owned(), painted.clone());
+        design.begin_with("painted".to_owned(), painted.clone(), None);
     }
     Ok((design, painted))
 }
@@ -102,7 +102,7 @@ pub(super) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, S
         })));
     });
     let best = searched.map_err(|error| match error {
-        StudyError::NoDesign => format!(
+        StudyError::NoDesign { .. } => format!(
             "no texture whose features and gaps are {WIDTH} blocks wide covers as little of this slider as a search may: paint more, or \
              take more blocks"
         ),

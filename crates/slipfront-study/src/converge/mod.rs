@@ -52,11 +52,11 @@ pub fn write(
     let mut batch = folder.files.begin();
     folder::stage(plan, results, &mut batch, stop)?;
     if let Err(failure) = results.expect_no_failures(plan) {
-        batch.place(Others::Go)?;
+        batch.place(Others::Go, vec![folder.records.listed()?])?;
         return Err(failure);
     }
     let found = stage(plan, results, &mut batch)?;
-    batch.place(Others::Go)?;
+    batch.place(Others::Go, vec![folder.records.listed()?])?;
     Ok(found)
 }
 

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use slipfront_base::disk::{open_limited, sync_folder};
 use slipfront_base::unfinished::clear_unfinished;
+use slipfront_run::manifest::ManifestFile;
 
 use super::line::{JournalEntry, Line, looks_like_ours, may_begin_ours, parse_line, to_line};
 use crate::error::StudyError;
@@ -59,6 +60,19 @@ impl Journal {
         let copied = File::create(&to)
             .and_then(|mut to| std::io::copy(&mut open_limited(&path, u64::MAX)?.take(bytes), &mut to));
         copied.map(drop).map_err(failed("write to", &to))
+    }
+
+    /// The file with its present checksum. It is read through its own handle: Windows lets no other handle
+    /// read a file that is locked.
+    ///
+    /// # Errors
+    /// When the system refuses to read it.
+    pub fn listed(&self) -> Result<ManifestFile, StudyError> {
+        let (mut file, mut hasher) = (&self.file, blake3::Hasher::new());
+        let read = file.rewind().and_then(|()| hasher.update_reader(file).map(drop));
+        read.map_err(failed("read", &self.path))?;
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        Ok(ManifestFile::hashed(&name, &hasher))
     }
 
     /// Appends entries, each as a line, and waits until they are on disk; earlier entries stay intact.

@@ -33,7 +33,7 @@ impl Given {
             || self.copies.iter().any(|copy| copy.differs_in(folder))
     }
 
-    /// Writes the files to a batch for a folder; `force` replaces foreign files there.
+    /// Writes the files to a batch for a folder; `force` replaces edited files there.
     pub(crate) fn stage(&self, kind: &ProjectKind, folder: &Path, force: bool) -> Result<Batch, StudyError> {
         let mut batch = ResultFiles::new(folder, kind.name, force).begin();
         batch.copy_all(&self.copies)?;
@@ -44,7 +44,7 @@ impl Given {
         Ok(batch)
     }
 
-    /// Writes the files to a folder, where results will be added; `force` replaces foreign files there.
+    /// Writes the files to a folder, where results will be added; `force` replaces edited files there.
     ///
     /// # Errors
     /// When the folder contains another project, or edited or foreign files with these names; when the system

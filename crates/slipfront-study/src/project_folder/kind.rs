@@ -6,6 +6,7 @@ use slipfront_base::disk::{folder_name, folder_of, is_empty, make_folders};
 use slipfront_case::case_file::read_text;
 use slipfront_run::folder_error::FolderError;
 
+use super::checksums::Checksums;
 use super::journal::Journal;
 use super::line::JournalEntry;
 use crate::error::StudyError;
@@ -31,6 +32,11 @@ impl ProjectKind {
     /// Whether the folder is one of this kind.
     pub fn is_in(&self, folder: &Path) -> bool {
         folder.join(self.file).exists() && folder.join(self.journal).exists()
+    }
+
+    /// Whether the folder holds results of this kind, even if its file or its journal is gone.
+    pub fn has_results_in(&self, folder: &Path) -> bool {
+        self.is_in(folder) || Checksums::unsealed(folder).is_some_and(|list| list.of == self.name)
     }
 
     /// Loads a file of this kind by `parse`, which receives its text, its path, the name of the project, and

@@ -22,6 +22,7 @@ use tempfile::TempPath;
 use super::checksums::Checksums;
 use super::input_copies::Copy;
 use crate::error::StudyError;
+use crate::shard::Shard;
 
 /// Result files of a folder that only one process uses.
 #[derive(Clone, Debug)]
@@ -29,7 +30,9 @@ pub struct ResultFiles {
     folder: PathBuf,
     /// Content of the folder, such as `study`.
     of: &'static str,
-    /// Whether edited and foreign files are replaced.
+    /// Part of the points of a study that the folder is for.
+    part: Option<String>,
+    /// Whether edited files are replaced.
     force: bool,
     /// Inputs of the results, which belong to every batch.
     given: Vec<ManifestFile>,
@@ -41,11 +44,12 @@ pub struct ResultFiles {
 
 impl ResultFiles {
     /// The result files of a folder. `of` names the content, such as `study`; `force` allows the replacement
-    /// of edited and foreign files.
+    /// of edited files, but not of files that slipfront has not written.
     pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
         Self {
             folder: folder.to_owned(),
             of,
+            part: None,
             force,
             given: Vec::new(),
             kept: Vec::new(),
@@ -72,7 +76,7 @@ impl ResultFiles {
                 edited.push(name.clone());
             }
         }
-        self.refuse(edited)
+        self.refuse(edited, &list)
     }
 
     /// A new batch of files to write.
@@ -85,11 +89,13 @@ impl ResultFiles {
         }
     }
 
-    /// The list in the folder; an empty one if there is none, or if it cannot be used and edited files may be
-    /// replaced.
+    /// The list in the folder; an empty one if there is none. If edited files may be replaced, the list
+    /// itself may have been edited.
     fn list(&self) -> Result<Checksums, StudyError> {
         match Checksums::read(&self.folder) {
-            Err(StudyError::Checksums { .. }) if self.force => Ok(Checksums::default()),
+            Err(StudyError::Checksums { .. }) if self.force => {
+                Ok(Checksums::unsealed(&self.folder).unwrap_or_default())
+            }
             list => Ok(list?.unwrap_or_default()),
         }
     }
@@ -147,8 +153,16 @@ impl ResultFiles {
         sync(changed)
     }
 
-    fn refuse(&self, names: Vec<String>) -> Result<(), StudyError> {
-        if names.is_empty() || self.force {
+    /// Refuses files that are in the way, except those of the list if edited files may be replaced.
+    fn refuse(&self, mut names: Vec<String>, list: &Checksums) -> Result<(), StudyError> {
+        let is_listed = |name: &String| {
+            list.files
+                .iter()
+                .chain(&list.replaced)
+                .any(|file| file.name == *name)
+        };
+        names.retain(|name| !(self.force && is_listed(name)));
+        if names.is_empty() {
             return Ok(());
         }
         Err(StudyError::Edited {
@@ -242,6 +256,11 @@ impl Batch {
         Ok(())
     }
 
+    /// Marks the folder as that of a part of a study.
+    pub(crate) fn is_of_part(&mut self, part: Option<Shard>) {
+        self.files.part = part.map(|part| part.to_string());
+    }
+
     /// Lets a file be replaced although it was edited.
     pub fn may_replace(&mut self, name: &str) {
         self.replaceable = Some(name.to_owned());
@@ -282,7 +301,7 @@ impl Batch {
     /// # Errors
     /// As for [`place`](Self::place).
     pub fn place_given(mut self, others: Others) -> Result<ResultFiles, StudyError> {
-        self.put(others, false)?;
+        self.put(others, None)?;
         Ok(ResultFiles {
             given: self.placed,
             ..self.files
@@ -294,20 +313,20 @@ impl Batch {
     /// # Errors
     /// As for [`place`](Self::place).
     pub fn place_so_far(&mut self, others: Others) -> Result<(), StudyError> {
-        self.put(others, false)
+        self.put(others, None)
     }
 
-    /// Gives all files their names, lists them with their checksums, and marks the results as complete.
-    /// Existing files with the same contents are left unchanged.
+    /// Gives all files their names, lists them with their checksums, and marks the results as complete, with
+    /// the `sources` that they follow from. Existing files with the same contents are left unchanged.
     ///
     /// # Errors
     /// When an existing file with one of these names, or a file of an earlier batch, was edited or is
     /// foreign, unless such files may be replaced; then nothing is changed. When the system refuses to write.
-    pub fn place(mut self, others: Others) -> Result<(), StudyError> {
-        self.put(others, true)
+    pub fn place(mut self, others: Others, sources: Vec<ManifestFile>) -> Result<(), StudyError> {
+        self.put(others, Some(sources))
     }
 
-    fn put(&mut self, others: Others, completes: bool) -> Result<(), StudyError> {
+    fn put(&mut self, others: Others, sources_of_all: Option<Vec<ManifestFile>>) -> Result<(), StudyError> {
         let Self {
             files,
             staged,
@@ -350,7 +369,7 @@ impl Batch {
                 listed.push(file.clone());
             }
         }
-        files.refuse(foreign)?;
+        files.refuse(foreign, &before)?;
         listed.sort_by(|a, b| a.name.cmp(&b.name));
         let staged = std::mem::take(staged);
         placed.retain(|placed| staged.iter().all(|(_, file)| file.name != placed.name));
@@ -368,13 +387,20 @@ impl Batch {
                 replaced.push(file.clone());
             }
         }
+        let (is_complete, sources) = match sources_of_all {
+            Some(sources) => (true, sources),
+            None if before.is_complete && !changes => (true, before.sources.clone()),
+            None => (false, Vec::new()),
+        };
         let mut list = Checksums {
             of: files.of.to_owned(),
+            part: files.part.clone(),
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),
             files: listed,
-            is_complete: completes || (before.is_complete && !changes),
+            is_complete,
+            sources,
             replaced,
             seal: String::new(),
         };
@@ -428,7 +454,7 @@ mod tests {
     }
 
     fn place(files: &ResultFiles, contents: &[(&str, &str)]) -> Result<(), StudyError> {
-        batch_of(files, contents).place(Others::Go)
+        batch_of(files, contents).place(Others::Go, Vec::new())
     }
 
     fn read(folder: &Path, name: &str) -> Option<String> {
@@ -464,7 +490,7 @@ mod tests {
     }
 
     #[test]
-    fn edited_files_and_files_of_others_are_refused_by_name_and_replaced_on_demand() {
+    fn edited_files_and_files_of_others_are_refused_by_name_and_edited_ones_replaced_on_demand() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let files = ResultFiles::new(path, "design", false);
@@ -483,6 +509,10 @@ mod tests {
         assert_eq!(read(path, "case.toml").unwrap(), "1");
         let forced = ResultFiles::new(path, "design", true);
         forced.expect_unedited().unwrap();
+        let said = place(&forced, &results).unwrap_err().to_string();
+        assert!(said.contains(": design.txt; move them away"), "{said}");
+        assert_eq!(read(path, "design.txt").unwrap(), "notes of mine");
+        std::fs::remove_file(path.join("design.txt")).unwrap();
         place(&forced, &results).unwrap();
         for (name, text) in results {
             assert_eq!(read(path, name).unwrap(), text);
@@ -591,7 +621,11 @@ mod tests {
         let files = ResultFiles::new(path, "study", false);
         place(&files, &[("a.csv", "1")]).unwrap();
         let text = read(path, CHECKSUMS).unwrap();
-        std::fs::write(path.join(CHECKSUMS), text.replace("a.csv", "b.csv")).unwrap();
+        std::fs::write(
+            path.join(CHECKSUMS),
+            text.replace("is_complete\": true", "is_complete\": false"),
+        )
+        .unwrap();
         let said = place(&files, &[("a.csv", "2")]).unwrap_err().to_string();
         assert!(said.contains("checksums.json is damaged"), "{said}");
         assert_eq!(read(path, "a.csv").unwrap(), "1");

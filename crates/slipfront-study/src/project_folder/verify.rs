@@ -4,11 +4,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited};
+use slipfront_base::disk::{TEXT_MAX_BYTES, found_at, open_limited};
 use slipfront_base::number_format::{are, count};
+use slipfront_base::text::single_line;
 use slipfront_base::unfinished::{TemporaryFolder, is_unfinished};
 use slipfront_plot::PictureLook;
 use slipfront_run::folder_error::FolderError;
+use slipfront_run::manifest::ManifestFile;
 use slipfront_run::program;
 use slipfront_run::verify::{Verdict, VerifyError, description_in, differences, unlisted_files};
 use thiserror::Error;
@@ -66,6 +68,30 @@ pub struct Derivation {
     pub find_again: FindAgain,
 }
 
+impl Derivation {
+    /// Derives the results of a folder again in another one.
+    ///
+    /// # Errors
+    /// When runs are missing that cannot be made again, results cannot be derived, or the system refuses to
+    /// read or to write; after a stop.
+    pub(crate) fn again(
+        &self,
+        folder: &Path,
+        other: &Path,
+        look: &PictureLook,
+        stop: &AtomicBool,
+    ) -> Result<[usize; 2], VerifyStudyError> {
+        (self.find_again)(folder, other, look, stop).map_err(|error| match error {
+            StudyError::Missing { runs, others } => VerifyStudyError::Unfinished {
+                path: folder.to_owned(),
+                runs,
+                others,
+            },
+            error => error.into(),
+        })
+    }
+}
+
 /// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the
 /// `others`; the results are complete if the second value is true.
 ///
@@ -73,21 +99,30 @@ pub struct Derivation {
 /// When the system cannot list the folder.
 pub fn verify_checksums(
     folder: &Path,
+    kind: &ProjectKind,
     others: &[&str],
     stop: &AtomicBool,
 ) -> Result<(Verdict, bool), StudyError> {
     let mut verdict = Verdict::default();
+    for (name, remedy) in [
+        (CHECKSUMS, "with this folder as --out"),
+        (kind.file, "with this folder as --out"),
+        (kind.journal, "with another --out, which repeats its runs"),
+    ] {
+        let path = folder.join(name);
+        if found_at(&path).map_err(FolderError::read(&path))?.is_none() {
+            verdict.differences.push(single_line(&format!(
+                "{} is missing in the folder of a {}: put it back, or run `slipfront {}` again {remedy}",
+                path.display(),
+                kind.name,
+                kind.table
+            )));
+        }
+    }
     let path = folder.join(CHECKSUMS);
     let list = match Checksums::read(folder) {
         Ok(Some(list)) => list,
-        Ok(None) => {
-            let sentence = format!(
-                "{} is missing: run the command of this folder again to write it",
-                path.display()
-            );
-            verdict.differences.push(sentence);
-            return Ok((verdict, false));
-        }
+        Ok(None) => return Ok((verdict, false)),
         Err(StudyError::Checksums { why, .. }) => {
             verdict
                 .differences
@@ -96,7 +131,21 @@ pub fn verify_checksums(
         }
         Err(error) => return Err(error),
     };
-    verdict.differences = differences(&list.files, folder, "were written", stop);
+    // A journal only grows: with more lines than the results follow from, these are no longer complete.
+    let has_grown = |file: &&ManifestFile| {
+        let length = std::fs::metadata(folder.join(&file.name)).map_or(0, |found| found.len());
+        file.name == kind.journal
+            && length > file.bytes
+            && ManifestFile::of_beginning(folder, &file.name, file.bytes, stop)
+                .is_ok_and(|found| found == **file)
+    };
+    let (grown, sources): (Vec<_>, Vec<_>) = list.sources.iter().partition(has_grown);
+    let is_key = |file: &&ManifestFile| file.name == kind.file || file.name == kind.journal;
+    let is_told = |file: &&ManifestFile| is_key(file) && !folder.join(&file.name).exists();
+    let compared = list.files.iter().chain(sources).filter(|file| !is_told(file));
+    verdict
+        .differences
+        .extend(differences(compared, folder, "were written", stop));
     if !list.replaced.is_empty() {
         let sentence = format!(
             "{}: the results were not completely written; run the command of this folder again to complete them",
@@ -113,12 +162,32 @@ pub fn verify_checksums(
     let known = list.files.iter().map(|file| file.name.as_str());
     let (described, outdated) = description_in(folder, &list.seal);
     let known = known
-        .chain([CHECKSUMS])
+        .chain([CHECKSUMS, kind.journal])
         .chain(described)
         .chain(others.iter().copied());
     verdict.notes = unlisted_files(folder, &known.collect(), is_left);
     verdict.notes.extend(outdated);
-    Ok((verdict, list.is_complete))
+    Ok((verdict, list.is_complete && grown.is_empty()))
+}
+
+/// Compares the files of a folder with its list, as [`verify_checksums`] does, and refuses unfinished
+/// results.
+///
+/// # Errors
+/// When all files are as they were written, but the project is not finished; when the system cannot list the
+/// folder.
+pub fn verify_complete(
+    folder: &Path,
+    kind: &ProjectKind,
+    others: &[&str],
+    stop: &AtomicBool,
+) -> Result<Verdict, VerifyStudyError> {
+    let (verdict, is_complete) = verify_checksums(folder, kind, others, stop)?;
+    if verdict.differences.is_empty() && !is_complete {
+        let (what, path) = (kind.name, folder.to_owned());
+        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+    }
+    Ok(verdict)
 }
 
 /// Compares the folder of a project with its list, then with the results that follow from the runs in its
@@ -126,18 +195,12 @@ pub fn verify_checksums(
 pub(crate) fn verify_project(
     folder: &Path,
     derivation: &Derivation,
+    others: &[&str],
     extent: Extent,
     stop: &AtomicBool,
 ) -> Result<Verdict, VerifyStudyError> {
-    let (mut verdict, is_complete) = verify_checksums(folder, &[derivation.kind.journal], stop)?;
-    if !verdict.differences.is_empty() {
-        return Ok(verdict);
-    }
-    if !is_complete {
-        let (what, path) = (derivation.kind.name, folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
-    }
-    if extent == Extent::Derived {
+    let mut verdict = verify_complete(folder, derivation.kind, others, stop)?;
+    if extent == Extent::Derived && verdict.differences.is_empty() {
         derive_from_runs(folder, derivation, &mut verdict, stop)?;
     }
     Ok(verdict)
@@ -155,12 +218,13 @@ fn derive_from_runs(
     // Opening a pipe would wait forever.
     let file = folder.join(derivation.kind.file);
     open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
-    let [kept, all] = (derivation.find_again)(folder, temporary.path(), &PictureLook::default(), stop)?;
+    let [kept, all] = derivation.again(folder, temporary.path(), &PictureLook::default(), stop)?;
     if all > kept {
         let sentence = format!("{} not in the journal, and run again", are(all - kept, "run"));
         verdict.notes.push(sentence);
     }
-    verdict.differences = differences_from(temporary.path(), folder, "follow from its runs", stop)?;
+    let again = Checksums::read(temporary.path())?.unwrap_or_default();
+    verdict.differences = differences(&again.files, folder, "follow from its runs", stop);
     verdict.what = format!(
         "{}, a {} as its {} give it",
         verdict.what,
@@ -168,15 +232,4 @@ fn derive_from_runs(
         count(kept, "recorded run")
     );
     Ok(())
-}
-
-/// Differences of a folder from the results that were made again in a temporary one.
-pub(crate) fn differences_from(
-    temporary: &Path,
-    folder: &Path,
-    how: &str,
-    stop: &AtomicBool,
-) -> Result<Vec<String>, StudyError> {
-    let again = Checksums::read(temporary)?.unwrap_or_default();
-    Ok(differences(&again.files, folder, how, stop))
 }

@@ -32,7 +32,8 @@ const EFFORT: usize = 50_000_000;
 /// The smallest width of any shape and the smallest distance between two copies, before edges cut them.
 /// Shapes that overlap count as one, and those that lie off the slider do not count. The width of a cavity is
 /// that of the largest circle in it; for a mask, widths and distances are its shortest runs of blocks along x
-/// and y. There is no result if examining all shapes would take more than some tenths of a second.
+/// and y. There is no result for drawings, or
+/// if examining all shapes would take more than some tenths of a second.
 ///
 /// ```
 /// # use slipfront::Lattice;
@@ -57,6 +58,7 @@ fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Resu
     for texture in textures {
         let drawn = match &texture.shape {
             Shape::Tile(tile) => Some((runs(tile), None)),
+            Shape::Drawing(_) => return Ok(Clearance::default()),
             _ => PlacedShape::of(lattice, texture, all, effort)?.map(|(widths, drawn)| (widths, Some(drawn))),
         };
         let Some(([mut inside, mut outside], drawn)) = drawn else {
@@ -187,9 +189,10 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
                 semi_axes,
                 axis,
             }),
-            Curve::Polygon(vertices) => {
-                let step = vertices.len().div_ceil(CORNERS);
-                let some = vertices.iter().step_by(step);
+            Curve::Polygon(rings) => {
+                let vertices = || rings.iter().flat_map(|ring| &ring.vertices);
+                let step = vertices().count().div_ceil(CORNERS);
+                let some = vertices().step_by(step);
                 Form::Polygon(some.map(|vertex| vertex.around(cavity.center)).collect())
             }
         },
@@ -205,7 +208,7 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
             let corners = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
             return Some((Form::Polygon(corners), shifts.map(across).collect()));
         }
-        Shape::Tile(_) => return None,
+        Shape::Tile(_) | Shape::Drawing(_) => return None,
     };
     Some((form, places(&texture.arrays, all)))
 }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::outline::{Curve, Outlines};
+use super::outline::{Curve, Outlines, Ring};
 use super::pattern::grids;
 use super::texture::{Shape, Texture};
 use crate::lattice::{Edges, Lattice};
@@ -91,14 +91,16 @@ impl Piece {
     }
 }
 
-/// The outlines of all copies of a texture's shape, whether it is inverted or not; none for a mask, since its
-/// outlines are the edges of its blocks. They may reach beyond the slider, or lie outside it. A groove is a
+/// The outlines of all copies of a texture's shape, whether it is inverted or not. Masks have none, since
+/// their outlines are the edges of blocks, nor have drawings with an inside that the even-odd rule of all
+/// outlines of a copy does not define. They may reach beyond the slider, or lie outside it. A groove is a
 /// rectangle as long as the slider.
 pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     let grids = grids(&texture.arrays);
     let outlines = match &texture.shape {
         Shape::Cavity(cavity) => cavity.outlines(&grids),
         Shape::Polygon(points) => Outlines::polygon(points, &grids),
+        Shape::Drawing(parts) => Outlines::drawing(parts, &grids),
         Shape::Groove(groove) => {
             let strips = groove.shifts(&grids).into_iter();
             let rectangles = strips.flat_map(|shift| {
@@ -116,28 +118,29 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
         }
         Shape::Tile(_) => return None,
     };
+    if matches!(&outlines.curve, Curve::Polygon(rings) if !Ring::are_even_odd(rings)) {
+        return None;
+    }
     let mut contours = Vec::new();
     for [columns, rows] in &outlines.centers {
         for &y in rows {
             for &x in columns {
                 let bounds = [outlines.bounds(0, x), outlines.bounds(1, y)];
                 for [shift_x, shift_y] in placed(lattice, bounds) {
-                    contours.push(match &outlines.curve {
-                        Curve::Ellipse { semi_axes, axis } => Contour::Ellipse(Ellipse {
+                    match &outlines.curve {
+                        Curve::Ellipse { semi_axes, axis } => contours.push(Contour::Ellipse(Ellipse {
                             center: [x + shift_x, y + shift_y],
                             semi_axes: *semi_axes,
                             axis: *axis,
-                        }),
-                        Curve::Polygon(vertices) => Contour::Polygon(
-                            vertices
-                                .iter()
-                                .map(|vertex| {
-                                    let [x, y] = vertex.around([x, y]);
-                                    [x + shift_x, y + shift_y]
-                                })
-                                .collect(),
-                        ),
-                    });
+                        })),
+                        Curve::Polygon(rings) => contours.extend(rings.iter().map(|ring| {
+                            let corners = ring.vertices.iter().map(|vertex| {
+                                let [x, y] = vertex.around([x, y]);
+                                [x + shift_x, y + shift_y]
+                            });
+                            Contour::Polygon(corners.collect())
+                        })),
+                    }
                 }
             }
         }

@@ -122,6 +122,7 @@ impl<'a> Mask<'a> {
         match shape {
             Shape::Cavity(cavity) => self.cover(&cavity.outlines(grids), watch),
             Shape::Polygon(points) => self.cover(&Outlines::polygon(points, grids), watch),
+            Shape::Drawing(parts) => self.cover(&Outlines::drawing(parts, grids), watch),
             Shape::Groove(groove) => Ok(self.cover_strips(groove, grids)),
             Shape::Tile(tile) => self.cover_tiles(tile, grids, watch),
         }
@@ -353,7 +354,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::super::pattern::Array;
-    use super::super::texture::{Cavity, Orientation, cavity_lambda};
+    use super::super::texture::{Cavity, FillRule, Orientation, Part, cavity_lambda};
     use super::*;
     use crate::vector_field::unit_vector;
 
@@ -775,6 +776,47 @@ mod tests {
         let meshed = mesh(&lattice, &[Shape::Polygon(star).into()]);
         assert!(!meshed.textured[lattice.block(20, 20)]);
         assert!(meshed.textured[lattice.block(33, 20)]);
+    }
+
+    /// Two squares that overlap, one in the other, and a square with a hole: the corners of both rules.
+    #[test]
+    fn parts_of_a_drawing_are_united_and_each_is_filled_by_its_rule() {
+        let lattice = Lattice::free(20, 10);
+        let square =
+            |x: f64, y: f64, side: f64| vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
+        let reversed = |x: f64, y: f64, side: f64| square(x, y, side).into_iter().rev().collect();
+        let part = |rule, rings: &[Vec<[f64; 2]>]| Part {
+            rings: rings.to_vec(),
+            rule,
+        };
+        let count = |parts: &[Part]| count(&lattice, Shape::Drawing(parts.to_vec().into()));
+        let [even_odd, non_zero] = [FillRule::EvenOdd, FillRule::NonZero];
+        let nested = [square(0.0, 0.0, 6.0), square(2.0, 2.0, 2.0)];
+        assert_eq!(count(&[part(even_odd, &nested)]), 32);
+        assert_eq!(count(&[part(non_zero, &nested)]), 36);
+        let turned = [square(0.0, 0.0, 6.0), reversed(2.0, 2.0, 2.0)];
+        assert_eq!(count(&[part(non_zero, &turned)]), 32);
+        let overlapping = [square(0.0, 0.0, 6.0), reversed(3.0, 3.0, 6.0)];
+        assert_eq!(count(&[part(even_odd, &overlapping)]), 72 - 18);
+        let parts = overlapping.map(|ring| part(even_odd, &[ring]));
+        assert_eq!(count(&parts), 72 - 9);
+        // A second part fills the hole of the first.
+        assert_eq!(
+            count(&[part(even_odd, &nested), part(non_zero, &nested[1..])]),
+            36
+        );
+        // Copies in a row, and the union beyond an edge.
+        let copies = Texture {
+            arrays: vec![Array {
+                count: [3, 1],
+                spacing: [7.0, 1.0],
+                staggered: false,
+            }],
+            ..Shape::Drawing(vec![part(even_odd, &nested), part(non_zero, &nested[1..])].into()).into()
+        };
+        let meshed = mesh(&lattice, &[copies]);
+        assert_eq!(meshed.textured.iter().filter(|&&t| t).count(), 6 * (6 + 6));
+        assert_eq!(meshed.clipped, [0]);
     }
 
     #[test]

@@ -30,7 +30,9 @@ pub use mask_outline::outline as mask_outline;
 pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};
 pub use sharing::share_load;
-pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
+pub use texture::{
+    Cavity, FillRule, Groove, Orientation, Part, Shape, Texture, Tile, cavity_lambda, cavity_percent,
+};
 
 use std::ops::Range;
 
@@ -57,6 +59,7 @@ pub struct Surface {
     whole: Whole,
     /// Ratio of the normal force on a block in contact to `p_i l^2`.
     load_factor: f64,
+    largest_load: f64,
     min_slip_threshold: f64,
 }
 
@@ -126,15 +129,22 @@ impl Surface {
             load_factor: contact.load.factor(whole.sum_pressure),
             contact,
             whole,
+            largest_load: f64::NAN,
             min_slip_threshold: f64::NAN,
         };
         let blocks = (0..n).into_par_iter().with_min_len(PART);
         let in_contact = blocks.filter(|&b| !surface.textured[b]);
         let thresholds = in_contact
+            .clone()
             .map(|b| surface.static_limit(b).max(surface.kinetic_force(b)) / slider.drive_spring(b));
-        let mut largest_negative = [-reduce(thresholds, || f64::INFINITY, f64::min)];
-        ranks.largest(&mut largest_negative);
-        surface.min_slip_threshold = -largest_negative[0];
+        let loads = in_contact.map(|b| surface.normal_force(b));
+        let mut largest = [
+            -reduce(thresholds, || f64::INFINITY, f64::min),
+            reduce(loads, || 0.0, f64::max),
+        ];
+        ranks.largest(&mut largest);
+        surface.min_slip_threshold = -largest[0];
+        surface.largest_load = largest[1];
         Ok(surface)
     }
 
@@ -156,6 +166,7 @@ impl Surface {
             },
             whole: self.whole,
             load_factor: self.load_factor,
+            largest_load: self.largest_load,
             min_slip_threshold: self.min_slip_threshold,
         }
     }
@@ -287,6 +298,12 @@ impl Surface {
     /// uniform pressure; 1 if the load of textured blocks is not redistributed.
     pub fn load_factor(&self) -> f64 {
         self.load_factor
+    }
+
+    /// Largest normal force on a block of the whole surface, in units of `P l^2`: the [load
+    /// factor](Self::load_factor) under a uniform pressure.
+    pub fn largest_load(&self) -> f64 {
+        self.largest_load
     }
 
     /// Mean normal force over the [facing blocks](Self::n_facing), textured ones included, in units of

@@ -5,6 +5,7 @@
 //! rounding as for a single outline at this position.
 
 use super::pattern::Crossings;
+use super::texture::{FillRule, Part};
 
 /// Outlines of one curve, around every crossing of the lines of some grids.
 pub(super) struct Outlines {
@@ -17,8 +18,34 @@ pub(super) struct Outlines {
 pub(super) enum Curve {
     /// An ellipse, given by its semi-axes and the direction of the first.
     Ellipse { semi_axes: [f64; 2], axis: [f64; 2] },
-    /// A polygon; the even-odd rule defines its inside.
-    Polygon(Vec<Vertex>),
+    /// Polygons, whose parts are united.
+    Polygon(Vec<Ring>),
+}
+
+/// A closed polyline.
+pub(super) struct Ring {
+    pub(super) vertices: Vec<Vertex>,
+    /// The rings with this number are filled together, by their common rule.
+    part: usize,
+    rule: FillRule,
+}
+
+impl Ring {
+    /// A polygon, whose inside the even-odd rule defines.
+    pub(super) fn alone(vertices: Vec<Vertex>) -> Self {
+        Self {
+            vertices,
+            part: 0,
+            rule: FillRule::EvenOdd,
+        }
+    }
+
+    /// Whether the even-odd rule defines the inside of all rings together.
+    pub(super) fn are_even_odd(rings: &[Self]) -> bool {
+        rings
+            .iter()
+            .all(|ring| (ring.part, ring.rule) == (0, FillRule::EvenOdd))
+    }
 }
 
 impl Curve {
@@ -49,6 +76,13 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
+    fn at(&[x, y]: &[f64; 2]) -> Self {
+        Self {
+            x: [x, 0.0],
+            y: [y, 0.0],
+        }
+    }
+
     /// Position of the corner if the polygon has this centre.
     pub(super) fn around(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [add(self.x, x), add(self.y, y)]
@@ -70,12 +104,20 @@ impl Outlines {
 
     /// The copies of a polygon around the middle of `grids`.
     pub(super) fn polygon(points: &[[f64; 2]], grids: &[Crossings]) -> Self {
-        let vertex = |&[x, y]: &[f64; 2]| Vertex {
-            x: [x, 0.0],
-            y: [y, 0.0],
-        };
-        let curve = Curve::Polygon(points.iter().map(vertex).collect());
-        Self::at(curve, [0.0; 2], grids)
+        let ring = Ring::alone(points.iter().map(Vertex::at).collect());
+        Self::at(Curve::Polygon(vec![ring]), [0.0; 2], grids)
+    }
+
+    /// The copies of a drawing around the middle of `grids`.
+    pub(super) fn drawing(parts: &[Part], grids: &[Crossings]) -> Self {
+        let rings = parts.iter().enumerate().flat_map(|(part, drawn)| {
+            drawn.rings.iter().map(move |corners| Ring {
+                vertices: corners.iter().map(Vertex::at).collect(),
+                part,
+                rule: drawn.rule,
+            })
+        });
+        Self::at(Curve::Polygon(rings.collect()), [0.0; 2], grids)
     }
 
     /// The first and the last lines of the grids along an axis.
@@ -95,8 +137,9 @@ impl Outlines {
                 let half = ((a * along_a).powi(2) + (b * along_b).powi(2)).sqrt();
                 [center - half, center + half]
             }
-            Curve::Polygon(vertices) => {
-                let terms = vertices.iter().map(|vertex| [vertex.x, vertex.y][axis]);
+            Curve::Polygon(rings) => {
+                let vertices = rings.iter().flat_map(|ring| &ring.vertices);
+                let terms = vertices.map(|vertex| [vertex.x, vertex.y][axis]);
                 let coordinates = terms.map(|terms| add(terms, center));
                 coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
                     [low.min(at), high.max(at)]
@@ -114,11 +157,16 @@ impl Outlines {
 
     /// The outlines with centres at this height, to be cut by lines from the lowest to the highest.
     pub(super) fn at_height(&self, center: f64) -> Sweep<'_> {
-        let edges = match &self.curve {
-            Curve::Ellipse { .. } => Vec::new(),
-            Curve::Polygon(vertices) => edges(vertices, center),
+        let (edges, united) = match &self.curve {
+            Curve::Ellipse { .. } => (Vec::new(), None),
+            Curve::Polygon(rings) => {
+                let parts = rings.last().map_or(0, |ring| ring.part + 1);
+                let united = (!Ring::are_even_odd(rings)).then(|| vec![0; parts]);
+                (edges(rings, center), united)
+            }
         };
         Sweep {
+            windings: united,
             curve: &self.curve,
             center,
             edges,
@@ -135,6 +183,8 @@ struct Edge {
     to: Terms,
     from_y: f64,
     to_y: f64,
+    part: usize,
+    rule: FillRule,
 }
 
 impl Edge {
@@ -147,14 +197,19 @@ impl Edge {
     }
 }
 
-/// The edges of a polygon that a horizontal line can cut, the lowest first.
-fn edges(vertices: &[Vertex], center: f64) -> Vec<Edge> {
-    let previous = vertices.iter().cycle().skip(vertices.len().saturating_sub(1));
-    let edges = previous.zip(vertices).map(|(p, q)| Edge {
-        from: p.x,
-        to: q.x,
-        from_y: add(p.y, center),
-        to_y: add(q.y, center),
+/// The edges of polygons that a horizontal line can cut, the lowest first.
+fn edges(rings: &[Ring], center: f64) -> Vec<Edge> {
+    let edges = rings.iter().flat_map(|ring| {
+        let vertices = &ring.vertices;
+        let previous = vertices.iter().cycle().skip(vertices.len().saturating_sub(1));
+        previous.zip(vertices).map(move |(p, q)| Edge {
+            from: p.x,
+            to: q.x,
+            from_y: add(p.y, center),
+            to_y: add(q.y, center),
+            part: ring.part,
+            rule: ring.rule,
+        })
     });
     let mut edges: Vec<Edge> = edges.filter(|edge| edge.low() < edge.high()).collect();
     edges.sort_by(|a, b| a.low().total_cmp(&b.low()));
@@ -172,6 +227,8 @@ pub(super) struct Sweep<'a> {
     next: usize,
     /// The edges that the line cuts.
     cut: Vec<Edge>,
+    /// Windings of the parts of a drawing around a point, all 0 outside; none for a single polygon.
+    windings: Option<Vec<i32>>,
 }
 
 /// Intersection of a horizontal line with an outline.
@@ -231,11 +288,32 @@ impl Sweep<'_> {
                 self.cut.extend(reached);
                 self.next += self.cut.len() - before;
                 self.cut.retain(|edge| y < edge.high());
-                crossings.extend(self.cut.iter().map(|edge| Crossing {
+                let crossing = |edge: &Edge| Crossing {
                     from: edge.from,
                     to: edge.to,
                     share: (y - edge.from_y) / (edge.to_y - edge.from_y),
-                }));
+                };
+                let Some(windings) = &mut self.windings else {
+                    return crossings.extend(self.cut.iter().map(crossing));
+                };
+                let of_cut = self.cut.iter().map(|edge| (crossing(edge), edge));
+                let mut of_cut: Vec<(Crossing, &Edge)> = of_cut.collect();
+                of_cut.sort_by(|(a, _), (b, _)| a.x(0.0).total_cmp(&b.x(0.0)));
+                // Only the lines between the union of all parts and its outside are kept.
+                let mut parts_around = 0;
+                for (crossing, edge) in of_cut {
+                    let winding = &mut windings[edge.part];
+                    let (before, was_inside) = (parts_around, *winding != 0);
+                    *winding = match edge.rule {
+                        FillRule::EvenOdd => 1 - *winding,
+                        FillRule::NonZero if edge.from_y < edge.to_y => *winding + 1,
+                        FillRule::NonZero => *winding - 1,
+                    };
+                    parts_around = parts_around + usize::from(*winding != 0) - usize::from(was_inside);
+                    if (before == 0) != (parts_around == 0) {
+                        crossings.push(crossing);
+                    }
+                }
             }
         }
     }

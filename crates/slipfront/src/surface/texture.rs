@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::outline::{Curve, Outlines, Vertex};
+use super::outline::{Curve, Outlines, Ring, Vertex};
 use super::pattern::{Array, Crossings, grids, n_copies};
 use crate::lattice::Lattice;
 use crate::vector_field::unit_vector;
@@ -42,6 +42,8 @@ pub enum Shape {
     Groove(Groove),
     /// Any polygon, by the even-odd rule; the copies are spread around its position.
     Polygon(Vec<[f64; 2]>),
+    /// The union of parts, each of which is filled by its own rule; the copies are spread around their place.
+    Drawing(Arc<Vec<Part>>),
     /// A mask, block by block; the copies are spread around the middle of the slider.
     Tile(Tile),
 }
@@ -64,6 +66,12 @@ impl Shape {
             Self::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
             Self::Groove(groove) => groove.offset.abs() + groove.width,
             Self::Polygon(points) => farthest(points.as_flattened()),
+            Self::Drawing(parts) => {
+                let rings = parts.iter().flat_map(|part| &part.rings);
+                rings
+                    .map(|ring| farthest(ring.as_flattened()))
+                    .fold(0.0, f64::max)
+            }
             Self::Tile(_) => 0.0,
         }
     }
@@ -73,10 +81,30 @@ impl Shape {
         match self {
             Self::Cavity(cavity) if cavity.s > 1 && cavity.w != 0.0 => OUTLINE_VERTICES,
             Self::Polygon(points) => points.len(),
+            Self::Drawing(parts) => parts.iter().flat_map(|part| &part.rings).map(Vec::len).sum(),
             Self::Cavity(_) | Self::Groove(_) => 4,
             Self::Tile(_) => 0,
         }
     }
+}
+
+/// Closed polylines that are filled together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Corners of each polyline.
+    pub rings: Vec<Vec<[f64; 2]>>,
+    /// Rule of the inside.
+    pub rule: FillRule,
+}
+
+/// Rule that defines the inside of closed lines by the lines which a ray from a point crosses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FillRule {
+    /// An odd number of lines.
+    #[default]
+    EvenOdd,
+    /// Unequal numbers of lines that cross the ray upwards and downwards.
+    NonZero,
 }
 
 /// A mask, block by block.
@@ -244,6 +272,6 @@ impl Cavity {
                 y: [axis[1] * p[0], axis[0] * p[1]],
             }
         };
-        Curve::Polygon((0..OUTLINE_VERTICES).map(vertex).collect())
+        Curve::Polygon(vec![Ring::alone((0..OUTLINE_VERTICES).map(vertex).collect())])
     }
 }

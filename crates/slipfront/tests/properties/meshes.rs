@@ -196,7 +196,7 @@ fn copy(lattice: &Lattice, shape: &Shape, [x, y]: [f64; 2]) -> Vec<bool> {
                 .collect(),
         ),
         Shape::Tile(tile) => return copy_of_tile(lattice, &tile, [x, y]),
-        cavity @ Shape::Cavity(_) => cavity,
+        other @ (Shape::Cavity(_) | Shape::Drawing(_)) => other,
     };
     mesh(lattice, &[moved.into()]).textured
 }

@@ -4,6 +4,7 @@ mod arrays;
 mod calibration;
 mod case;
 mod checkpoint;
+mod drawing;
 mod fields;
 mod figure_cache;
 mod json;
@@ -20,7 +21,7 @@ mod workbook;
 use crate::target::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 24] = [
+pub const TARGETS: [Target; 26] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -30,6 +31,8 @@ pub const TARGETS: [Target; 24] = [
     arrays::CSV_TABLE,
     arrays::MASK_PNG,
     arrays::HEIGHT_MAP,
+    drawing::SVG,
+    drawing::DXF,
     measured::MEASURED,
     workbook::WORKBOOK,
     run_journal::RUN_JOURNAL,

@@ -31,6 +31,7 @@ fn finished(id: &str, outcome: Outcome) -> FinishedRun {
         id: id.to_owned(),
         wall_time_s: 0.25,
         outcome,
+        kept: (id.len() > 1).then(|| "0123".repeat(16)),
     }
 }
 

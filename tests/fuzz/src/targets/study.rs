@@ -98,7 +98,7 @@ fn study_file(input: &[u8]) {
     assert!(study.count_points().unwrap() as u64 <= study.count_runs().unwrap());
 
     let out = scratch::folder("study");
-    match StudyFolder::open(&out, &study, false) {
+    match StudyFolder::open(&out, &study, None, false) {
         Err(error) => readable(&error),
         Ok(opened) => {
             drop(opened);
@@ -108,7 +108,7 @@ fn study_file(input: &[u8]) {
                 assert_eq!(format!("{:?}", again.axes), format!("{:?}", study.axes));
             }
             // A study read from its results folder is not changed by opening the folder again.
-            assert!(!StudyFolder::open(&out, &again, false).unwrap().changed);
+            assert!(!StudyFolder::open(&out, &again, None, false).unwrap().changed);
         }
     }
 }

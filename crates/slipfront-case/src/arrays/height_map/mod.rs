@@ -5,7 +5,6 @@
 
 mod averages;
 mod axis;
-mod extremes;
 mod grid;
 mod gsf;
 mod image;
@@ -24,12 +23,12 @@ pub use roughness::Roughness;
 
 use self::averages::Averages;
 use self::axis::FirstLines;
-use self::extremes::Extremes;
 use self::grid::{HeightGrid, Line, Take, points};
 use self::quantum::Quantum;
 use self::roughness::{HeightRange, Mean, Moments, Plane, PlaneSums};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::npy;
+use crate::extremes::Extremes;
 use slipfront_base::number_format::{four_digits, with_si_prefix};
 
 /// Units of a height map that the case states, m; one that differs from that of the file is refused.

@@ -5,23 +5,25 @@
 //! the first row at the top, and export it so to other formats. The first row therefore lies at the largest
 //! y, so that no file is the mirror image of another.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, Read, Seek};
 use std::path::Path;
 
 use flate2::read::DeflateDecoder;
 use md5::{Digest, Md5};
 use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
-use roxmltree::Node;
 
 use super::grid::{HeightGrid, Line, Take, points};
 use crate::arrays::error::{ArrayError, broken, contents_error};
-use crate::xml;
+use crate::xml::{self, Piece};
 use slipfront_base::text::truncated;
 
 /// Largest length of `main.xml`: a description takes a few thousand bytes.
 const XML_MAX_BYTES: u64 = 1 << 20;
-/// Most nodes of `main.xml`: a description takes a few hundred.
-const NODES_MAX: u32 = 1 << 16;
+/// Most nodes and attributes of `main.xml`: a description takes a few hundred.
+const NODES_MAX: usize = 1 << 16;
+/// Largest length of a path of elements that is kept, bytes: twice that of those which are asked for.
+const PATH_MAX_BYTES: usize = 80;
 
 /// Reads the points of a file. If a map may have gaps, unmeasured points become NaN.
 pub(super) fn read(
@@ -218,9 +220,13 @@ impl Description {
 
     fn of(path: &Path, xml: &str) -> Result<Self, ArrayError> {
         let refuse = |detail: &str| broken(path, ".x3p", detail);
-        let document = xml::parse("main.xml", xml, NODES_MAX).map_err(|detail| refuse(&detail))?;
-        let root = document.root_element();
-        let text = |place: &str| text_at(root, place);
+        let texts = texts(xml).map_err(|detail| refuse(&detail))?;
+        let text = |place: &str| {
+            texts
+                .get(place)
+                .map(|text| text.trim())
+                .filter(|text| !text.is_empty())
+        };
         let wanted = |place: &str| text(place).ok_or_else(|| refuse(&format!("`main.xml` has no {place}")));
         let must_be = |place: &str, right: &str, what: &str| match wanted(place)? {
             found if found == right => Ok(()),
@@ -287,11 +293,30 @@ impl Description {
     }
 }
 
-/// The text of an element below another one, such as `Record1/Axes`, if it is there and not empty.
-fn text_at<'a>(root: Node<'a, '_>, place: &str) -> Option<&'a str> {
-    let mut node = root;
-    for name in place.split('/') {
-        node = node.children().find(|child| child.tag_name().name() == name)?;
-    }
-    node.text().map(str::trim).filter(|text| !text.is_empty())
+/// The texts of the elements below the root by their paths, such as `Record1/Axes/CX/AxisType`; of elements
+/// with the same path, that of the first.
+fn texts(xml: &str) -> Result<BTreeMap<String, String>, String> {
+    let mut texts = BTreeMap::<String, String>::new();
+    let mut is_first = false;
+    xml::read(
+        "main.xml",
+        xml.as_bytes(),
+        &mut { NODES_MAX },
+        &mut |path, piece| {
+            let place = path.split_once('/').map_or("", |(_, place)| place);
+            match piece {
+                Piece::Start(_) => {
+                    is_first = place.len() <= PATH_MAX_BYTES && !texts.contains_key(place);
+                    if is_first {
+                        texts.insert(place.to_owned(), String::new());
+                    }
+                }
+                Piece::Text(text) if is_first => texts.entry(place.to_owned()).or_default().push_str(text),
+                Piece::Text(_) => {}
+                Piece::End => is_first = false,
+            }
+            Ok(())
+        },
+    )?;
+    Ok(texts)
 }

@@ -4,6 +4,7 @@
 //! shape in blocks that they define. This file has one row per shape.
 
 mod cavity;
+mod drawing;
 mod groove;
 mod height_map;
 mod mask;
@@ -13,6 +14,7 @@ mod polygon;
 use serde::Serialize;
 
 pub use self::cavity::{Cavity, CavitySize, Center};
+pub use self::drawing::Drawing;
 pub use self::groove::{Groove, GrooveSize};
 pub use self::height_map::{Bearing, HeightMap, Level, Missing};
 pub use self::mask::{DEFAULT_THRESHOLD, Mask};
@@ -31,12 +33,13 @@ macro_rules! keys {
 }
 
 /// The names of the shapes and their keys, in the order of the documentation.
-pub(super) const ALL: [(&str, &[Key]); 5] = [
+pub(super) const ALL: [(&str, &[Key]); 6] = [
     ("cavity", keys!(Cavity)),
     ("groove", keys!(Groove)),
     ("polygon", keys!(Polygon)),
     ("mask", keys!(Mask)),
     ("height_map", keys!(HeightMap)),
+    ("drawing", keys!(Drawing)),
 ];
 
 /// Words that people try first, with the advice on each, by shape.
@@ -46,6 +49,7 @@ pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
     polygon::SYNONYMS,
     mask::SYNONYMS,
     height_map::SYNONYMS,
+    drawing::SYNONYMS,
 ];
 
 /// The shape of a texture.
@@ -62,6 +66,8 @@ pub enum Shape {
     Mask(Mask),
     /// Measured topography.
     HeightMap(HeightMap),
+    /// The outlines of a drawing.
+    Drawing(Drawing),
 }
 
 /// Definition of the inside of a shape.
@@ -72,6 +78,8 @@ pub(crate) enum Inside<'a> {
     Mask(&'a Mask),
     /// The heights of a file.
     HeightMap(&'a HeightMap),
+    /// The outlines of a file.
+    Drawing(&'a Drawing),
 }
 
 impl Shape {
@@ -83,6 +91,7 @@ impl Shape {
             Self::Polygon(_) => "polygon",
             Self::Mask(_) => "mask",
             Self::HeightMap(_) => "height_map",
+            Self::Drawing(_) => "drawing",
         }
     }
 
@@ -94,6 +103,7 @@ impl Shape {
             Self::Polygon(polygon) => Inside::Outline(polygon),
             Self::Mask(mask) => Inside::Mask(mask),
             Self::HeightMap(map) => Inside::HeightMap(map),
+            Self::Drawing(drawing) => Inside::Drawing(drawing),
         }
     }
 
@@ -101,7 +111,7 @@ impl Shape {
     pub(crate) fn outline(&self) -> Option<&dyn Outlined> {
         match self.form() {
             Inside::Outline(outline) => Some(outline),
-            Inside::Mask(_) | Inside::HeightMap(_) => None,
+            Inside::Mask(_) | Inside::HeightMap(_) | Inside::Drawing(_) => None,
         }
     }
 
@@ -113,7 +123,7 @@ impl Shape {
     /// Reason why the shape covers no block, with the keys to check.
     pub(crate) fn why_empty(&self) -> &'static str {
         match self.form() {
-            Inside::Outline(_) => {
+            Inside::Outline(_) | Inside::Drawing(_) => {
                 "it lies off the slider, or between the centres of blocks; look at its size and place"
             }
             Inside::Mask(_) => Mask::EMPTY,
@@ -128,6 +138,7 @@ impl Shape {
             Self::Polygon(polygon) => polygon.check(check),
             Self::Mask(mask) => mask.check(check),
             Self::HeightMap(map) => map.check(check),
+            Self::Drawing(drawing) => drawing.check(check),
         }
     }
 }

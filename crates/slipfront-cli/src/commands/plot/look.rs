@@ -1,7 +1,7 @@
 //! Options on the look of pictures: their size, their file formats, and the choice of pictures.
 
 use clap::{Args, ValueEnum};
-use slipfront_case::case_file::nearest;
+use slipfront_case::nearest::nearest;
 use slipfront_plot::{PictureFormat, PictureLook, PictureSize};
 
 use crate::bounds::within;

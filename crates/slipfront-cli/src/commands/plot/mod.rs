@@ -39,8 +39,8 @@ use crate::threads::set_threads;
   slipfront plot results/coverage --picture static_reduction_percent --width 60 --height 45 -o inset
   slipfront plot results/circle results/groove_across -o results/overlay
   slipfront plot results/circle --units si --against displacement -o results/newtons
-  slipfront plot results/circle --data force.csv --x time_s --y force_n
-  slipfront plot results/circle --data force.csv --x time_s --y force_n --instrument rig.toml
+  slipfront plot results/baseline --data cases/calibrations/sliding.csv --x t --y F --shift 0 -o both
+  slipfront plot results/tribometer --data cases/calibrations/tribometer.csv --x Time --y Fx --instrument cases/calibrations/tribometer.toml
   slipfront plot results/a results/b --width 120 --height 90 --font-size 10 --name smooth --name textured -o both
   slipfront plot results/circle --field traction -o results/traction
   slipfront plot results/circle --field kymograph -o results/kymograph

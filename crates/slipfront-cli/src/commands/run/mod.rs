@@ -26,6 +26,7 @@ use crate::case_args::CaseArgs;
 use crate::checkpoint_timer::Interval;
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print::print_message;
 use crate::print_stderr::print_notes;
 use crate::ranks::CommandRanks;
@@ -49,9 +50,8 @@ pub(crate) struct RunCommand {
     /// contains case.toml; the next free number is appended if it exists]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace the files of an earlier run in this folder, but no other files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Wall time between checkpoints, such as 30s or 1h, or off; at least 99 times the time to save one
     #[arg(long, value_name = "TIME", default_value = "5min")]
     checkpoint: Interval,
@@ -93,7 +93,7 @@ impl RunCommand {
             self.device
                 .open_for(&case, ranks.size(), options.quiet || options.json),
         )?;
-        let (force, saves) = (self.force, options.interval.saves());
+        let (force, saves) = (self.force.given, options.interval.saves());
         let named = Path::new("results").join(&case.name);
         let (out, takes_next) = self.out.map_or((named, !force), |out| (out, false));
         let claimed = ranks.first(|| {
@@ -155,7 +155,7 @@ impl RunCommand {
         let options = [
             ("--resume", flag(self.resume.is_some())),
             ("--previous", flag(self.previous)),
-            ("--force", flag(self.force)),
+            ("--force", flag(self.force.given)),
             ("--checkpoint", self.checkpoint.to_string()),
             ("--no-pictures", flag(self.no_pictures)),
             ("--json", flag(self.json)),

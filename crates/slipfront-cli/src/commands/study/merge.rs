@@ -8,6 +8,7 @@ use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, stud
 
 use super::run::{Shown, finish};
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::threads::set_threads;
@@ -21,9 +22,8 @@ pub(crate) struct Merge {
     /// Folder of the merged study
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Do not print tables
     #[arg(short, long)]
     quiet: bool,
@@ -42,7 +42,8 @@ impl Merge {
         plan.check_memory(0).map_err(Failure::input)?;
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let mut folder = StudyFolder::open(&self.out, &study, self.force).map_err(Failure::of_folder)?;
+        let mut folder =
+            StudyFolder::open(&self.out, &study, None, self.force.given).map_err(Failure::of_folder)?;
         let mut taken = 0;
         for shard in &self.shards {
             Failure::if_stopped(&signals)?;
@@ -56,11 +57,9 @@ impl Merge {
             ));
         }
         let results = collect(&plan, &folder.records).map_err(Failure::running)?;
-        for shard in &self.shards {
-            folder
-                .take_kept(&plan, &results, shard, &signals.stop)
-                .map_err(|error| Failure::of_results(&signals, error))?;
-        }
+        folder
+            .take_kept(&plan, &results, &self.shards, &signals.stop)
+            .map_err(|error| Failure::of_results(&signals, error))?;
         let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
         finish(&plan, &results, &folder, shown, &signals)?;
         results.expect_values(&plan).map_err(Failure::running)

@@ -10,6 +10,7 @@ use slipfront_study::{Plan, Progress, Shard, StudyError, StudyFile, StudyFolder,
 
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
+use crate::force::ForceArg;
 use crate::print::{print, print_message};
 use crate::print_stderr::print_notes;
 use crate::progress::study::StudyProgress;
@@ -29,9 +30,8 @@ pub(crate) struct StudyRun {
     /// Folder for the results [default: results/NAME with the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace result files that were edited, and other files with the names of result files
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: ForceArg,
     /// Maximum number of runs at a time [default: one per core]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
@@ -97,7 +97,8 @@ impl StudyRun {
         refuse_to_replace(&path, file.has_base_file() || is_changed_unsaid, &out)?;
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = StudyFolder::open(&out, &file, self.force).map_err(Failure::of_folder)?;
+        let folder =
+            StudyFolder::open(&out, &file, self.shard, self.force.given).map_err(Failure::of_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;

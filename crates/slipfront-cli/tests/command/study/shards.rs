@@ -90,6 +90,45 @@ fn run_folders_that_shards_kept_are_taken_over() {
     );
 }
 
+/// The case of a run that failed is taken over; a run folder that its journal does not name is refused.
+#[test]
+fn kept_folders_of_shards_are_those_of_their_runs() {
+    let workspace = Workspace::with_study(
+        "[base]\nslider = { blocks = [6, 6], omega_star = 0 }\ndrive = { v_star = 10 }\n\
+         friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }\n\
+         [study]\nkeep = 'failed'\n\
+         [[axes]]\nkey = 'load.pressure'\nlist = ['50 GPa', '100 kPa', '49 GPa']\n",
+    );
+    for part in ["1", "2"] {
+        let out = workspace.output(&format!("study study.toml --shard {part}/2 -q -o part{part}"));
+        assert_eq!(out.status.code(), Some(if part == "1" { 1 } else { 0 }));
+    }
+    workspace.fail("study merge part1 part2 -q -o merged", 1);
+    let of_failed = |folder: &str| {
+        let mut files = workspace.files(&format!("{folder}/runs"));
+        files.retain(|name, _| name.ends_with("case.toml"));
+        files
+    };
+    let kept = of_failed("part1");
+    assert_eq!(kept.len(), 2);
+    assert!(of_failed("merged") == kept);
+    let names: Vec<&String> = kept.keys().collect();
+    for folder in ["merged", "part1"] {
+        workspace.write(&format!("{folder}/runs/{}", names[0]), &kept[names[1]]);
+        let said = stdout(&workspace.output(&format!("verify --checksums {folder}")));
+        assert!(
+            said.contains("is not the folder of the run that the journal names"),
+            "{said}"
+        );
+    }
+    workspace.remove("merged");
+    let said = workspace.fail("study merge part1 part2 -q -o merged", 1);
+    assert!(
+        said.contains("is not the folder of the run that the journal names"),
+        "{said}"
+    );
+}
+
 #[test]
 fn foreign_shards_are_refused() {
     let workspace = Workspace::with_study(SMALL);
@@ -138,6 +177,20 @@ fn a_shard_of_slurm_is_read_from_its_environment() {
     for out in ["one", "zero"] {
         workspace.results(out).assert_same(&workspace.results("given"));
     }
+    // One task that is submitted alone is all of the study to Slurm.
+    let alone = &mut task("given", "2");
+    let alone = alone
+        .env("SLURM_ARRAY_TASK_MIN", "2")
+        .env("SLURM_ARRAY_TASK_COUNT", "1");
+    let said = stderr(&ended_with(alone, 2));
+    assert!(
+        said.contains("given holds part 2/3 of this study, not part 1/1"),
+        "{said}"
+    );
+    workspace.succeed("study study.toml --shard 2/3 -o given");
+    let gaps = &mut task("gaps", "5");
+    let said = stderr(&ended_with(gaps.env("SLURM_ARRAY_TASK_MAX", "5"), 2));
+    assert!(said.contains("the indices of the array have gaps"), "{said}");
     let said = stderr(&ended_with(&mut task("outside", "4"), 2));
     assert!(said.contains("there is no part 4 of 3"), "{said}");
     let nowhere = workspace.output("study study.toml --shard slurm -o nowhere");

@@ -1,8 +1,8 @@
-//! Detection of values that mark points that were not measured, among heights.
+//! Detection of values that mark points that were not measured, among heights or readings of a meter.
 
 use std::cmp::Ordering;
 
-/// The outermost value on one side of all heights.
+/// The outermost value on one side of all values.
 #[derive(Clone, Copy)]
 struct Extreme {
     value: f64,
@@ -13,54 +13,64 @@ struct Extreme {
 }
 
 impl Extreme {
-    /// Adds a height; `side` says how a height beyond the outermost one compares with it.
-    fn add(&mut self, height: f64, side: Ordering) {
-        match height.total_cmp(&self.value) {
+    /// Adds a value; `side` says how a value beyond the outermost one compares with it.
+    fn add(&mut self, value: f64, side: Ordering) {
+        match value.total_cmp(&self.value) {
             Ordering::Equal => self.count += 1,
             order if order == side => {
                 *self = Self {
-                    value: height,
+                    value,
                     count: 1,
                     next: self.value,
                 };
             }
-            _ if self.next == self.value || height.total_cmp(&self.next) == side => self.next = height,
+            _ if self.next == self.value || value.total_cmp(&self.next) == side => self.next = value,
             _ => {}
         }
     }
 }
 
-/// The lowest and the highest of some heights, each with its number of points and the nearest other height.
+/// The lowest and the highest of some values, each with its number of points and the nearest other value.
 #[derive(Default)]
-pub(super) struct Extremes {
+pub struct Extremes {
     /// The lowest and the highest.
     ends: Option<[Extreme; 2]>,
     count: usize,
 }
 
 impl Extremes {
-    /// Adds heights; points with NaN are none.
-    pub(super) fn add(&mut self, heights: &[f64]) {
-        for &height in heights.iter().filter(|height| !height.is_nan()) {
+    /// Adds values; NaN is none.
+    pub fn add(&mut self, values: &[f64]) {
+        for &value in values.iter().filter(|value| !value.is_nan()) {
             self.count += 1;
             let Some([lowest, highest]) = &mut self.ends else {
                 let alone = Extreme {
-                    value: height,
+                    value,
                     count: 1,
-                    next: height,
+                    next: value,
                 };
                 self.ends = Some([alone; 2]);
                 continue;
             };
-            lowest.add(height, Ordering::Less);
-            highest.add(height, Ordering::Greater);
+            lowest.add(value, Ordering::Less);
+            highest.add(value, Ordering::Greater);
         }
     }
 
+    /// Whether a mark is more than twice as far from zero as all values that are none.
+    pub fn exceeds_all(&self, mark: f64) -> bool {
+        let marks = self.marks();
+        let is_mark = |value: f64| marks.iter().any(|(of, _)| *of == value);
+        self.ends.iter().flatten().all(|end| {
+            let nearest = if is_mark(end.value) { end.next } else { end.value };
+            mark.abs() > FAR * nearest.abs()
+        })
+    }
+
     /// The outermost values that may mark points that were not measured, with their numbers of points: values
-    /// of a minority of the points, and farther from the nearest height than all other heights are from each
+    /// of a minority of the points, and farther from the nearest value than all other values are from each
     /// other.
-    pub(super) fn marks(&self) -> Vec<(f64, usize)> {
+    pub fn marks(&self) -> Vec<(f64, usize)> {
         let Some([lowest, highest]) = self.ends else {
             return Vec::new();
         };
@@ -76,7 +86,8 @@ impl Extremes {
     }
 }
 
-/// Distance of a mark from all heights, over their range. The heights of a surface have no such gap.
+/// Distance of a mark from all values, over their range, and from zero. The heights of a surface have no such
+/// gap.
 const FAR: f64 = 2.0;
 
 #[cfg(test)]
