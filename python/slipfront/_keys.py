@@ -99,6 +99,7 @@ class CalibrationKeys(TypedDict, total=False):
     header_line: int
     decimal: Literal["point", "comma"]
     separator: Literal["comma", "semicolon", "tab", "blank"]
+    segment: int
     against: Literal["time", "displacement"]
     y_factor: float
     y_offset: float

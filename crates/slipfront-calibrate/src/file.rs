@@ -96,6 +96,9 @@ key_rows! {
         decimal: Option<DecimalSign> = key("", KeyKind::Words(names_of::<DecimalSign>)).without("found"),
         /// Separator of fields.
         separator: Option<FieldSeparator> = key("", KeyKind::Words(names_of::<FieldSeparator>)).without("found"),
+        /// Part of the record, from 1, if it has several tables below each other, such as the steps of a
+        /// test.
+        segment: Option<u32> = key("", KeyKind::Special("")).without("the only one"),
         /// Quantity of the first column: time, or displacement of the drive. Both begin at 0 where the drive
         /// does.
         against: Against = key("\"time\"", KeyKind::Words(names_of::<Against>)),
@@ -188,7 +191,10 @@ impl CalibrationKeys {
 
     /// Format of the tables of records, as far as the file gives it.
     fn table(&self) -> TableOptions {
-        TableOptions::stated(self.header_line, self.decimal, self.separator)
+        TableOptions {
+            segment: self.segment,
+            ..TableOptions::stated(self.header_line, self.decimal, self.separator)
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Options on the format of the table of a measured record.
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, value_parser};
 use slipfront_case::table::{DecimalSign, FieldSeparator, TableOptions};
 
 /// How a table is written, where it should not be found.
@@ -15,6 +15,9 @@ pub(crate) struct TableArgs {
     /// Field separator of the record [default: detected]
     #[arg(long, value_name = "NAME", requires = "data")]
     separator: Option<Separator>,
+    /// Part of the record, from 1, if it has several tables below each other, such as the steps of a test
+    #[arg(long, value_name = "N", requires = "data", value_parser = value_parser!(u32).range(1..))]
+    segment: Option<u32>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -43,6 +46,9 @@ impl TableArgs {
             Separator::Tab => FieldSeparator::Tab,
             Separator::Blank => FieldSeparator::Blank,
         });
-        TableOptions::stated(self.header_line, decimal, separator)
+        TableOptions {
+            segment: self.segment,
+            ..TableOptions::stated(self.header_line, decimal, separator)
+        }
     }
 }

@@ -15,7 +15,7 @@ use slipfront_base::number_format::{count, with_si_prefix};
 use slipfront_base::text::{display_path, truncated};
 use slipfront_case::extremes::Extremes;
 use slipfront_case::table::{
-    HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, has_thousands, number,
+    HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, has_thousands, number, segment,
 };
 
 pub use self::columns::{TableColumn, columns_of, is_displacement, suggested};
@@ -44,6 +44,9 @@ const MAX_READING: f64 = 1e30;
 
 /// Length of a day, s.
 const DAY: f64 = 86_400.0;
+
+/// Number of bytes of a record from which on no segment of it is selected.
+const SEGMENTS_MAX_BYTES: u64 = 1 << 28;
 
 /// Largest number of bytes of a line of a record.
 const LINE_MAX_BYTES: u64 = 1 << 20;
@@ -110,7 +113,7 @@ impl MeasuredRecord {
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
         let open = || Ok(Box::new(open_limited(path, u64::MAX)?) as Box<dyn Read>);
-        Self::read_from(&open, path, columns, along, options, &[])
+        Self::read_from((&open, HEAD_BYTES), path, columns, along, options, &[])
     }
 
     /// Reads two columns of a table in memory, as [`read`](Self::read) does for a file; messages name its
@@ -125,13 +128,15 @@ impl MeasuredRecord {
         along: Measure,
         options: TableOptions,
     ) -> Result<Self, MeasuredError> {
-        Self::read_from(&|| Ok(Box::new(bytes)), path, columns, along, options, &[])
+        let open = || Ok(Box::new(bytes) as Box<dyn Read>);
+        Self::read_from((&open, HEAD_BYTES), path, columns, along, options, &[])
     }
 
-    /// Reads two columns of the table that `open` opens from its beginning, each time that it is called.
-    /// `shown` says how a workbook [shows](workbook::Sheet::shown) its columns.
+    /// Reads two columns of the table that `open` opens from its beginning, each time that it is called, and
+    /// whose layout shows in its first `head_bytes`. `shown` says how a workbook
+    /// [shows](workbook::Sheet::shown) its columns.
     fn read_from<'t>(
-        open: &dyn Fn() -> std::io::Result<Box<dyn Read + 't>>,
+        (open, head_bytes): (&dyn Fn() -> std::io::Result<Box<dyn Read + 't>>, u64),
         path: &Path,
         columns: [&Column; 2],
         along: Measure,
@@ -147,7 +152,7 @@ impl MeasuredRecord {
             source,
         };
         let mut head = Vec::new();
-        let read = open().and_then(|table| table.take(HEAD_BYTES).read_to_end(&mut head));
+        let read = open().and_then(|table| table.take(head_bytes).read_to_end(&mut head));
         read.map_err(unreadable)?;
         if workbook::is_workbook(&head) {
             let mut bytes = Vec::new();
@@ -158,11 +163,33 @@ impl MeasuredRecord {
                 why,
             })?;
             let open = || Ok(Box::new(sheet.text.as_bytes()) as Box<dyn Read>);
-            let mut record = Self::read_from(&open, path, columns, along, options, &sheet.shown)?;
+            let mut record =
+                Self::read_from((&open, HEAD_BYTES), path, columns, along, options, &sheet.shown)?;
             let took = record.took.take();
             let took = took.unwrap_or_else(|| display_path(path).to_string());
             record.took = Some(format!("{took}; sheet {:?} of the workbook", sheet.name));
             return Ok(record);
+        }
+        if let Some(number) = options.segment {
+            let mut table = Vec::new();
+            let read = open().and_then(|source| source.take(SEGMENTS_MAX_BYTES).read_to_end(&mut table));
+            read.map_err(unreadable)?;
+            if table.len() as u64 == SEGMENTS_MAX_BYTES {
+                let most = SEGMENTS_MAX_BYTES >> 20;
+                let why = format!(
+                    "has {most} MiB or more, too much to select a segment: write the segment to a file"
+                );
+                return Err(failed(std::io::Error::other(why).into()));
+            }
+            let text = segment(&table, number).map_err(failed)?;
+            let open = || Ok(Box::new(text.as_bytes()) as Box<dyn Read>);
+            let options = TableOptions {
+                segment: None,
+                ..options
+            };
+            // Names and rows follow all segments before.
+            let source = (&open as &dyn Fn() -> _, text.len() as u64);
+            return Self::read_from(source, path, columns, along, options, shown);
         }
         let layout = TableLayout::find(&head, options).map_err(failed)?;
         layout.check_names().map_err(failed)?;
@@ -604,6 +631,53 @@ mod tests {
             said.ends_with(took) && said.is_empty() == took.is_empty(),
             "{said}"
         );
+    }
+
+    /// The steps of a test in one file, each with its own header, or with names above the first alone. The
+    /// first is longer than what is looked at to find the layout of a table.
+    #[test]
+    fn one_of_several_segments_is_read() {
+        let rows: String = (0..40_000).map(|k| format!("{k},0.1,7\n")).collect();
+        let header = "Data Count = 6\nT,Ff,COF\nsec,N,\n\n";
+        let of_umt = |between: &str| {
+            format!("CETR Data Viewer\nStep No. 1\n{header}{rows}\n{between}0,0.2,7\n2,0.4,7\n3,0.5,7\n")
+        };
+        let of_labview = "LabVIEW\nSamples\t2\nX_Value\tForce\tComment\n0,0\t9,0\n1,0\t9,0\tslip\n\nChannels\t1\n\
+                          ***End_of_Header***\nX_Value\tForce\tComment\n0,0\t0,2\n2,0\t0,4\n3,0\t0,5\nend\n";
+        let second = |text: &str, names: [&str; 2]| {
+            let [x, y] = [(0, "s"), (1, "N")].map(|(k, unit)| Column {
+                name: names[k].to_owned(),
+                unit: Some(unit.to_owned()),
+            });
+            let options = |segment| TableOptions {
+                segment: Some(segment),
+                ..TableOptions::default()
+            };
+            let of = |number| {
+                MeasuredRecord::parse(
+                    text.as_bytes(),
+                    Path::new("rig"),
+                    [&x, &y],
+                    Measure::Time,
+                    options(number),
+                )
+            };
+            let missing = of(3).unwrap_err().to_string();
+            assert!(
+                missing.contains("has 2 segments of rows, so there is no segment 3"),
+                "{missing}"
+            );
+            of(2).unwrap()
+        };
+        for (text, names) in [
+            (of_umt(&format!("Step No. 2\n{header}")), ["T", "Ff"]),
+            (of_umt("Step No. 2\n"), ["T", "Ff"]),
+            (of_labview.to_owned(), ["X_Value", "Force"]),
+        ] {
+            let record = second(&text, names);
+            assert_eq!(record.x, [0.0, 2.0, 3.0], "{names:?}");
+            assert_eq!(record.y, [0.2, 0.4, 0.5], "{names:?}");
+        }
     }
 
     /// Displacements alternate forwards and back. Means over bins keep the friction, which is a function of

@@ -44,6 +44,8 @@ pub enum TableError {
     OpenQuote { line: u64 },
     #[error("has more than {most} bytes in line {line}: write one row per line")]
     LongLine { line: u64, most: u64 },
+    #[error("has {found} segments of rows, so there is no segment {wanted}")]
+    NoSegment { wanted: u32, found: usize },
     #[error("has {lines} lines, so there is no line {wanted} with column names")]
     NoHeader { wanted: u64, lines: u64 },
 }

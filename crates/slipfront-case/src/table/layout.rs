@@ -73,6 +73,8 @@ pub struct TableOptions {
     pub decimal: Option<char>,
     /// Separator of fields: a comma, a semicolon, a tab or blanks.
     pub separator: Option<char>,
+    /// One of several tables below each other, from 1.
+    pub segment: Option<u32>,
 }
 
 impl TableOptions {
@@ -86,6 +88,7 @@ impl TableOptions {
             header_line,
             decimal: decimal.map(DecimalSign::sign),
             separator: separator.map(FieldSeparator::sign),
+            segment: None,
         }
     }
 }

@@ -14,9 +14,11 @@ mod fields;
 mod layout;
 mod number;
 mod rows;
+mod segments;
 
 pub use encoding::Encoding;
 pub use error::TableError;
 pub use layout::{DecimalSign, FieldSeparator, HEAD_BYTES, NamedLine, TableLayout, TableOptions};
 pub use number::{clock_time, has_thousands, number};
 pub use rows::TableRows;
+pub use segments::segment;

@@ -73,7 +73,8 @@ pub enum MeasuredError {
         why: String,
     },
     #[error(
-        "line {line} of {}, {text:?}, has no number in column `{column}`: write one, remove the line, or begin it with #",
+        "line {line} of {}, {text:?}, has no number in column `{column}`: write one, remove the line, begin it with #, or choose one of several \
+         segments by `segment`",
         display_path(path)
     )]
     NoNumber {
@@ -95,7 +96,7 @@ pub enum MeasuredError {
     },
     #[error(
         "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a single \
-         step of the test",
+         step of the test, such as by `segment`",
         display_path(path)
     )]
     Falls {
