@@ -31,8 +31,8 @@ fn the_reference_finds_what_is_known() {
     assert!((finer - 16.98).abs() < 0.05, "{finer}");
 }
 
-/// Largest relative error of a reduction: increments of the drive and the rest after each.
-const ERROR: f64 = 0.02;
+/// Largest relative error of a reduction: a smallest increment of 3e-4 of the strength, of reductions from 2.4 %.
+const ERROR: f64 = 0.01;
 
 /// Checks that a reduction is that of the reference.
 fn agrees(what: &str, found: f64, expected: f64) {

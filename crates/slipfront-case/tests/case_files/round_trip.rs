@@ -9,8 +9,8 @@ use slipfront_case::case_file::{
     AutoOrStiffness, Bearing, Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping,
     Drawing, Drive, DriveSpeed, DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap,
     Initial, KineticFriction, Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output,
-    Pattern, Pitch, Polygon, Profile, Redistribute, RunTime, Shape, Slider,
-    SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    Pattern, Pitch, Polygon, Profile, Redistribute, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots,
+    Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
