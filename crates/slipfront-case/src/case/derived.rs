@@ -9,7 +9,7 @@ use super::budget::Budget;
 use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::ranks::Ranks;
-use crate::case_file::{CaseError, CaseFile, DriveStiffness, FrictionAlong};
+use crate::case_file::{Body, CaseError, CaseFile, DriveStiffness, FrictionAlong};
 use crate::quantity::Length;
 
 /// Quantities that follow from a case file without reading its input files.
@@ -41,6 +41,11 @@ impl Derived {
                 lattice.ny
             );
             return Err(file.source.error("slider.blocks", sentence));
+        }
+        if n_ranks > 1 && file.slider.body == Body::Bulk {
+            let why =
+                "a bulk body is not divided over ranks, since every block acts on all others: use one rank";
+            return Err(file.source.error("slider.body", why));
         }
         if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
             return Err(file.source.error(key, why));

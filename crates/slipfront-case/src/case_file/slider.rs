@@ -314,6 +314,18 @@ impl Slider {
                 )
             });
         }
+        let is_undamped = match &self.damping {
+            Damping::OmegaStar(damping) => *damping == 0.0,
+            Damping::Rate(damping) => damping.si() == 0.0,
+        };
+        if is_undamped {
+            return check.refuse(self.damping.key(), |key| {
+                format!(
+                    "`{key}` is 0: a bulk body without damping never rests, and gives wrong strengths; leave it out, for the \
+                     critical damping of its longest wave"
+                )
+            });
+        }
         self.check_sides(check)
     }
 
