@@ -56,8 +56,8 @@ struct Saved {
 }
 
 impl Search {
-    /// A search from the given state, or from rest. It ends after the path of `most` increments of the first
-    /// size, if nothing runs away.
+    /// A search from the given state, or from rest. If nothing runs away, it ends where the drive springs would
+    /// bear twice the strength, and the loss of strength over its slip.
     pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution, most: u64) -> Self {
         let counts = vec![0];
         let first = with_increments(&model, dt_star, &counts);
@@ -265,7 +265,7 @@ mod tests {
         /// The reduction of strength in %, and the steps of the search and of the run.
         fn reduction(&self) -> (f64, [u64; 2]) {
             let (model, dt_star) = self.model();
-            let mut search = Search::new(model.clone(), dt_star, None, Execution::default(), 2000);
+            let mut search = Search::new(model.clone(), dt_star, None, Execution::default());
             let mut steps = 0;
             let found = loop {
                 steps += 1;

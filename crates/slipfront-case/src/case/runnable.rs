@@ -245,11 +245,8 @@ impl Case {
     /// for other cases.
     pub fn search(&self, execution: Execution) -> Option<Search> {
         let (model, plan) = (Model::clone(&self.model), &self.time_plan);
-        let Loading::Held { onset_steps } = plan.loading else {
-            return None;
-        };
         let searches = model.rests_by_excess() && model.drive.program.is_none();
-        searches.then(|| Search::new(model, plan.dt_star, self.state(), execution, onset_steps))
+        searches.then(|| Search::new(model, plan.dt_star, self.state(), execution))
     }
 
     /// The increments of a held drive, if a search has found them.
