@@ -58,7 +58,10 @@ struct Saved {
 impl Search {
     /// A search from the given state, or from rest. If nothing runs away, it ends where the drive springs would
     /// bear twice the strength, and the loss of strength over its slip.
-    pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution, most: u64) -> Self {
+    pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
+        let slip = model.friction.strength_over_slip().map_or(0.0, |law| law.length);
+        let rise = 2.0 + model.drive.k_drive * slip;
+        let most = (rise / INCREMENT).ceil() as u64;
         let counts = vec![0];
         let first = with_increments(&model, dt_star, &counts);
         let simulation = Simulation::new(first, dt_star, state, execution.clone());
