@@ -199,7 +199,7 @@ test('a case that the page has kept is opened when it is dropped', async (t) => 
   assert.equal(lab.last.case.toml, toml);
 });
 
-test('a dropped file that can be no image, case or run is refused in a sentence, whatever size it claims', async (t) => {
+test('a dropped file that can be no image, case, run or record is refused in a sentence, whatever size it claims', async (t) => {
   const lab = await open(t, { toml: SMALL });
   const { toml } = lab.last.case;
   const png = (width, height) => {
@@ -227,7 +227,7 @@ test('a dropped file that can be no image, case or run is refused in a sentence,
   };
   for (const [name, bytes] of Object.entries({
     'run.zip': [...zip], 'empty.zip': [], 'wide.png': png(2 ** 31 - 1, 1), 'large.png': png(100_000, 100_000), 'none.png': png(0, 0),
-    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)], 'text.md': [1, 2, 3],
+    'nested.svg': [...Buffer.from(`<svg xmlns="http://www.w3.org/2000/svg">${'<g>'.repeat(10_000)}`)],
   })) {
     await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
     await dropFile(lab, name, bytes);
@@ -237,6 +237,11 @@ test('a dropped file that can be no image, case or run is refused in a sentence,
     await dropFile(lab, `bomb${method}.zip`, bomb(method));
     await until(async () => /The case bomb\d has more than the [\d.]+ MiB/.test(await lab.text('notices')), 'a notice that it is too large');
   }
+  // Whatever is no picture by its name may be a record.
+  const { curve, problem } = await lab.after(() => dropFile(lab, 'text.md', [1, 2, 3]), 'record');
+  assert.equal(curve, null);
+  await lab.reads('measure-problem', problem);
+  await lab.page.keyboard.press('Escape');
   assert.equal(lab.last.case.toml, toml);
   await lab.runToEnd();
 });
