@@ -140,8 +140,12 @@ pub(crate) fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error).into()),
     };
-    // Differences of the journal itself are told already.
-    let (lines, damaged) = Journal::read::<FinishedRun>(folder, RunJournal::FILE).unwrap_or_default();
+    let (lines, damaged) = match Journal::read::<FinishedRun>(folder, RunJournal::FILE) {
+        Ok(read) => read,
+        // Differences of the journal itself are told already.
+        Err(_) if !verdict.differences.is_empty() => Default::default(),
+        Err(error) => return Err(error.into()),
+    };
     if damaged > 0 {
         verdict.notes.push(format!(
             "{} has {}, whose runs are recorded once more or not needed",
