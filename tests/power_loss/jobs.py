@@ -1,6 +1,7 @@
 """Commands that write folders, and what must become of what a power loss leaves of them."""
 
 import glob
+import json
 import os
 import re
 import signal
@@ -125,7 +126,8 @@ def files_below(folder):
 
 def without_time(files):
     """Files of results without what tells when they were made; of records of runs only their identities. The journal of a complete run in a
-    study is left out: nobody looks there again, and `verify` notes it."""
+    study is left out: nobody looks there again, and `verify` notes it. The hash of a journal in checksums.json is one of times: `verify` is
+    there to compare it."""
     kept = {}
     for name, content in files.items():
         run = re.match("(runs/[^/]+/)[.]slipfront/journal.jsonl", name)
@@ -137,6 +139,9 @@ def without_time(files):
             kept[name] = re.sub(rb'"datePublished": "20[0-9-]+"', b"", content)
         elif name == "runs.jsonl":
             kept[name] = sorted(re.findall(rb'"id":"(\w+)"', content))
+        elif name == "checksums.json":
+            sealed = json.loads(content)
+            kept[name] = {**sealed, "seal": None, "sources": [source["name"] for source in sealed.get("sources", [])]}
         else:
             kept[name] = content
     return kept

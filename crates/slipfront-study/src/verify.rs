@@ -12,9 +12,11 @@ use slipfront_base::text::single_line;
 use slipfront_base::unfinished::is_unfinished;
 use slipfront_run::export::folders_in;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::manifest::Manifest;
+use slipfront_run::manifest::{Manifest, ManifestError};
 use slipfront_run::names::{FIGURE_CACHE, MANIFEST, RO_CRATE, RUNS};
-use slipfront_run::verify::{DESCRIPTION_MAX_BYTES, Verdict, inspect, unlisted_files, verify_run};
+use slipfront_run::verify::{
+    DESCRIPTION_MAX_BYTES, Verdict, VerifyError, inspect, unlisted_files, verify_run,
+};
 
 use crate::error::StudyError;
 use crate::finished_run::{FinishedRun, mark_of};
@@ -92,10 +94,14 @@ fn verify_crate(
             continue;
         }
         let of_part = verify(&part, others, extent, stop)?;
+        let seal = match seal_of(&part) {
+            Ok(seal) => seal,
+            // Differences of the list or manifest itself are told already.
+            Err(_) if !of_part.differences.is_empty() => None,
+            Err(error) => return Err(error),
+        };
         verdict.differences.extend(of_part.differences);
         verdict.notes.extend(of_part.notes);
-        let seal = Checksums::read(&part).ok().flatten().map(|list| list.seal);
-        let seal = seal.or_else(|| Some(Manifest::read(&part).ok()?.checksum));
         let is_described = |seal: String| {
             description
                 .windows(seal.len())
@@ -115,6 +121,18 @@ fn verify_crate(
         .extend(unlisted_files(folder, &known, is_unfinished));
     verdict.what = format!("a crate of {}, unchanged", count(names.len(), "folder"));
     Ok(verdict)
+}
+
+/// Seal of the list of a folder, or of its manifest; none if it has neither.
+fn seal_of(folder: &Path) -> Result<Option<String>, VerifyStudyError> {
+    if let Some(list) = Checksums::read(folder)? {
+        return Ok(Some(list.seal));
+    }
+    match Manifest::read(folder) {
+        Ok(manifest) => Ok(Some(manifest.checksum)),
+        Err(ManifestError::Missing { .. }) => Ok(None),
+        Err(error) => Err(VerifyError::from(error).into()),
+    }
 }
 
 /// Compares a study with its list and with the results that follow from its recorded runs, and its run

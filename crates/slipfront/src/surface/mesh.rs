@@ -353,8 +353,9 @@ fn first_from(from: f64) -> f64 {
 mod tests {
     use std::f64::consts::TAU;
 
+    use super::super::drawing::{FillRule, Part};
     use super::super::pattern::Array;
-    use super::super::texture::{Cavity, FillRule, Orientation, Part, cavity_lambda};
+    use super::super::texture::{Cavity, Orientation, cavity_lambda};
     use super::*;
     use crate::vector_field::unit_vector;
 

@@ -11,6 +11,7 @@ mod closest;
 mod coefficients;
 mod contour;
 mod correlation;
+mod drawing;
 mod load;
 mod mask_outline;
 mod mesh;
@@ -25,14 +26,13 @@ pub use clip::clip;
 pub use coefficients::{Coefficients, Distribution, STREAMS};
 pub use contour::{Contour, Ellipse, Piece, contours};
 pub use correlation::{CorrelatedField, deviation_along};
+pub use drawing::{FillRule, Part};
 pub use load::{Adhesion, Contact, Load, pressure_along};
 pub use mask_outline::outline as mask_outline;
 pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};
 pub use sharing::share_load;
-pub use texture::{
-    Cavity, FillRule, Groove, Orientation, Part, Shape, Texture, Tile, cavity_lambda, cavity_percent,
-};
+pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
 
 use std::ops::Range;
 

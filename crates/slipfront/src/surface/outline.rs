@@ -4,8 +4,8 @@
 //! the cut is computed once for all outlines of a row of a grid, and each of its ends is placed with the same
 //! rounding as for a single outline at this position.
 
+use super::drawing::{FillRule, Part};
 use super::pattern::Crossings;
-use super::texture::{FillRule, Part};
 
 /// Outlines of one curve, around every crossing of the lines of some grids.
 pub(super) struct Outlines {

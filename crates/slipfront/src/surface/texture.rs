@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::drawing::Part;
 use super::outline::{Curve, Outlines, Ring, Vertex};
 use super::pattern::{Array, Crossings, grids, n_copies};
 use crate::lattice::Lattice;
@@ -86,25 +87,6 @@ impl Shape {
             Self::Tile(_) => 0,
         }
     }
-}
-
-/// Closed polylines that are filled together.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// Corners of each polyline.
-    pub rings: Vec<Vec<[f64; 2]>>,
-    /// Rule of the inside.
-    pub rule: FillRule,
-}
-
-/// Rule that defines the inside of closed lines by the lines which a ray from a point crosses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FillRule {
-    /// An odd number of lines.
-    #[default]
-    EvenOdd,
-    /// Unequal numbers of lines that cross the ray upwards and downwards.
-    NonZero,
 }
 
 /// A mask, block by block.
