@@ -72,7 +72,7 @@ impl Model {
         if bends {
             return None;
         }
-        let k_drive = through_rows.unwrap_or_else(|| self.drive.k_drive);
+        let k_drive = through_rows.unwrap_or(self.drive.k_drive);
         let v_star = self.drive.v_star;
         // All contact springs have the same delay, at any radius.
         let delay = self.friction.loading_delay(k_drive);

@@ -401,7 +401,7 @@ fn share(
                 [re_after, im_after],
                 group_len,
                 work,
-            )
+            );
         },
     );
 }
