@@ -273,9 +273,10 @@ impl Running {
         }
     }
 
-    /// Whether the run has not begun, since the increments of a held drive are still searched.
-    pub fn searches(&self) -> bool {
-        self.search.is_some()
+    /// The instant that the search for the increments of a held drive has reached; none once the run has
+    /// begun.
+    pub fn search(&self) -> Option<Snapshot<'_>> {
+        self.search.as_ref().map(Search::snapshot)
     }
 
     /// Resumes a run from a saved state; none if the state does not belong to this case. `read` gets a byte
@@ -465,7 +466,7 @@ impl Running {
             simulation: self.simulation.checkpoint(),
             observers: &self.observers,
             increments: self.case.increments(),
-            searches: self.searches(),
+            searches: self.search.is_some(),
         }
     }
 

@@ -155,6 +155,8 @@ pub struct Peak {
     pub ended: bool,
     /// Largest mu* of the whole run so far.
     pub largest: Largest,
+    /// Time of the drive at the first step after which a block in contact slid.
+    pub first_slip_drive_time_star: Option<f64>,
     steady_level: f64,
     share_of_load: f64,
     longest_fall: f64,
@@ -200,6 +202,7 @@ impl Peak {
             drive_time_star: 0.0,
             ended: false,
             largest: Largest::until(f64::INFINITY),
+            first_slip_drive_time_star: None,
             steady_level,
             share_of_load,
             longest_fall,

@@ -324,6 +324,12 @@ impl Simulation {
         self.point = CurvePoint::measure(&self.model, &self.totals, self.clock.drive_time_star());
         let counts = !self.model.rests_by_excess() || self.is_at_rest();
         self.peak.update(&self.clock, &self.point, counts);
+        if self.totals.n_slipping > 0 {
+            let drive_time_star = self.clock.drive_time_star();
+            self.peak
+                .first_slip_drive_time_star
+                .get_or_insert(drive_time_star);
+        }
     }
 
     /// Whether a held drive takes the blocks for at rest at the present instant.

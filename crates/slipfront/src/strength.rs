@@ -14,6 +14,7 @@ use crate::error::RunError;
 use crate::kernel::Execution;
 use crate::model::Model;
 use crate::simulation::Simulation;
+use crate::snapshot::Snapshot;
 use crate::state::State;
 
 /// Rise of mu* in the first increments, of which all but the last are elastic.
@@ -108,6 +109,11 @@ impl Search {
             }
         }
         Ok(None)
+    }
+
+    /// The instant up to which the search has come.
+    pub fn snapshot(&self) -> Snapshot<'_> {
+        self.simulation.snapshot()
     }
 
     /// Continues from the last rest with smaller increments.
@@ -206,13 +212,48 @@ mod tests {
     use crate::stop::Stop;
     use crate::surface::{Coefficients, Load, Surface};
 
-    /// Blocks along a pitch of the arrays.
-    const PITCH: usize = 16;
+    /// Centres of a square array, each shifted by up to a quarter of the pitch.
+    const SHIFTED: [[f64; 2]; 16] = [
+        [0.5625, 0.6986],
+        [0.6378, 1.3626],
+        [0.4001, 2.6868],
+        [0.2526, 3.6606],
+        [1.6485, 0.484],
+        [1.4015, 1.3892],
+        [1.3774, 2.4725],
+        [1.5023, 3.5267],
+        [2.7478, 0.6463],
+        [2.5611, 1.7445],
+        [2.3577, 2.3301],
+        [2.5563, 3.272],
+        [3.2678, 0.5074],
+        [3.4831, 1.7086],
+        [3.5646, 2.5071],
+        [3.4984, 3.3738],
+    ];
 
-    /// A body with an array of dimples or grooves: `textured(x, y)` says by place in a pitch which blocks do
-    /// not touch. Heights in pitches, weakening W p/(G/(1 - nu)), the mount over G/p.
+    /// Random centres.
+    const RANDOM: [[f64; 2]; 12] = [
+        [0.047, 0.77],
+        [2.768, 0.802],
+        [1.478, 0.015],
+        [3.32, 0.618],
+        [1.07, 3.521],
+        [2.039, 3.389],
+        [2.559, 2.967],
+        [0.366, 2.165],
+        [2.031, 3.485],
+        [1.445, 2.393],
+        [0.237, 1.551],
+        [1.292, 0.601],
+    ];
+
+    /// A body whose sides are whole numbers of pitches: `textured(x, y)` says by place in pitches which blocks do
+    /// not touch. Height in pitches, weakening W p/(G/(1 - nu)), the mount over G/p.
     struct Array {
-        textured: fn(f64, f64) -> bool,
+        textured: Box<dyn Fn(f64, f64) -> bool>,
+        pitches: usize,
+        blocks_per_pitch: usize,
         poisson: f64,
         weakening: f64,
         height: f64,
@@ -228,17 +269,26 @@ mod tests {
         (x - y).rem_euclid(1.0) < 0.3
     }
 
+    /// Circles of this radius around these centres, in a square of four pitches that is repeated.
+    fn circles(centres: &'static [[f64; 2]], radius: f64) -> Box<dyn Fn(f64, f64) -> bool> {
+        let across = |x: f64| (x + 2.0).rem_euclid(4.0) - 2.0;
+        Box::new(move |x, y| {
+            let is_in = |c: &[f64; 2]| across(x - c[0]).powi(2) + across(y - c[1]).powi(2) < radius.powi(2);
+            centres.iter().any(is_in)
+        })
+    }
+
     impl Array {
         fn model(&self) -> (Model, f64) {
-            let n = PITCH as f64;
-            let lattice = Lattice::with_edges(PITCH, PITCH, [Edges::Periodic; 2]);
+            let (n, side) = (self.blocks_per_pitch as f64, self.pitches * self.blocks_per_pitch);
+            let lattice = Lattice::with_edges(side, side, [Edges::Periodic; 2]);
             let place = |k: usize| (k as f64 + 0.5) / n;
-            let textured: Vec<bool> = (0..PITCH * PITCH)
-                .map(|b| (self.textured)(place(b % PITCH), place(b / PITCH)))
+            let textured: Vec<bool> = (0..side * side)
+                .map(|b| (self.textured)(place(b % side), place(b / side)))
                 .collect();
             let n_contact = textured.iter().filter(|textured| !**textured).count();
-            let strength = (PITCH * PITCH) as f64 / n_contact as f64;
-            let coefficients = Coefficients::given(vec![1.0; PITCH * PITCH], vec![0.5; PITCH * PITCH]);
+            let strength = (side * side) as f64 / n_contact as f64;
+            let coefficients = Coefficients::given(vec![1.0; side * side], vec![0.5; side * side]);
             let surface = Surface::new(coefficients, textured, Load::Redistributed, 1.0).unwrap();
             let body = Body {
                 height: self.height * n,
@@ -259,7 +309,7 @@ mod tests {
                 ..Drive::at_angle(1.0, self.degrees)
             };
             // Half of the critical damping of the longest wave.
-            let damping = (body.shear_modulus() * std::f64::consts::TAU / n).sqrt();
+            let damping = (body.shear_modulus() * std::f64::consts::TAU / side as f64).sqrt();
             let model = Model::new(lattice, surface, drive, damping, 0.0, friction).with_body(body);
             let dt_star = 1.8 / body.largest_stiffness().max(model.drive.k_drive).sqrt();
             (model, dt_star)
@@ -292,8 +342,10 @@ mod tests {
 
     #[test]
     fn arrays_lose_the_strength_that_other_solvers_find() {
-        let deep = |textured, poisson, weakening, degrees| Array {
-            textured,
+        let deep = |textured: fn(f64, f64) -> bool, poisson, weakening, degrees| Array {
+            textured: Box::new(textured),
+            pitches: 1,
+            blocks_per_pitch: 16,
             poisson,
             weakening,
             height: 5.0,
@@ -301,14 +353,18 @@ mod tests {
             mount: 1.0,
         };
         let glued = |poisson, weakening, height| Array {
-            textured: circle,
-            poisson,
-            weakening,
             height,
-            degrees: 0.0,
             mount: 1.0 / height,
+            ..deep(circle, poisson, weakening, 0.0)
         };
         let soft = |array: Array| Array { mount: 0.2, ..array };
+        let irregular = |textured, poisson, weakening| Array {
+            textured,
+            pitches: 4,
+            blocks_per_pitch: 8,
+            mount: 0.5,
+            ..deep(circle, poisson, weakening, 0.0)
+        };
         for (array, expected) in [
             (soft(deep(circle, 1.0 / 3.0, 2.0, 0.0)), 7.68),
             (soft(deep(circle, 1.0 / 3.0, 5.0, 0.0)), 16.83),
@@ -323,6 +379,10 @@ mod tests {
             (deep(circle, 0.0, 4.0, 45.0), 9.23),
             (deep(diagonal, 0.3, 4.0, -45.0), 9.05),
             (deep(circle, 0.2, 4.0, 0.0), 11.61),
+            (irregular(circles(&SHIFTED, 0.25), 0.3, 4.0), 17.50),
+            (irregular(circles(&RANDOM, 0.3), 0.3, 3.0), 22.82),
+            (irregular(circles(&RANDOM, 0.3), 0.49, 6.0), 34.40),
+            (irregular(circles(&[[2.0, 2.0]], 0.6), 0.3, 4.0), 28.48),
         ] {
             let (found, steps) = array.reduction();
             // Tolerance of the figures, which come from meshes of the same size under other loading.
