@@ -419,7 +419,7 @@ impl Running {
     /// must call this together.
     pub fn kinetic(&self) -> Option<Kinetic> {
         let now = self.snapshot();
-        now.earliest_first_slip()?;
+        now.peak.first_slip_drive_time_star?;
         self.observers.summary.kinetic(&self.case, &now.peak)
     }
 
