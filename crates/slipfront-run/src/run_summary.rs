@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use slipfront::communicator::Alone;
 use slipfront::observe::{Instants, Scheduled};
-use slipfront::{Execution, RunError, Simulation, StopReason};
+use slipfront::{Execution, RunError, SearchOutcome, Simulation, StopReason};
 use slipfront_case::case::Case;
 
 use crate::running::{add_front, instants_of};
@@ -74,11 +74,11 @@ pub(crate) fn with_increments<'a>(
         return Some(Ok(Cow::Borrowed(case)));
     };
     while !ends() {
-        match search.advance(case.steps_per_poll()) {
-            Ok(None) => {}
-            Ok(Some(found)) => return Some(Ok(Cow::Owned(case.with_increments(found)))),
+        search = match search.advance(case.steps_per_poll()) {
+            Ok(SearchOutcome::Unfinished(search)) => search,
+            Ok(SearchOutcome::Found(found)) => return Some(Ok(Cow::Owned(case.with_increments(found)))),
             Err(error) => return Some(Err(error)),
-        }
+        };
     }
     None
 }

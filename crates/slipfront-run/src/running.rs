@@ -9,7 +9,8 @@ use slipfront::device::{Device, DeviceError};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Schedule, Scheduled};
 use slipfront::{
-    Checkpoint, Execution, Increments, Kernel, RunError, Search, Simulation, Snapshot, State, StopReason,
+    Checkpoint, Execution, Increments, Kernel, RunError, Search, SearchOutcome, Simulation, Snapshot, State,
+    StopReason,
 };
 
 use crate::columns::Columns;
@@ -364,9 +365,10 @@ impl Running {
     /// Makes at most `steps` steps; returns the reason for the end, if the run ended. An error means that the
     /// run diverges. All ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
-        if let Some(search) = &mut self.search {
-            if let Some(increments) = search.advance(steps)? {
-                self.begin(increments);
+        if let Some(search) = self.search.take() {
+            match search.advance(steps)? {
+                SearchOutcome::Unfinished(search) => self.search = Some(search),
+                SearchOutcome::Found(increments) => self.begin(increments),
             }
             return Ok(None);
         }
@@ -381,7 +383,7 @@ impl Running {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         self.simulation = Simulation::new(model, dt_star, case.state(), self.execution.clone());
         self.observers = Observers::new(&case);
-        (self.case, self.search) = (case, None);
+        self.case = case;
     }
 
     /// The present instant.

@@ -77,7 +77,7 @@ pub use slipfront_kernel::next_side;
 pub use snapshot::Snapshot;
 pub use state::State;
 pub use stop::{Stop, StopReason};
-pub use strength::{Increments, REFINEMENT, Search, speed_of_increments};
+pub use strength::{Increments, REFINEMENT, Search, SearchOutcome, speed_of_increments};
 pub use surface::Surface;
 pub use totals::{StoredEnergy, Totals};
 pub use vector_field::VectorField;

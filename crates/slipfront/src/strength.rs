@@ -50,6 +50,15 @@ pub struct Search {
     most: u64,
 }
 
+/// What a search has come to.
+#[expect(clippy::large_enum_variant, reason = "it is moved at once")]
+pub enum SearchOutcome {
+    /// The increments are not known yet.
+    Unfinished(Search),
+    /// The increments that lead to the onset.
+    Found(Increments),
+}
+
 /// A simulation at rest.
 struct Saved {
     checkpoint: Checkpoint,
@@ -78,11 +87,11 @@ impl Search {
         }
     }
 
-    /// Makes at most `steps` steps; returns the increments if they are known then.
+    /// Makes at most `steps` steps.
     ///
     /// # Errors
     /// [`RunError`] if the run diverges, or never comes to rest.
-    pub fn advance(&mut self, steps: u64) -> Result<Option<Increments>, RunError> {
+    pub fn advance(mut self, steps: u64) -> Result<SearchOutcome, RunError> {
         for _ in 0..steps {
             self.simulation.step();
             self.simulation.check()?;
@@ -90,25 +99,23 @@ impl Search {
             let (peak, mu_star, drive_steps) = (now.peak, now.point.mu_star, now.drive_steps);
             let slips_too_early = self.counts.len() == 1 && now.totals.n_slipping > 0;
             if slips_too_early {
-                self.counts.push(0);
-                self.go_back();
+                self = self.with_smaller_increments();
             } else if self.simulation.is_at_rest() {
                 self.last_rest = Saved::of(&self.simulation);
                 let finished: u64 = self.counts[..self.counts.len() - 1].iter().sum();
                 *self.counts.last_mut().expect("there is a first size") = drive_steps - finished;
                 let is_far = drive_steps >= self.most * REFINEMENT.powi(self.counts.len() as i32 - 1) as u64;
                 if peak.is_fall_to(mu_star) || is_far {
-                    return Ok(Some(self.found()));
+                    return Ok(SearchOutcome::Found(self.found()));
                 }
             } else if peak.is_fall_to(mu_star) {
                 if self.counts.len() == SIZES {
-                    return Ok(Some(self.found()));
+                    return Ok(SearchOutcome::Found(self.found()));
                 }
-                self.counts.push(0);
-                self.go_back();
+                self = self.with_smaller_increments();
             }
         }
-        Ok(None)
+        Ok(SearchOutcome::Unfinished(self))
     }
 
     /// The instant up to which the search has come.
@@ -116,21 +123,41 @@ impl Search {
         self.simulation.snapshot()
     }
 
-    /// Continues from the last rest with smaller increments.
-    fn go_back(&mut self) {
-        let model = with_increments(&self.model, self.dt_star, &self.counts);
-        let Saved { checkpoint, columns } = &self.last_rest;
+    /// The search from its last rest, with smaller increments.
+    fn with_smaller_increments(self) -> Self {
+        let Self {
+            model,
+            dt_star,
+            execution,
+            simulation,
+            mut counts,
+            last_rest,
+            most,
+        } = self;
+        // It makes room for the next one.
+        drop(simulation);
+        counts.push(0);
+        let next = with_increments(&model, dt_star, &counts);
+        let Saved { checkpoint, columns } = &last_rest;
         let read = |column: usize, first: usize, values: &mut [f64]| {
             values.copy_from_slice(&columns[column][first..first + values.len()]);
             Ok::<(), std::convert::Infallible>(())
         };
-        let execution = self.execution.clone();
-        let resumed = Simulation::resume(model, self.dt_star, checkpoint, execution, read);
-        self.simulation = match resumed {
+        let resumed = Simulation::resume(next, dt_star, checkpoint, execution.clone(), read);
+        let simulation = match resumed {
             Ok(Some(simulation)) => simulation,
             Ok(None) => unreachable!("the kernel is the one that wrote the checkpoint"),
             Err(never) => match never {},
         };
+        Self {
+            model,
+            dt_star,
+            execution,
+            simulation,
+            counts,
+            last_rest,
+            most,
+        }
     }
 
     fn found(&self) -> Increments {
@@ -322,9 +349,10 @@ mod tests {
             let mut steps = 0;
             let found = loop {
                 steps += 1;
-                if let Some(found) = search.advance(1).unwrap() {
-                    break found;
-                }
+                search = match search.advance(1).unwrap() {
+                    SearchOutcome::Unfinished(search) => search,
+                    SearchOutcome::Found(found) => break found,
+                };
             };
             let mut model = model.with_loading(Loading::Held {
                 onset_steps: found.onset_steps,

@@ -15,7 +15,7 @@ use slipfront_base::number_format::{byte_size, count};
 use super::inputs::Input;
 use super::output::Output;
 use super::ranks::Ranks;
-use crate::case_file::{Attached, AttachedEdge, Body, CaseError, CaseFile, Motion, Outline, Shape};
+use crate::case_file::{Attached, AttachedEdge, Body, CaseError, CaseFile, Loading, Motion, Outline, Shape};
 
 /// Bytes of a number.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -553,8 +553,14 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
             29.0 + differing + dampers
         }
     };
-    let of_body = if slider.body == Body::Bulk {
-        NUMBERS_OF_BODY
+    let stepped = match slider.body {
+        Body::Bulk => stepped + NUMBERS_OF_BODY,
+        Body::Sheet => stepped,
+    };
+    let stepped = stepped + 2.0 * needs.columns as f64;
+    // The search for the strength of a bulk body has a simulation of its own, and its last rest.
+    let searched = if slider.body == Body::Bulk && file.drive.loading == Loading::Held {
+        stepped + 7.0
     } else {
         0.0
     };
@@ -564,19 +570,16 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     } else {
         [4.0, 8.0]
     };
-    [
-        3.0 + own + state,
-        stepped + begun + of_body + 2.0 * needs.columns as f64,
-    ]
+    [3.0 + own + state, stepped + begun + searched]
 }
 
 /// Numbers per block of the whole lattice while the load of textured blocks is shared among nearby blocks:
 /// two marks, pressures as numbers and as bits, and sums of counts and of shares.
 const SHARED: f64 = 6.0;
 
-/// Numbers per block of a bulk body: displacements and forces of the whole lattice, its response, two complex
-/// arrays of a transform, and the last rest of a search for its strength.
-const NUMBERS_OF_BODY: f64 = 20.0;
+/// Numbers per block of a bulk body: displacements and forces of the whole lattice, its response, and two
+/// complex arrays of a transform.
+const NUMBERS_OF_BODY: f64 = 13.0;
 
 /// Ratio of the memory of the general kernel on several threads to that on one: each thread also has the rows
 /// next to its own.
