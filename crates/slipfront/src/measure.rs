@@ -172,8 +172,18 @@ pub struct Peak {
 struct HeldPeak {
     /// Number of steps of the drive after which the peak is final.
     onset_steps: u64,
+    /// Whether the fall that follows the last of these steps but one ends the search for the peak, as a bulk
+    /// body's does: its increments of the drive lead to the onset.
+    ends_with_fall: bool,
     /// Whether the fall after the largest mu* so far has occurred.
     has_fallen: bool,
+}
+
+impl HeldPeak {
+    fn is_final(&self, clock: &Clock, has_fallen: bool) -> bool {
+        let ends_with_fall = self.ends_with_fall && has_fallen;
+        clock.drive_steps + u64::from(ends_with_fall) >= self.onset_steps
+    }
 }
 
 impl Peak {
@@ -183,6 +193,7 @@ impl Peak {
             Loading::Constant => None,
             Loading::Held { onset_steps } => Some(HeldPeak {
                 onset_steps,
+                ends_with_fall: model.rests_by_excess(),
                 has_fallen: false,
             }),
         };
@@ -215,7 +226,7 @@ impl Peak {
     pub(crate) fn ends_at(&self, clock: &Clock, mu_star: f64) -> bool {
         match &self.held {
             None => !self.crept && self.is_transition_to(clock, mu_star),
-            Some(held) => clock.drive_steps >= held.onset_steps,
+            Some(held) => held.is_final(clock, held.has_fallen || self.is_transition_to(clock, mu_star)),
         }
     }
 
@@ -268,7 +279,7 @@ impl Peak {
             }
             Some(held) => {
                 held.has_fallen = !is_higher && (held.has_fallen || falls);
-                if clock.drive_steps >= held.onset_steps {
+                if held.is_final(clock, held.has_fallen) {
                     (self.ended, self.crept) = (held.has_fallen, !held.has_fallen);
                 }
             }

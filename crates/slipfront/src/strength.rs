@@ -48,6 +48,10 @@ pub struct Search {
     last_rest: Saved,
     /// Number of increments after which the search ends without a run-away.
     most: u64,
+    /// Number of blocks in contact.
+    n_contact: usize,
+    /// Whether strength falls faster than the pull of the drive springs while all blocks slip.
+    slips_on_as_a_whole: bool,
 }
 
 /// What a search has come to.
@@ -71,19 +75,24 @@ impl Search {
     pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
         let slip = model.friction.strength_over_slip().map_or(0.0, |law| law.length);
         let rise = 2.0 + model.drive.k_drive * slip;
+        let n_contact = model.surface.n_contact();
+        let share_in_contact = n_contact as f64 / model.surface.n_facing() as f64;
+        let weakening = share_in_contact * model.weakening().unwrap_or(0.0);
         let most = (rise / INCREMENT).ceil() as u64;
         let counts = vec![0];
         let first = with_increments(&model, dt_star, &counts);
         let simulation = Simulation::new(first, dt_star, state, execution.clone());
         let last_rest = Saved::of(&simulation);
         Self {
-            model,
             dt_star,
             execution,
             simulation,
             counts,
             last_rest,
             most,
+            n_contact,
+            slips_on_as_a_whole: weakening > model.drive.k_drive,
+            model,
         }
     }
 
@@ -113,6 +122,13 @@ impl Search {
                     return Ok(SearchOutcome::Found(self.found()));
                 }
                 self = self.with_smaller_increments();
+            } else if self.counts.len() < SIZES
+                && self.slips_on_as_a_whole
+                && now.totals.n_slipping == self.n_contact
+                && peak.is_above(mu_star)
+            {
+                // It would fall half-way, too, in several times as many steps.
+                self = self.with_smaller_increments();
             }
         }
         Ok(SearchOutcome::Unfinished(self))
@@ -124,40 +140,23 @@ impl Search {
     }
 
     /// The search from its last rest, with smaller increments.
-    fn with_smaller_increments(self) -> Self {
-        let Self {
-            model,
-            dt_star,
-            execution,
-            simulation,
-            mut counts,
-            last_rest,
-            most,
-        } = self;
+    fn with_smaller_increments(mut self) -> Self {
         // It makes room for the next one.
-        drop(simulation);
-        counts.push(0);
-        let next = with_increments(&model, dt_star, &counts);
-        let Saved { checkpoint, columns } = &last_rest;
+        drop(self.simulation);
+        self.counts.push(0);
+        let model = with_increments(&self.model, self.dt_star, &self.counts);
+        let Saved { checkpoint, columns } = &self.last_rest;
         let read = |column: usize, first: usize, values: &mut [f64]| {
             values.copy_from_slice(&columns[column][first..first + values.len()]);
             Ok::<(), std::convert::Infallible>(())
         };
-        let resumed = Simulation::resume(next, dt_star, checkpoint, execution.clone(), read);
-        let simulation = match resumed {
+        let execution = self.execution.clone();
+        self.simulation = match Simulation::resume(model, self.dt_star, checkpoint, execution, read) {
             Ok(Some(simulation)) => simulation,
             Ok(None) => unreachable!("the kernel is the one that wrote the checkpoint"),
             Err(never) => match never {},
         };
-        Self {
-            model,
-            dt_star,
-            execution,
-            simulation,
-            counts,
-            last_rest,
-            most,
-        }
+        self
     }
 
     fn found(&self) -> Increments {
