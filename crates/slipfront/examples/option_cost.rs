@@ -19,9 +19,9 @@ use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, pressure_along,
 };
 use slipfront::{
-    AfterBreak, Ageing, Body, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Execution, Face, Friction,
-    FrictionLaw, Kernel, Lattice, Loading, Model, Outline, Program, RateAndState, Rotation, Simulation,
-    Slider, SlipWeakening, State, Surface, VectorField, Weakening, scales,
+    AfterBreak, Ageing, Body, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Face,
+    Friction, FrictionLaw, Kernel, Lattice, Loading, Model, Outline, Program, RateAndState, Rotation,
+    Simulation, Slider, SlipWeakening, State, Surface, VectorField, Weakening, scales,
 };
 
 const V_STAR: f64 = 0.03;
@@ -105,7 +105,12 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 26] = [
 
 pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Error + Send + Sync>> {
     let has = |choice: Choice| choices.contains(&choice);
-    let lattice = Lattice::free(size, size);
+    let edges = if has(Choice::Bulk) {
+        Edges::Periodic
+    } else {
+        Edges::Free
+    };
+    let lattice = Lattice::with_edges(size, size, [edges; 2]);
     let n = lattice.n_blocks();
     let (rows, damping) = (0..lattice.ny, scales::damping(0.1));
     let graded = |from_to: [f64; 2]| has(Grading).then(|| Slider::grade(&lattice, rows.clone(), 0, from_to));
