@@ -64,8 +64,8 @@ pub fn run_summary_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result
     None
 }
 
-/// The case with the increments of a held drive that lead a bulk body to its onset, if they are searched; none
-/// if `ends` gave the search up.
+/// The case with the increments of a held drive that lead a bulk body to its onset, if they are searched;
+/// none if `ends` gave the search up.
 pub(crate) fn with_increments<'a>(
     case: &'a Case,
     ends: &dyn Fn() -> bool,

@@ -9,8 +9,8 @@ use slipfront::device::{Device, DeviceError};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Schedule, Scheduled};
 use slipfront::{
-    Checkpoint, Execution, Increments, Kernel, RunError, Search, SearchOutcome, Simulation, Snapshot, State,
-    StopReason,
+    Checkpoint, Execution, Increments, Kernel, Model, RunError, Search, SearchOutcome, Simulation, Snapshot,
+    State, StopReason,
 };
 
 use crate::columns::Columns;
@@ -25,6 +25,8 @@ use slipfront_case::case::{Case, Output, Snapshots};
 /// All results of a run, in memory.
 #[derive(Clone, Debug)]
 pub struct RunData {
+    /// The model that was computed: the case's, with the increments of a held drive that were found.
+    pub model: Arc<Model>,
     /// The numbers.
     pub summary: Summary,
     /// The recorded curve.
@@ -557,6 +559,7 @@ impl Running {
             &*self.communicator,
         );
         RunData {
+            model: Arc::clone(&case.model),
             summary: numbers,
             rows: summary.curve.rows,
             observers: summary.optional,

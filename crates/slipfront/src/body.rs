@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 use slipfront_kernel::SurfaceResponse;
 
-/// What holds the face of a body against its foundation, apart from friction.
+/// Support of the face of a body by its foundation, apart from friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Face {
@@ -44,7 +44,7 @@ pub struct Body {
     pub height: f64,
     /// Poisson's ratio, from 0 to 1/2.
     pub poisson: f64,
-    /// What holds the face.
+    /// Support of the face.
     pub face: Face,
 }
 
@@ -104,7 +104,7 @@ impl Body {
     /// vanishes at the shortest wave along an axis, which has no direction.
     ///
     /// # Panics
-    /// Unless both sides are such that [`next_side`](crate::next_side) returns them.
+    /// Unless [`next_side`](crate::next_side) returns both sides themselves.
     pub(crate) fn response(&self, size: [usize; 2], threads: usize) -> SurfaceResponse {
         SurfaceResponse::new(size, threads, |i, j| {
             let ([qx, odd_x], [qy, odd_y]) = (wave_number(i, size[0]), wave_number(j, size[1]));
@@ -356,9 +356,9 @@ mod tests {
         }
     }
 
-    /// Slip in a long strip of `n` blocks across the drive runs away at the least eigenvalue of the stiffness of its
-    /// blocks, the others held. Times `n (1 - nu)/G` it is 2.082, 2.199, 2.258, 2.287 for 4 to 32 blocks, and
-    /// 2.316 in the limit.
+    /// Slip in a long strip of `n` blocks across the drive runs away at the least eigenvalue of the stiffness
+    /// of its blocks, the others held. Times `n (1 - nu)/G` it is 2.082, 2.199, 2.258, 2.287 for 4 to 32
+    /// blocks, and 2.316 in the limit.
     #[test]
     fn strips_have_known_eigenvalues() {
         /// Blocks between strips, so many that each is alone.

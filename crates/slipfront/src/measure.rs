@@ -252,8 +252,8 @@ impl Peak {
         self.mu_star - sliding >= LEAST_FALL * (self.share_of_load - self.steady_level).max(0.0)
     }
 
-    /// Includes the next step; `counts` says whether it can be the peak, as only instants at rest can be under
-    /// slow loading of a bulk body.
+    /// Includes the next step; `counts` says whether it can be the peak, as only instants at rest can be
+    /// under slow loading of a bulk body.
     pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint, counts: bool) {
         let (mu_star, time_star) = (point.mu_star, clock.time_star());
         if counts {

@@ -28,7 +28,7 @@ pub struct Model {
     pub rows: Range<usize>,
     /// Heterogeneous properties of the blocks of these rows.
     pub(crate) slider: Slider,
-    /// The bulk body of which the blocks are the face; none for a sheet, whose blocks springs connect.
+    /// The bulk body of which the blocks are the face; none for a sheet, with springs between its blocks.
     pub(crate) body: Option<Body>,
     /// Springs between neighbouring blocks of a sheet.
     pub(crate) springs: SpringStiffness,
@@ -100,8 +100,8 @@ impl Model {
         Self { slider, ..self }
     }
 
-    /// Returns the model with a bulk body above its blocks in place of springs between them. The drive springs
-    /// pull the body as a whole. Its slider must be set before.
+    /// Returns the model with a bulk body above its blocks in place of springs between them. The drive
+    /// springs pull the body as a whole. Its slider must be set before.
     ///
     /// # Panics
     /// If edges are free, blocks differ, there are dampers between them, the drive rotates, or friction acts

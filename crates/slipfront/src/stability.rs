@@ -32,9 +32,9 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
 
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
-    /// [`dt_star_limit`], the bound of the paper's slider. Of a bulk body it is `2/sqrt(K)` with its
-    /// largest stiffness. Friction and damping do not lower it. All `ranks` of a lattice
-    /// must call this together.
+    /// [`dt_star_limit`], the bound of the paper's slider. A bulk body has the bound `2/sqrt(K)` with its
+    /// largest stiffness. Friction and damping do not lower it. All `ranks` of a lattice must call this
+    /// together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = self.friction.contact_stiffness();

@@ -1,4 +1,5 @@
-//! The strength of a bulk body under slow loading: increments of the drive that become finer before the onset.
+//! The strength of a bulk body under slow loading: increments of the drive that become finer before the
+//! onset.
 //!
 //! The drive moves while the blocks are at rest. If they then run away, so that friction falls, the last
 //! increment was too large: the search goes back to the last rest and divides the increment by four, three
@@ -54,7 +55,7 @@ pub struct Search {
     slips_on_as_a_whole: bool,
 }
 
-/// What a search has come to.
+/// Result of some steps of a search.
 #[expect(clippy::large_enum_variant, reason = "it is moved at once")]
 pub enum SearchOutcome {
     /// The increments are not known yet.
@@ -70,8 +71,8 @@ struct Saved {
 }
 
 impl Search {
-    /// A search from the given state, or from rest. If nothing runs away, it ends where the drive springs would
-    /// bear twice the strength, and the loss of strength over its slip.
+    /// A search from the given state, or from rest. If nothing runs away, it ends where the drive springs
+    /// would bear twice the strength, and the loss of strength over its slip.
     pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
         let slip = model.friction.strength_over_slip().map_or(0.0, |law| law.length);
         let rise = 2.0 + model.drive.k_drive * slip;
@@ -274,8 +275,8 @@ mod tests {
         [1.292, 0.601],
     ];
 
-    /// A body whose sides are whole numbers of pitches: `textured(x, y)` says by place in pitches which blocks do
-    /// not touch. Height in pitches, weakening W p/(G/(1 - nu)), the mount over G/p.
+    /// A body with sides of whole numbers of pitches: `textured(x, y)` says by place in pitches which blocks
+    /// do not touch. Height in pitches, weakening W p/(G/(1 - nu)), the mount over G/p.
     struct Array {
         textured: Box<dyn Fn(f64, f64) -> bool>,
         pitches: usize,

@@ -31,7 +31,8 @@ fn the_reference_finds_what_is_known() {
     assert!((finer - 16.98).abs() < 0.05, "{finer}");
 }
 
-/// Largest relative error of a reduction: a smallest increment of 3e-4 of the strength, of reductions from 2.4 %.
+/// Largest relative error of a reduction: a smallest increment of 3e-4 of the strength, of reductions from
+/// 2.4 %.
 const ERROR: f64 = 0.01;
 
 /// Checks that a reduction is that of the reference.
@@ -72,7 +73,8 @@ fn dimples_on_a_glued_layer() {
         let key = format!("slider.height='{:e} m'", height * BLOCK);
         for weakening in [5.0, 10.0] {
             let expected = 100.0 * (1.0 - layer.largest_friction(&dimples.blocks(weakening, Sharing::Equal)));
-            // On a soft mount, as the reference, which pulls by a traction: G/H would hold slip back that has begun.
+            // On a soft mount, as the reference, which pulls by a traction: G/H would hold slip back that has
+            // begun.
             let keys = [&*key, "drive.stiffness_star=0.005"];
             let found = dimples.on_body(poisson, weakening, Sharing::Equal, &keys);
             let what = format!("{height} blocks high, nu = {poisson}, w p (1 - nu)/G = {weakening}");

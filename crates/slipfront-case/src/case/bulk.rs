@@ -26,8 +26,8 @@ const STRIP: f64 = 2.316;
 /// body over in the sheet. For a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a height of
 /// five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/validation/bulk.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
-/// Height of a deep body whose shear its drive springs stand for, in lengths of the longer side: it sets how
-/// steeply mu* rises with the path of the drive, and not the strength.
+/// Largest height of a body for the stiffness of its drive springs, in lengths of the longer side: it sets
+/// how steeply mu* rises with the path of the drive, and not the strength.
 const HEIGHT_OF_DEEP: f64 = 5.0;
 
 /// Lengths of the textures of a case, m, by which it counts as a sheet or not.

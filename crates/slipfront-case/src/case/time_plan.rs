@@ -45,8 +45,9 @@ const AUTO_STEP: f64 = 0.1;
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
-    /// The time plan of a case, which also sets the speed of a drive that is held for a bulk body; an error when the step is unstable, the run too long, or its kinetic window
-    /// or a snapshot after its end. All ranks must call this together.
+    /// The time plan of a case, which also sets the speed of a drive that is held for a bulk body; an error
+    /// when the step is unstable, the run too long, or its kinetic window or a snapshot after its end. All
+    /// ranks must call this together.
     pub(super) fn of(
         file: &CaseFile,
         scales: &Scales,

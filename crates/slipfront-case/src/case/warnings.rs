@@ -31,8 +31,8 @@ const LARGE_MISMATCH: f64 = 0.1;
 const LARGE_COMMON_SHARE: f64 = 0.5;
 /// Strain of the load above which geometric nonlinearity of the springs shows in the third digit.
 const LARGE_EPSILON: f64 = 1e-2;
-/// Number of steps of a constant speed, from no load to the strength, from which on the error of a reduction of
-/// the strength of a bulk body is at most 1 %.
+/// Number of steps of a constant speed, from no load to the strength, from which on the error of a reduction
+/// of the strength of a bulk body is at most 1 %.
 const MANY_LOADING_STEPS: f64 = 16_000.0;
 /// Speed above which loading is faster than the slip front.
 const LARGE_V_STAR: f64 = 0.2;

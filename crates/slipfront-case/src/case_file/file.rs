@@ -166,8 +166,9 @@ impl CaseFile {
         self.output.check(&check("output"))
     }
 
-    /// Sets the keys whose default depends on the body, unless the file gives them: a bulk body is a periodic
-    /// piece of a larger part, and the strength of one that weakens with slip is found under slow loading.
+    /// Sets the keys that have another default for a bulk body, unless the file gives them: a bulk body is a
+    /// periodic piece of a larger part, and the strength of one that weakens with slip is found under slow
+    /// loading.
     fn choose_defaults_of_body(&mut self) {
         let is_bulk = self.slider.body == Body::Bulk;
         if !self.source.has("slider.edges") {
@@ -177,7 +178,7 @@ impl CaseFile {
             self.slider.damping = Damping::OmegaStar(self.slider.critical_damping().unwrap_or(0.1));
         }
         if !self.source.has("drive.loading") {
-            let weakens = self.friction.slip_weakening.is_some();
+            let weakens = self.friction.falls_with_slip();
             self.drive.loading = if is_bulk && weakens {
                 Loading::Held
             } else {

@@ -42,8 +42,8 @@ key_rows! {
         pub thickness: Option<Length> = key("", quantity("m", within(1e-12, 1e3)))
             .title("thickness", "h", "m")
             .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes, and what to write for a bulk body."),
-        /// Kind of body: a sheet, or a bulk body, which has the exact elastic response of a periodic piece of a
-        /// larger part, deep or glued to a rigid back.
+        /// Kind of body: a sheet, or a bulk body, which has the exact elastic response of a periodic piece of
+        /// a larger part, deep or glued to a rigid back.
         #[serde(deserialize_with = "word", skip_serializing_if = "Body::is_sheet")]
         pub body: Body = key("\"sheet\"", KeyKind::Words(names_of::<Body>))
             .note("See [bulk bodies](../model.md#bulk-bodies)."),
@@ -53,7 +53,7 @@ key_rows! {
         /// Poisson's ratio of a bulk body.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
-        /// What holds the contact face of a bulk body: a pressure that is given at every place, as on a
+        /// Support of the contact face of a bulk body: a pressure that is given at every place, as on a
         /// compliant foundation, or a rigid foundation that keeps the face flat. A flat face is 4 (1 -
         /// nu)^2/(3 - 4 nu) times as stiff along: a third more at nu = 0, nothing at 0.5.
         #[serde(deserialize_with = "word", skip_serializing_if = "Face::is_pressure")]
@@ -72,8 +72,8 @@ key_rows! {
         [
             /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
             pub damping: Damping or "the slider needs a damping: `omega_star` or `damping_rate`" {
-                /// Damping of the motion of the blocks. A bulk body has the critical damping of its longest wave
-                /// if not given.
+                /// Damping of the motion of the blocks. A bulk body has the critical damping of its longest
+                /// wave if not given.
                 omega_star: f64 => OmegaStar = key("0.1", number(within(0.0, 1e3), "a slider that rings little has 1"))
                     .star(StarUnit::Rate)
                     .or("damping_rate").paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),

@@ -37,9 +37,9 @@ key_rows! {
                     .title("duration", "t", "s"),
             }
         ]
-        /// Time step. `"auto"` is 0.1, or half the largest stable step if that is smaller, and 0.9 of it for a
-        /// bulk body. `"paper"` is (2/3) V* (Eq. 13). A sheet is stable below 0.9058, and less with stiff blocks
-        /// or mounts; `slipfront check` prints the bound.
+        /// Time step. `"auto"` is 0.1, or half the largest stable step if that is smaller, and 0.9 of it for
+        /// a bulk body. `"paper"` is (2/3) V* (Eq. 13). A sheet is stable below 0.9058, and less with stiff
+        /// blocks or mounts; `slipfront check` prints the bound.
         pub step: TimeStep = key("\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
             &["auto", "paper"])).paper("dt*").title("time step", "\u{394}t*", ""),
         /// Condition that ends the run: its duration, or the fall that ends the first peak as soon as it is

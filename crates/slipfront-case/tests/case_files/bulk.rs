@@ -103,8 +103,9 @@ fn the_keys_that_a_note_gives_make_a_body_without_one() {
     );
 }
 
-/// A body with its keys, in blocks, on the periodic edges and under the slow loading of the defaults. Its drive
-/// springs stand for its shear, G/H, unless they are given; a deep body has those of five times its side.
+/// A body with its keys, in blocks, on the periodic edges and under the slow loading of the defaults. Its
+/// drive springs stand for its shear, G/H, unless they are given; a deep body has those of five times its
+/// side.
 #[test]
 fn the_model_has_the_body_of_the_case() {
     let bulk = "slider.body=\"bulk\"";

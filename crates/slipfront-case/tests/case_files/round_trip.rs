@@ -658,7 +658,8 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
         )
 }
 
-/// Cases that were once printed wrongly: a field of coefficients without a ratio, and grades with contact springs.
+/// Cases that were once printed wrongly: a field of coefficients without a ratio, and grades with contact
+/// springs.
 #[test_case("[friction]\nmu_kinetic_field = 'a.npy'\nmu_static_field = 'b.npy'"; "fields in place of a ratio")]
 #[test_case(
     "[slider]\nstiffness_grade = { along = 'x', from = 1e-6, to = 1e-6 }\n\

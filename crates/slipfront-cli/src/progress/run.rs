@@ -18,7 +18,7 @@ pub(crate) struct RunProgress {
 struct Steps {
     /// Progress at which this process began.
     first: Place,
-    /// When it began.
+    /// Instant at which this process began.
     began: Instant,
     /// Number of steps in which the drive moves: all steps, unless the drive is held at times.
     last: u64,

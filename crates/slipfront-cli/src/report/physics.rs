@@ -58,7 +58,7 @@ fn slider(case: &Case) -> String {
     format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
 }
 
-/// What is computed of a bulk body.
+/// Height, Poisson's ratio and contact face of a bulk body, and the edges that it lacks.
 fn body(case: &Case) -> Option<String> {
     let body = case.model.body()?;
     let height = if body.height.is_finite() {

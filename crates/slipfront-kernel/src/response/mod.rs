@@ -1,25 +1,13 @@
 //! The forces of an elastic body on all blocks of its face at once: a transform of their displacements to
 //! wave numbers, a product with the response of each, and a transform back.
 
+mod threads;
 mod transform;
-
-use fearless_simd::Level;
 
 use self::transform::{LANES, Lanes, Rows, Transform};
 
+pub use self::threads::{Join, Threads};
 pub use self::transform::next_side;
-
-/// Calls two functions, on two threads if there are any.
-pub type Join = fn(&mut (dyn FnMut() + Send), &mut (dyn FnMut() + Send));
-
-/// How the columns of a transform are computed; no bit of the result depends on it.
-#[derive(Clone, Copy, Debug)]
-pub struct Threads {
-    /// Vector instructions.
-    pub level: Level,
-    /// What shares out the work of several threads.
-    pub join: Join,
-}
 
 /// The response of a body to displacements of its face, for every wave number of a lattice with periodic
 /// edges, and room to apply it.
@@ -39,7 +27,7 @@ impl SurfaceResponse {
     /// parts of b for the wave number i of nx along x and j of ny along y.
     ///
     /// # Panics
-    /// Unless both sides are such that [`next_side`] returns them.
+    /// Unless [`next_side`] returns both sides themselves.
     pub fn new([nx, ny]: [usize; 2], threads: usize, stiffness: impl Fn(usize, usize) -> [f64; 3]) -> Self {
         let transform = Transform::new([nx, ny], threads);
         let spectrum = transform.spectrum();

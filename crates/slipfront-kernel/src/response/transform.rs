@@ -9,7 +9,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::Threads;
+use super::threads::Threads;
 use crate::vectorized;
 
 /// Number of columns that are transformed at once.
@@ -293,7 +293,7 @@ impl Transform {
         Columns(&self.plans[0], ny, spectrum.stride).transform(threads, scratch, load, to);
     }
 
-    /// The vectors whose transform is `spectrum(row, first column)` for eight columns, times the number of
+    /// The vectors with the transform `spectrum(row, first column)` for eight columns, times the number of
     /// blocks.
     pub(super) fn backward(
         &mut self,
@@ -325,7 +325,7 @@ impl Transform {
 struct Columns<'a>(&'a Plan, usize, usize);
 
 impl Columns<'_> {
-    /// Transforms the columns, whose numbers `load(row, first column)` returns for eight of them.
+    /// Transforms the columns; `load(row, first column)` returns the numbers of eight of them.
     fn transform(
         self,
         threads: Threads,

@@ -184,8 +184,8 @@ impl<'a> Reference<'a> {
         self.drive_steps as f64 * self.dt
     }
 
-    /// Whether the drive moves from t_n to t_n+1: a held drive only if no block in contact slides, or no block
-    /// of a bulk body is faster than an excess of 3e-4 of the largest strength makes it in a step.
+    /// Whether the drive moves from t_n to t_n+1: a held drive only if no block in contact slides, or no
+    /// block of a bulk body is faster than an excess of 3e-4 of the largest strength makes it in a step.
     pub(crate) fn drive_moves(&self) -> bool {
         if self.model.drive.is_held() && self.body.is_some() {
             let limits = (0..self.blocks.len()).map(|b| self.model.surface.static_limit(b));
@@ -246,8 +246,8 @@ impl<'a> Reference<'a> {
         springs::elastic_force(b, springs, &self.displacement, epsilon)
     }
 
-    /// Displacement by which the drive spring over block `b` is shorter: that of the block, or the mean of all
-    /// blocks of a bulk body, whose drive springs pull it as a whole.
+    /// Displacement by which the drive spring over block `b` is shorter: that of the block, or the mean of
+    /// all blocks of a bulk body, which drive springs pull as a whole.
     fn pulled_displacement(&self, b: usize) -> Vector {
         match &self.body {
             None => self.displacement[b],

@@ -83,7 +83,7 @@ impl<T> From<[T; 12]> for Summed<T> {
     }
 }
 
-/// What a body does to the blocks of a band.
+/// Forces of a body on the blocks of a band.
 #[derive(Clone, Copy)]
 pub(super) struct BodyForces<'a> {
     /// Force on every block of the band along x and y.
