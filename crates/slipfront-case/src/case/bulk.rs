@@ -8,7 +8,6 @@
 use std::f64::consts::{PI, TAU};
 
 use slipfront::lattice::POISSON_RATIO;
-use slipfront::{Body, Lattice};
 
 use super::coefficients::sharing_distance;
 use super::runnable::Case;
@@ -26,10 +25,6 @@ const STRIP: f64 = 2.316;
 /// body over in the sheet. For a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a height of
 /// five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/validation/bulk.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
-/// Largest height of a body for the stiffness of its drive springs, in lengths of the longer side: it sets
-/// how steeply mu* rises with the path of the drive, and not the strength.
-const HEIGHT_OF_DEEP: f64 = 5.0;
-
 /// Lengths of the textures of a case, m, by which it counts as a sheet or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TextureLengths {
@@ -39,13 +34,6 @@ struct TextureLengths {
     pitch: Option<f64>,
     /// Whether one array of this pitch fills the slider.
     is_regular: bool,
-}
-
-/// Stiffness of the drive springs that stand for the shear of a body between its face and its driven back, in
-/// units of E times the block size.
-pub(super) fn mount(body: &Body, lattice: &Lattice) -> f64 {
-    let longer = lattice.nx.max(lattice.ny) as f64;
-    body.shear_modulus() / body.height.min(HEIGHT_OF_DEEP * longer)
 }
 
 impl Case {

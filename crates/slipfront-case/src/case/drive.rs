@@ -4,9 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
+use slipfront::{Body, Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
 
-use super::bulk;
 use super::derived::Derived;
 use super::files::Watch;
 use super::groups::within;
@@ -17,6 +16,9 @@ use crate::case_file::{
 
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
 const MAX_ANGLE: f64 = 1e-3;
+/// Largest height of a body for the stiffness of its drive springs, in lengths of the longer side: it sets
+/// how steeply mu* rises with the path of the drive, and not the strength.
+const HEIGHT_OF_DEEP: f64 = 5.0;
 
 /// The blocks of these rows that have a drive spring, if a file gives them.
 pub(super) fn attached(
@@ -55,6 +57,13 @@ pub(super) fn attach(
     Ok(())
 }
 
+/// Stiffness of the drive springs that stand for the shear of a body between its face and its driven back, in
+/// units of E times the block size.
+fn mount(body: &Body, lattice: &Lattice) -> f64 {
+    let longer = lattice.nx.max(lattice.ny) as f64;
+    body.shear_modulus() / body.height.min(HEIGHT_OF_DEEP * longer)
+}
+
 /// The drive of a slider. A total stiffness is shared by the driven blocks in proportion to their moduli; a
 /// bulk body without a given stiffness has that of its shear.
 pub(super) fn drive(
@@ -67,7 +76,7 @@ pub(super) fn drive(
     let (scales, groups) = (&derived.scales, &derived.groups);
     let is_given = file.drive.stiffness != DriveStiffness::Each(AutoOrStiffness::Auto);
     let k_drive = match (file.slider.bulk_body(), total(file, scales)) {
-        (Some(body), _) if !is_given => bulk::mount(&body, lattice),
+        (Some(body), _) if !is_given => mount(&body, lattice),
         (_, Some(total)) => total / slider.sum_of_drive_springs(lattice),
         (_, None) => each(file, scales),
     };
