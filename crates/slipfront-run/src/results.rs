@@ -243,8 +243,8 @@ mod tests {
         files.into_iter().find(|(name, _)| name == STATE).unwrap().1
     }
 
-    /// While nothing slips, friction is proportional to the path of the drive, though its increments are first
-    /// large and then small.
+    /// While nothing slips, friction is proportional to the path of the drive, though its increments are
+    /// first large and then small.
     #[test]
     fn the_series_of_a_bulk_body_has_the_path_of_its_increments() {
         let text = "slider = { blocks = [8, 8], body = 'bulk' }\n\

@@ -107,6 +107,10 @@ impl Case {
             "law = \"literal\" is for comparison only: its results depend on the time step".to_owned()
         });
         let is_bulk = self.model.body().is_some();
+        warn(is_bulk, &|| {
+            "a bulk body is a periodic piece of a larger part: edges, at which a part of its own loses strength, are not computed"
+                .to_owned()
+        });
         warn(dt_star > 0.5 && !is_bulk, &|| {
             format!(
                 "dt* = {} is stable but coarse: with 0.1, mu_s* is accurate to 1e-3",

@@ -58,7 +58,7 @@ fn slider(case: &Case) -> String {
     format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
 }
 
-/// Height, Poisson's ratio and contact face of a bulk body, and the edges that it lacks.
+/// Height, Poisson's ratio and contact face of a bulk body.
 fn body(case: &Case) -> Option<String> {
     let body = case.model.body()?;
     let height = if body.height.is_finite() {
@@ -74,7 +74,7 @@ fn body(case: &Case) -> Option<String> {
         Face::Flat => "held flat",
     };
     Some(format!(
-        "{height}, nu = {}, its face {face}; a periodic piece of a larger part, without the effect of edges",
+        "{height}, nu = {}, its face {face}",
         four_digits(body.poisson)
     ))
 }
