@@ -1,4 +1,5 @@
-//! Drive of the slider: the far ends of the drive springs, which move together.
+//! Drive of the slider: the far ends of the drive springs, which move together. Under slow loading
+//! ([`Loading`]) they wait until no block in contact slides.
 
 use std::ops::Range;
 use std::sync::Arc;
