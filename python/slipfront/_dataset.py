@@ -31,7 +31,6 @@ _LONG_NAMES = {
     "friction_loss_j": "lost to friction since the start",
     "damping_loss_j": "lost to damping since the start",
     "viscous_loss_j": "lost to the dampers between blocks since the start",
-    "sheet_coupling_energy_j": "energy of the springs between the sheets of a bulk body",
     "contact_spring_energy_j": "energy of the springs in contact",
     "foundation_energy_j": "energy of the foundation under an upright sheet",
     "broken_spring_loss_j": "lost with springs that broke since the start",

@@ -66,7 +66,7 @@ impl RunAgain {
             if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {
                 break reason;
             }
-            progress.show(&running.snapshot());
+            progress.show(&running);
             Failure::if_stopped(signals)?;
         };
         progress.finish();

@@ -279,15 +279,9 @@ impl DesignFile {
             &mut |_| true,
             Ranks::ALONE,
         )?;
-        let is_stack = !case.model.sheets().is_empty();
-        if is_stack && matches!(case.file.load.redistribute, Redistribute::All(true)) {
+        if case.model.body().is_some() && matches!(case.file.load.redistribute, Redistribute::All(true)) {
             let sentence = "a designed texture has no pitch, which a bulk body needs to redistribute load: give \
                             `load.redistribute` = { within = \"...\" } in the base, about twice the width of a feature";
-            return Err(self.project.error("base", sentence.to_owned()));
-        }
-        if is_stack && !self.keys.unknowns.is_empty() && case.file.slider.longest_wave.is_none() {
-            let sentence = "the sheets of a bulk body follow from the pitch of its texture, which is unknown here: give \
-                            `slider.longest_wave` in the base, the largest pitch, so that all drafts have the same body";
             return Err(self.project.error("base", sentence.to_owned()));
         }
         Ok(case)

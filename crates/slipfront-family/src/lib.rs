@@ -1,9 +1,9 @@
 //! Models beyond the paper's: exact and computed answers for every option of the engine.
 //!
 //! Each chapter builds its sliders from the physics alone, and compares their motion with a closed form or
-//! with the integration of an equation that its text derives. Published benchmarks are compared with their
-//! reference. The command is `slipfront family`; its pages are `docs/validation/family.md`, `rupture.md` and
-//! `transition.md`.
+//! with the integration of an equation that its text (in `text/`) derives. Published benchmarks are compared
+//! with their reference. The command is `slipfront family`; its pages are `docs/validation/family.md`,
+//! `rupture.md` and `transition.md`.
 
 mod adhesion;
 mod ageing;

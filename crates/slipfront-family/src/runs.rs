@@ -40,8 +40,8 @@ impl AnswerRun {
     /// Time of the first slip of any block; NaN if none has slipped.
     pub(crate) fn first_slip(&self) -> f64 {
         self.simulation
-            .snapshot()
-            .earliest_first_slip()
+            .peak()
+            .first_slip_drive_time_star
             .unwrap_or(f64::NAN)
     }
 

@@ -97,7 +97,6 @@ prop_compose! {
         (load, adhesion) in (prop_oneof![Just(Load::Redistributed), Just(Load::Kept)], 0.0..0.5),
         dead_load in prop_oneof![Just([0.0; 2]), (-0.3..0.3, -0.3..0.3).prop_map(|(x, y)| [x, y])],
         fall in prop::option::of((0.01..2.0, prop::option::of(0.2..3.0))),
-        ratio in prop_oneof![Just(3.0), 1.5..6.0],
         thrown in prop::option::of(0.001..2.0),
         dt_star in 0.05..0.3,
     ) -> (Model, f64, Option<State>) {
@@ -121,7 +120,6 @@ prop_compose! {
         let slip_weakening = fall.map(|(length, healing_time)| SlipWeakening { length, healing_time });
         let friction = Friction::Coulomb(Coulomb { slip_weakening, ..FrictionLaw::Projection.into() });
         let model = Model::new(lattice, surface, drive, damping, epsilon, friction)
-            .with_sheets(Vec::new(), slipfront::lattice::SpringStiffness::with_ratio(ratio))
             .with_slider(slider.clone())
             .with_dead_load(DeadLoad::uniform(dead_load));
         let wave = |k: f64, apart: usize, size: f64| -> Vec<f64> {

@@ -12,14 +12,12 @@ use super::blocks::{
 };
 use super::interface::Interface;
 use super::layout::{Layout, TILE};
-use super::pull::Above;
 use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::scratch::{MIRROR, Scratch, whole_vectors};
 use super::springs::Geometry;
 use super::step::Step;
 use super::thresholds::Thresholds;
-use super::upper_sheet::UpperSheet;
 use super::variations::{Variation, Variations};
 use super::vector::{Chunks, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::lattice::Bond;
@@ -133,8 +131,6 @@ pub struct Band {
     pub thresholds: Option<Thresholds>,
     /// The interface of an upright sheet, along which friction acts.
     pub(crate) interface: Option<Interface>,
-    /// The sheets above the lowest, which are without friction.
-    pub upper: Vec<UpperSheet>,
     /// Arrays of intermediate results. The lock is held while fields are read; a sweep, which runs alone,
     /// uses the arrays without it.
     scratch: Mutex<Scratch>,
@@ -202,11 +198,6 @@ impl Band {
                 .then(|| Variations::new(layout, properties, halo, first..first + len)),
             thresholds: properties.changing.map(|law| Thresholds::new(law, len)),
             interface: Interface::of(layout, properties, first, len),
-            upper: properties
-                .sheets
-                .iter()
-                .map(|sheet| UpperSheet::new(*sheet, layout.stride, len, halo))
-                .collect(),
             scratch: Mutex::new(Scratch {
                 drive: Vectors::zeros(TILE),
                 free: Vectors::zeros(TILE),
@@ -318,42 +309,9 @@ impl Band {
         }
     }
 
-    /// Displacements, with halos, and velocities of a sheet; the lowest has number 0.
-    #[inline(always)]
-    pub fn of_sheet(&self, number: usize) -> [&Vectors; 2] {
-        match number.checked_sub(1) {
-            None => [&self.displacement, &self.velocity],
-            Some(number) => {
-                let UpperSheet {
-                    displacement,
-                    velocity,
-                    ..
-                } = &self.upper[number];
-                [displacement, velocity]
-            }
-        }
-    }
-
-    /// Displacements, with halos, and velocities of a sheet, to be written; the lowest has number 0.
-    #[inline(always)]
-    pub fn of_sheet_mut(&mut self, number: usize) -> [&mut Vectors; 2] {
-        match number.checked_sub(1) {
-            None => [&mut self.displacement, &mut self.velocity],
-            Some(number) => {
-                let UpperSheet {
-                    displacement,
-                    velocity,
-                    ..
-                } = &mut self.upper[number];
-                [displacement, velocity]
-            }
-        }
-    }
-
-    /// Displacement that an element of a sheet will have after moving by `move_dt`.
-    pub fn advanced(&self, sheet: usize, k: usize, move_dt: f64) -> [f64; 2] {
-        let [displacement, velocity] = self.of_sheet(sheet);
-        let ([ux, uy], [vx, vy]) = (displacement.at(self.halo + k), velocity.at(k));
+    /// Displacement that an element will have after moving by `move_dt`.
+    pub fn advanced(&self, k: usize, move_dt: f64) -> [f64; 2] {
+        let ([ux, uy], [vx, vy]) = (self.displacement.at(self.halo + k), self.velocity.at(k));
         [ux + move_dt * vx, uy + move_dt * vy]
     }
 
@@ -376,8 +334,6 @@ impl Band {
         }
         // Moved out, so that the band and its scratch arrays can be changed at the same time.
         let mut scratch = std::mem::take(self.scratch());
-        let mut upper = std::mem::take(&mut self.upper);
-        self.begin_upper(simd, geometry, &step, ahead, &mut upper);
         if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
             // The springs below the band also belong to another band, or to the other end of this one.
             // Computing them twice avoids that a thread waits for another.
@@ -395,9 +351,6 @@ impl Band {
                 let (from, to) = (self.halo + elements.start, self.halo + elements.end);
                 self.upward(simd, geometry, &self.displacement, &mut scratch, from, to);
             }
-            if !upper.is_empty() {
-                self.upper_tiles(simd, geometry, (&step, quanta), energies, (t, ahead), &mut upper);
-            }
             if task.active == 0 {
                 continue;
             }
@@ -412,7 +365,7 @@ impl Band {
                     // requires the energy of each.
                     energies || task.settles,
                     t,
-                    (&mut scratch, &upper),
+                    &mut scratch,
                 );
             }
             if task.settles {
@@ -427,7 +380,6 @@ impl Band {
             }
         }
         *self.scratch() = scratch;
-        self.upper = upper;
         self.add_up();
     }
 
@@ -441,7 +393,6 @@ impl Band {
             let step = if tile.moving { 0 } else { tile.active_from_step };
             self.next_active_step = self.next_active_step.min(step);
         }
-        self.add_upper();
     }
 
     /// First element below element `k` with springs to the next row that element `k` needs.
@@ -558,44 +509,40 @@ impl Band {
         (step, quanta): (&Step, &Quanta),
         energies: bool,
         t: usize,
-        (scratch, upper): (&mut Scratch, &[UpperSheet]),
+        scratch: &mut Scratch,
     ) {
         self.lattice_forces(simd, geometry, &self.displacement, t, scratch);
         let mut lattice_energy = 0;
         if energies {
             lattice_energy = self.lattice_energies(simd, geometry, quanta, t, scratch);
         }
-        if upper.is_empty() {
-            self.friction_with::<S, G, false>(simd, step, quanta, energies, t, (scratch, upper));
-        } else {
-            self.friction_with::<S, G, true>(simd, step, quanta, energies, t, (scratch, upper));
-        }
+        self.friction_with::<S, G>(simd, step, quanta, energies, t, scratch);
         self.tiles[t].sums.lattice_energy = lattice_energy;
     }
 
     /// Eqs. 2 and 4-7 in a tile with known lattice forces, and its energies if they are needed.
     #[inline(always)]
-    fn friction_with<S: Simd, G: Geometry, const HAS_ABOVE: bool>(
+    fn friction_with<S: Simd, G: Geometry>(
         &mut self,
         simd: S,
         step: &Step,
         quanta: &Quanta,
         energies: bool,
         t: usize,
-        arrays: (&mut Scratch, &[UpperSheet]),
+        scratch: &mut Scratch,
     ) {
         if G::BLOCKS_DIFFER && self.interface.is_some() {
-            self.interface_of_tile(simd, step, quanta, t, arrays.0);
+            self.interface_of_tile(simd, step, quanta, t, scratch);
             return;
         }
         match (G::BLOCKS_DIFFER, energies) {
             // All energies are computed: a version without them would save little.
-            (true, _) => self.friction_of_tile::<S, true, true, HAS_ABOVE>(simd, step, quanta, t, arrays),
+            (true, _) => self.friction_of_tile::<S, true, true>(simd, step, quanta, t, scratch),
             (false, true) => {
-                self.friction_of_tile::<S, true, false, HAS_ABOVE>(simd, step, quanta, t, arrays);
+                self.friction_of_tile::<S, true, false>(simd, step, quanta, t, scratch);
             }
             (false, false) => {
-                self.friction_of_tile::<S, false, false, HAS_ABOVE>(simd, step, quanta, t, arrays);
+                self.friction_of_tile::<S, false, false>(simd, step, quanta, t, scratch);
             }
         }
     }
@@ -603,13 +550,13 @@ impl Band {
     /// Eqs. 2 and 4-7 in a tile with known lattice forces. A separate function, compiled once for all spring
     /// formulas.
     #[inline(never)]
-    fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
+    fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         &mut self,
         simd: S,
         step: &Step,
         quanta: &Quanta,
         t: usize,
-        (scratch, upper): (&mut Scratch, &[UpperSheet]),
+        scratch: &mut Scratch,
     ) {
         simd.vectorize(
             #[inline(always)]
@@ -618,20 +565,12 @@ impl Band {
                 // Skipped tiles lie between, so that the next data to be read do not follow in memory.
                 let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
                 let elements = self.elements(t);
-                let (first, n) = (self.halo + elements.start, elements.len());
-                let above = match upper.first() {
-                    Some(above) if HAS_ABOVE => above.above(first, n),
-                    _ => Above::default(),
-                };
                 let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0, None);
                 let mut sums = Sums::zero(simd);
-                friction::<S, ENERGY, DIFFER, HAS_ABOVE>(simd, *step, quanta, (arrays, above), &mut sums);
+                friction::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, &mut sums);
                 let vectors = self.vectors(t).len();
                 let tile = &mut self.tiles[t];
                 tile.sums = sums.totals::<ENERGY>(quanta, vectors);
-                if HAS_ABOVE {
-                    tile.sums = tile.sums.below_others();
-                }
                 tile.moving = tile.sums.sliding > 0;
                 // Values known for its single vectors are from before this sweep.
                 tile.settled = false;
@@ -890,10 +829,6 @@ impl Band {
                 extent, difference, ..
             } = self.tiles[t];
             self.include_measured((extent, difference));
-            for sheet in 0..self.upper.len() {
-                let measured = self.measured(simd, &self.upper[sheet].displacement, t);
-                self.include_measured(measured);
-            }
         }
     }
 

@@ -6,7 +6,7 @@
 use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 
 use super::aligned::CacheLines;
-use super::pull::{Above, pull_from_above, pull_of_differing};
+use super::pull::{pull, pull_of_differing};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
@@ -204,7 +204,7 @@ fn squares_over_factors<S: Simd, G: Geometry>(
 }
 
 /// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from
-/// the squares of their forces over the relative thickness of the sheet, and `k_1/k_2`: see [`integers`].
+/// the squares of their forces, and `k_1/k_2`: see [`integers`].
 #[inline(always)]
 fn spring_energies<S: Simd>(
     simd: S,
@@ -221,7 +221,7 @@ fn spring_energies<S: Simd>(
 }
 
 /// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of
-/// [`Sums`], from their forces over the relative thickness of the sheet.
+/// [`Sums`], from their forces.
 #[inline(always)]
 pub(crate) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
@@ -297,7 +297,7 @@ pub(crate) struct FrictionLoop<'a> {
     pub(crate) slipped: &'a mut [u8],
     /// The step at which each block in contact first slid.
     pub(crate) first_slip: &'a mut [[u32; LANES]],
-    /// Drive forces `F_s`, or those of the sheet above, computed by [`free_motion`].
+    /// Drive forces `F_s`, computed by [`free_motion`].
     pub(crate) drive: [ChunksMut<'a>; 2],
     /// Velocities that the blocks would have without friction, computed by [`free_motion`].
     pub(crate) free: [ChunksMut<'a>; 2],
@@ -461,7 +461,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     /// Adds eight blocks that do not rest to the sums of every step and to the maxima; `c`: their place in
     /// `variation`.
     #[inline(always)]
-    pub(crate) fn add_moved<const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
+    pub(crate) fn add_moved<const ENERGY: bool, const DIFFER: bool>(
         &mut self,
         simd: S,
         quanta: &Quanta,
@@ -481,10 +481,8 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
         let both = zero_missing(simd, blocks, add(before, after));
         let displacement = or_else(simd, blocks, displacement, shifts.centres);
         let motion_square = weighted::<S, DIFFER>(simd, square(both), variation.mass, c);
-        if !HAS_ABOVE {
-            self.add_displacement::<DIFFER>(simd, shifts, displacement, variation.drive_springs, c);
-            self.add_velocity::<DIFFER>(simd, shifts, after, variation.drive_springs, c);
-        }
+        self.add_displacement::<DIFFER>(simd, shifts, displacement, variation.drive_springs, c);
+        self.add_velocity::<DIFFER>(simd, shifts, after, variation.drive_springs, c);
         self.motion_square += integers(motion_square, shifts.motion_square);
         self.friction_work += integers(dot(against, both), shifts.friction_work);
         self.speed_square = self.speed_square.max(square(after));
@@ -494,9 +492,7 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
             let motion = weighted::<S, DIFFER>(simd, motion, variation.mass, c);
             let motion = zero_missing(simd, blocks, [motion, splat(simd, 0.0)])[0];
             self.velocity_squares += integers(motion, shifts.motion_square);
-            if !HAS_ABOVE {
-                self.add_stretch::<DIFFER>(simd, quanta, shifts, displacement, variation.drive_springs, c);
-            }
+            self.add_stretch::<DIFFER>(simd, quanta, shifts, displacement, variation.drive_springs, c);
         }
     }
 
@@ -545,19 +541,6 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
                 integer_sum(self.displacement_square, quanta.displacement_square, vectors);
         }
         sums
-    }
-}
-
-impl Sums<i64, f64> {
-    /// Leaves out the sums over the drive springs, for a sheet below others: the drive springs pull the
-    /// highest sheet.
-    pub(crate) fn below_others(self) -> Self {
-        Self {
-            displacement: [0; 2],
-            velocity: [0; 2],
-            displacement_square: 0,
-            ..self
-        }
     }
 }
 
@@ -649,11 +632,10 @@ fn rest<S: Simd>(
 /// First part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction, for
 /// vectors that do not [`rest`].
 #[inline(always)]
-fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOADS: bool>(
+fn free_motion<S: Simd, const DIFFER: bool, const HAS_LOADS: bool>(
     simd: S,
     step: Step,
     arrays: &mut FrictionLoop,
-    above: Above,
 ) {
     let n = arrays.free_speed.len();
     let (u, lattice) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
@@ -667,11 +649,11 @@ fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOA
     let variation = arrays.variation.first::<DIFFER>(n);
     for c in 0..n {
         let u = load_vec2(simd, u, c);
-        let drive = if DIFFER && !HAS_ABOVE {
+        let drive = if DIFFER {
             let loads = HAS_LOADS.then(|| load(simd, &variation.loads[c]));
             pull_of_differing(simd, step, load(simd, &variation.drive_springs[c]), loads, u)
         } else {
-            pull_from_above::<S, HAS_ABOVE>(simd, step, above, c, u)
+            pull(simd, step, u)
         };
         let mut force_to_velocity = splat(simd, step.integrator.force_to_velocity);
         let before = load_vec2(simd, velocity, c);
@@ -697,22 +679,19 @@ fn free_motion<S: Simd, const DIFFER: bool, const HAS_ABOVE: bool, const HAS_LOA
 }
 
 /// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks
-/// at a time, and all sums that observers need at every step. Below other sheets, the pull of the next sheet
-/// replaces the drive, and sums over the drive springs are left out.
+/// at a time, and all sums that observers need at every step.
 #[inline(always)]
-pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HAS_ABOVE: bool>(
+pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     simd: S,
     step: Step,
     quanta: &Quanta,
-    (mut arrays, above): (FrictionLoop, Above),
+    mut arrays: FrictionLoop,
     sums: &mut Sums<i64x8<S>, f64x8<S>>,
 ) {
-    let n = arrays.free_speed.len();
-    let above = above.first::<HAS_ABOVE>(n);
-    if DIFFER && !HAS_ABOVE && !arrays.variation.loads.is_empty() {
-        free_motion::<S, DIFFER, HAS_ABOVE, true>(simd, step, &mut arrays, above);
+    if DIFFER && !arrays.variation.loads.is_empty() {
+        free_motion::<S, DIFFER, true>(simd, step, &mut arrays);
     } else {
-        free_motion::<S, DIFFER, HAS_ABOVE, false>(simd, step, &mut arrays, above);
+        free_motion::<S, DIFFER, false>(simd, step, &mut arrays);
     }
     let [vx, vy] = arrays.velocity;
     let n = vx.len();
@@ -742,12 +721,10 @@ pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
         let force = add(drive, lattice);
         if rest(simd, moving[c], before, force, &static_limit_squares[c]) {
             let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), shifts.centres);
-            if !HAS_ABOVE {
-                sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
-            }
+            sums.add_displacement::<DIFFER>(simd, &shifts, displacement, variation.drive_springs, c);
             let stress = zero_missing(simd, in_contact[c], drive);
             sums.stress_square = sums.stress_square.max(square(stress));
-            if ENERGY && !HAS_ABOVE {
+            if ENERGY {
                 sums.add_stretch::<DIFFER>(simd, quanta, &shifts, displacement, variation.drive_springs, c);
             }
             // Velocities, power and motion are zero: all these zeros are added to their sums at once at the
@@ -790,7 +767,7 @@ pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool, const HA
                 select(slides, subtract(lattice, kinetic), drive),
             ),
         };
-        sums.add_moved::<ENERGY, DIFFER, HAS_ABOVE>(simd, quanta, &shifts, &moved, (variation, c));
+        sums.add_moved::<ENERGY, DIFFER>(simd, quanta, &shifts, &moved, (variation, c));
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
     }
     sums.add_zeros::<ENERGY>(simd, quanta, resting);

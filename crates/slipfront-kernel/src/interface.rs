@@ -151,7 +151,7 @@ pub(crate) fn friction_along_x<S: Simd>(
             against: [slides.select(kinetic, force[0]), zero],
             stress: zero_missing(simd, in_contact, stress),
         };
-        sums.add_moved::<true, true, false>(simd, quanta, &shifts, &moved, (arrays.variation, c));
+        sums.add_moved::<true, true>(simd, quanta, &shifts, &moved, (arrays.variation, c));
         mark_first_slips(
             slips,
             &mut arrays.slipped[c],

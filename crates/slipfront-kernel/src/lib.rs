@@ -5,8 +5,7 @@
 //! advances one tile after the other by a step ([`Band`]): displacements, springs, friction and all sums,
 //! eight blocks at a time (`blocks.rs`), each spring once. Spring forces are computed from a series where
 //! this is as exact as the square root (`springs.rs`). A tile at rest with nothing moving around it is
-//! skipped until one of its blocks can slip (`rest.rs`). Every thread sweeps a band of tiles. Sheets above
-//! the lowest one are swept tile by tile with it (`sheets.rs`).
+//! skipped until one of its blocks can slip (`rest.rs`). Every thread sweeps a band of tiles.
 //!
 //! A step must read displacement, velocity and two thresholds of every block and write displacement and
 //! velocity: 80 bytes. This bounds the speed on a lattice larger than the cache. Spring forces pass through a
@@ -34,10 +33,10 @@ mod motion_bounds;
 mod properties;
 mod pull;
 mod quanta;
+mod response;
 mod rest;
 mod schedule;
 mod scratch;
-mod sheets;
 mod sparse;
 mod springs;
 mod step;
@@ -46,7 +45,6 @@ mod stress;
 #[cfg(not(test))]
 mod sweep;
 mod thresholds;
-mod upper_sheet;
 mod upright;
 mod variations;
 mod vector;
@@ -57,8 +55,9 @@ pub use blocks::Sums;
 pub use integrator::{Integrator, SMALLEST_VELOCITY};
 pub use layout::{Layout, TILE, VECTORS};
 pub use motion_bounds::MotionBounds;
-pub use properties::{Blocks, Properties, Sheet};
+pub use properties::{Blocks, Properties};
 pub use quanta::Quanta;
+pub use response::{Join, SurfaceResponse, Threads, next_side};
 pub use schedule::SweepConditions;
 pub use springs::{SeriesNumbers, SquareRoot};
 pub use step::Step;
@@ -67,9 +66,8 @@ pub use stress::{OfTile, Stress, StressReader};
 #[cfg(not(test))]
 pub use sweep::{Springs, measure_displacements, sweep};
 pub use thresholds::{ChangingLaw, FallWithSlip, FallWithSpeed, Thresholds};
-pub use upper_sheet::UpperSheet;
 pub use variations::LargestFactors;
-pub use vector::LANES;
+pub use vector::{LANES, vectorized};
 
 /// BLAKE3 hash of the sources of this crate.
 pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -4,17 +4,6 @@ use crate::lattice::Bond;
 use crate::layout::Layout;
 use crate::thresholds::ChangingLaw;
 
-/// A sheet above the lowest one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet {
-    /// Thickness `h_k` over that of the lowest sheet: the stiffness of the springs between its blocks and the
-    /// mass of its blocks, relative to the lowest sheet.
-    pub thickness: f64,
-    /// Stiffness `g_k` of the spring between each of its blocks and the block below, in units of `E h` with
-    /// the thickness h of the lowest sheet.
-    pub coupling: f64,
-}
-
 /// The blocks of a slider. They have the indices of [`Layout::block`].
 pub trait Blocks: Sync {
     /// Whether there is a block at this place of the lattice.
@@ -63,8 +52,6 @@ pub struct Properties<'a> {
     pub changing: Option<ChangingLaw>,
     /// Stiffness of the foundation of an interface; none where friction acts in the plane.
     pub foundation: Option<f64>,
-    /// The sheets above the lowest one.
-    pub sheets: &'a [Sheet],
     /// Change of velocity per force of a plain block, `dt/(m c+)`.
     pub force_to_velocity: f64,
 }

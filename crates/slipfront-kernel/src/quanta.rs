@@ -23,8 +23,6 @@ pub struct Quanta {
     pub friction_work: FixedPoint,
     /// Quanta of squares of spring forces over the factors of the springs.
     pub lattice_energy: FixedPoint,
-    /// Quanta of `g (u_k+1 - u_k)^2` between the sheets of a stack.
-    pub between_sheets: FixedPoint,
 }
 
 /// Factor for rounding in the bounds and in the numbers that they bound.
@@ -40,8 +38,6 @@ impl Quanta {
             modulus,
             drive_spring,
             mass,
-            thickness,
-            coupling,
             springs,
             ..
         } = largest;
@@ -53,7 +49,7 @@ impl Quanta {
             }),
             displacement_square: FixedPoint::new(MARGIN * drive_spring * (x * x + y * y)),
             velocity: FixedPoint::new(drive_spring * speed),
-            motion_square: FixedPoint::new(MARGIN * (mass * thickness) * 4.0 * speed * speed),
+            motion_square: FixedPoint::new(MARGIN * mass * 4.0 * speed * speed),
             // Friction is at most the force that stops a block.
             friction_work: FixedPoint::new(
                 MARGIN * mass * step.integrator.velocity_to_force * 2.0 * speed * speed,
@@ -61,13 +57,11 @@ impl Quanta {
             // Two straight springs, and two diagonal ones, with force factor k_2/k_1 and weight k_1/k_2.
             lattice_energy: FixedPoint::new(
                 MARGIN
-                    * (modulus * thickness)
+                    * modulus
                     * (2.0 + 2.0 * (springs.diagonal / springs.straight))
                     * spring_force
                     * spring_force,
             ),
-            // All blocks of a window, in any sheet, are at most its length apart.
-            between_sheets: FixedPoint::new(MARGIN * coupling * 4.0 * (x * x + y * y)),
         }
     }
 }
@@ -83,11 +77,7 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         // ends.
         let dead_load = largest.load * step.dead_load[axis].abs();
         force += largest.modulus * 4.0 * largest.springs.along() * bounds.spring_difference(axis)
-            + largest.inverse_thickness * (largest.drive_spring * (step.k_drive * stretch) + dead_load);
-        // Not for one sheet, so that its bits do not change where displacements are NaN.
-        if largest.coupling > 0.0 {
-            force += largest.couplings_over_thickness * (high - low);
-        }
+            + (largest.drive_spring * (step.k_drive * stretch) + dead_load);
         if axis == 1 && largest.foundation > 0.0 {
             force += largest.foundation * low.abs().max(high.abs());
         }

@@ -11,7 +11,6 @@ use super::aligned::{chunks, chunks_mut};
 use super::band::Band;
 use super::blocks::{Sums, displacement_sums, friction, spring, times_factor, vector_energy};
 use super::layout::{TILE, VECTORS};
-use super::pull::Above;
 use super::quanta::Quanta;
 use super::scratch::Scratch;
 use super::springs::Geometry;
@@ -128,8 +127,7 @@ impl Band {
                     let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
                     let arrays =
                         self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, place, None);
-                    let arrays = (arrays, Above::default());
-                    friction::<S, true, DIFFER, false>(simd, *step, quanta, arrays, &mut sums);
+                    friction::<S, true, DIFFER>(simd, *step, quanta, arrays, &mut sums);
                     let rests = task.touched >> (v % VECTORS) & 1 == 0 && self.moving[v] == 0;
                     self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, place, rests);
                 }

@@ -6,7 +6,7 @@ use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch};
 use super::aligned::{Aligned, chunks};
 use super::band::Band;
 use super::layout::TILE;
-use super::pull::{pull, pull_from_above, pull_of_differing};
+use super::pull::{pull, pull_of_differing};
 use super::scratch::Scratch;
 use super::springs::{Differing, Geometry, SquareRoot};
 use super::step::Step;
@@ -93,8 +93,6 @@ fn stresses<S: Simd, G: Geometry>(
     let displacements = chunks(&band.displacement, band.halo + elements.start, n);
     let velocities = chunks(&band.velocity, elements.start, n);
     let lattice_forces = chunks(&scratch.lattice, 0, n);
-    let above = band.upper.first();
-    let above = above.map(|above| above.above(band.halo + elements.start, n));
     let interface = band
         .interface
         .as_ref()
@@ -105,15 +103,14 @@ fn stresses<S: Simd, G: Geometry>(
         let lattice = load_vec2(simd, lattice_forces, c);
         let u = load_vec2(simd, displacements, c);
         let variations = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER);
-        let mut drive = match (above, variations) {
-            (Some(above), _) => pull_from_above::<S, true>(simd, step, above, c, u),
-            (None, Some(variations)) => {
+        let mut drive = match variations {
+            Some(variations) => {
                 let first = elements.start + c * LANES;
                 let eight = |values: &Aligned| load(simd, &values[first..].as_chunks().0[0]);
                 let loads = variations.loads.as_ref().map(eight);
                 pull_of_differing(simd, step, eight(&variations.drive_springs), loads, u)
             }
-            (None, None) => pull(simd, step, u),
+            None => pull(simd, step, u),
         };
         if let Some(interface) = &interface {
             let [reaction, share] = interface.reaction(simd, c, u[1]);

@@ -66,17 +66,8 @@ pub struct LargestFactors {
     pub inverse_mass: f64,
     /// Largest dead load relative to that of [`Step`](super::step::Step).
     pub load: f64,
-    /// Springs between the blocks of a sheet of relative thickness 1.
+    /// Springs between the blocks.
     pub springs: SpringStiffness,
-    /// Largest relative thickness of a sheet of a stack; 1 for a single sheet.
-    pub thickness: f64,
-    /// Largest inverse of a relative thickness.
-    pub inverse_thickness: f64,
-    /// Largest stiffness of the springs between two sheets; 0 for a single sheet.
-    pub coupling: f64,
-    /// Largest stiffness of the springs of a block to the sheets above and below, over the thickness of its
-    /// own sheet.
-    pub couplings_over_thickness: f64,
     /// Stiffness of the foundation under an interface; 0 without one.
     pub foundation: f64,
 }

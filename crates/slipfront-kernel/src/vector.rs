@@ -3,7 +3,7 @@
 //! Every function is `#[inline(always)]`, so that it is compiled for the vector width of its caller.
 //! Multiplications and additions are never fused, so that all widths give the same bits.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdMask, f64x8, i64x8, mask64x8};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, f64x8, i64x8, mask64x8};
 
 /// Number of blocks in a vector, on every processor.
 pub const LANES: usize = 8;
@@ -125,4 +125,17 @@ pub(crate) fn lane_sum<S: Simd>(v: i64x8<S>) -> i64 {
 pub(crate) fn lane_max<S: Simd>(v: f64x8<S>) -> f64 {
     let [a, b, c, d, e, f, g, h] = v.to_array();
     a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
+}
+
+/// Does work whose loops the compiler turns into vectors of two or four numbers. They are as fast as vectors
+/// of eight in the passes of the general kernel, which wait for memory.
+#[inline(always)]
+pub fn vectorized<R>(level: Level, work: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx2) = level.as_avx2() {
+        return avx2.vectorize(work);
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = level;
+    work()
 }

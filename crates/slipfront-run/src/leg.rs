@@ -44,10 +44,6 @@ pub enum ChangeError {
     )]
     Memory,
     #[error(
-        "a bulk body is a stack of sheets, and a change keeps only the motion of the lowest; start such a run from rest"
-    )]
-    Stack,
-    #[error(
         "a displacement or a velocity is not finite in the units of the new case: the run diverges, or a unit is too small; start such a run from rest"
     )]
     NotFinite,
@@ -75,7 +71,7 @@ impl Running {
     ///
     /// # Errors
     /// [`ChangeError`] when the cases have different blocks, contacts of one of them have more memory than a
-    /// state holds, one of them is a stack of sheets, or the run diverges.
+    /// state holds, or the run diverges.
     ///
     /// # Panics
     /// If several ranks share the lattice.
@@ -101,10 +97,6 @@ impl Running {
         if [old, new].iter().any(|model| model.friction.n_columns() > 0) {
             return Err(ChangeError::Memory);
         }
-        if [old, new].iter().any(|model| !model.sheets().is_empty()) {
-            return Err(ChangeError::Stack);
-        }
-
         let steps = self.snapshot().step + 1;
         let time_star = steps as f64 * before.time_plan.dt_star;
         let unit = before.scales.displacement();

@@ -71,7 +71,7 @@ fn each_table(
     let rows = data
         .rows
         .iter()
-        .map(|row| SeriesRow::new(row, &case.scales, &case.model));
+        .map(|row| SeriesRow::new(row, &case.scales, &data.model));
     take(SERIES, &series::to_csv(rows)?)?;
     take(KYMOGRAPH, &fields::kymograph_bytes(&data.kymograph, case))?;
     for (table, contents) in data.observers.tables(&case.scales)? {
@@ -241,6 +241,34 @@ mod tests {
     fn last_state(case: &Arc<Case>) -> Vec<u8> {
         let files = in_memory(case, &mut run(case, 1).unwrap()).unwrap();
         files.into_iter().find(|(name, _)| name == STATE).unwrap().1
+    }
+
+    /// While nothing slips, friction is proportional to the path of the drive, though its increments are
+    /// first large and then small.
+    #[test]
+    fn the_series_of_a_bulk_body_has_the_path_of_its_increments() {
+        let text = "slider = { blocks = [8, 8], body = 'bulk' }\n\
+                    friction = { sigma_static_star = 0, sigma_kinetic_star = 0, slip_weakening.length_star = 4 }\n\
+                    time.stop = 'after_onset'";
+        let case = Arc::new(Case::parse(text, "body", "", &[]).unwrap());
+        let mut data = run(&case, 1).unwrap();
+        let (first_slip, pull) = (
+            data.summary.first_slip_time_star.unwrap(),
+            case.model.drive.k_drive,
+        );
+        let files = in_memory(&case, &mut data).unwrap();
+        let (_, series) = files.into_iter().find(|(name, _)| name == SERIES).unwrap();
+        let mut reader = csv::Reader::from_reader(&series[..]);
+        let rows: Vec<SeriesRow> = reader.deserialize().map(Result::unwrap).collect();
+        let path = |row: &SeriesRow| row.drive_displacement_m.unwrap() / case.scales.displacement();
+        let time = |row: &SeriesRow| row.drive_time_star.unwrap();
+        let elastic: Vec<&SeriesRow> = rows.iter().filter(|row| time(row) < first_slip).collect();
+        for row in &elastic {
+            // Rounding of units.
+            assert!((pull * path(row) - row.mu_star).abs() < 1e-12, "{row:?}");
+        }
+        let [first, last] = [elastic[1], elastic[elastic.len() - 1]].map(|row| path(row) / time(row));
+        assert!(elastic.len() > 5 && last < 0.9 * first, "{first} {last}");
     }
 
     fn began_in(state: Vec<u8>, overrides: &[&str]) -> Arc<Case> {

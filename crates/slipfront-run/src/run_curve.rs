@@ -9,6 +9,7 @@ use slipfront_case::case::Case;
 
 use crate::friction_unit::FrictionUnit;
 use crate::measured::Measure;
+use crate::run_summary::with_increments;
 
 /// Friction of a run at every step, in the units of a measured record.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,6 +91,10 @@ pub fn run_curve_unless(
     end: f64,
     ends: &dyn Fn() -> bool,
 ) -> Option<Result<RunCurve, RunError>> {
+    let case = &*match with_increments(case, ends)? {
+        Ok(case) => case,
+        Err(error) => return Some(Err(error)),
+    };
     let steps = steps_to(case, along, end);
     let stop = Stop::at_step(steps);
     let dt_star = case.time_plan.dt_star;

@@ -1,10 +1,11 @@
 //! Runs a [`Case`] and keeps only its [`Summary`], which a search or a fit needs for many small cases.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use slipfront::communicator::Alone;
 use slipfront::observe::{Instants, Scheduled};
-use slipfront::{Execution, RunError, Simulation, StopReason};
+use slipfront::{Execution, RunError, SearchOutcome, Simulation, StopReason};
 use slipfront_case::case::Case;
 
 use crate::running::{add_front, instants_of};
@@ -38,6 +39,10 @@ pub fn run_summary(case: &Case) -> Result<Summary, RunError> {
 
 /// Runs a case as [`run_summary`] does until `ends` returns true; none if it was given up.
 pub fn run_summary_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Summary, RunError>> {
+    let case = &match with_increments(case, ends)? {
+        Ok(case) => case,
+        Err(error) => return Some(Err(error)),
+    };
     let plan = &case.time_plan;
     let mut simulation = Simulation::new(
         Arc::clone(&case.model),
@@ -55,6 +60,25 @@ pub fn run_summary_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result
             Ok(Some(reason)) => return Some(Ok(summary(case, simulation, reason, &numbers, instants))),
             Err(error) => return Some(Err(error)),
         }
+    }
+    None
+}
+
+/// The case with the increments of a held drive that lead a bulk body to its onset, if they are searched;
+/// none if `ends` gave the search up.
+pub(crate) fn with_increments<'a>(
+    case: &'a Case,
+    ends: &dyn Fn() -> bool,
+) -> Option<Result<Cow<'a, Case>, RunError>> {
+    let Some(mut search) = case.search(Execution::default()) else {
+        return Some(Ok(Cow::Borrowed(case)));
+    };
+    while !ends() {
+        search = match search.advance(case.steps_per_poll()) {
+            Ok(SearchOutcome::Unfinished(search)) => search,
+            Ok(SearchOutcome::Found(found)) => return Some(Ok(Cow::Owned(case.with_increments(found)))),
+            Err(error) => return Some(Err(error)),
+        };
     }
     None
 }

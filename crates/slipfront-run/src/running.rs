@@ -8,7 +8,10 @@ use slipfront::communicator::Communicator;
 use slipfront::device::{Device, DeviceError};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Schedule, Scheduled};
-use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, StopReason};
+use slipfront::{
+    Checkpoint, Execution, Increments, Kernel, Model, RunError, Search, SearchOutcome, Simulation, Snapshot,
+    State, StopReason,
+};
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
@@ -22,6 +25,8 @@ use slipfront_case::case::{Case, Output, Snapshots};
 /// All results of a run, in memory.
 #[derive(Clone, Debug)]
 pub struct RunData {
+    /// The model that was computed: the case's, with the increments of a held drive that were found.
+    pub model: Arc<Model>,
     /// The numbers.
     pub summary: Summary,
     /// The recorded curve.
@@ -66,6 +71,9 @@ pub struct Running {
     communicator: Arc<dyn Communicator>,
     /// Largest number of threads, each of which has enough blocks.
     threads: usize,
+    /// The search that precedes the slow loading of a bulk body.
+    search: Option<Search>,
+    execution: Execution,
 }
 
 /// Recordings of a run up to now.
@@ -88,6 +96,10 @@ struct Fields {
 pub struct RunState<O = Observers> {
     simulation: Checkpoint,
     observers: O,
+    /// Increments of a held drive, if a search has found them.
+    increments: Option<Increments>,
+    /// Whether the search goes on.
+    searches: bool,
 }
 
 impl RunState {
@@ -247,14 +259,27 @@ impl Running {
     pub fn start(case: &Arc<Case>, state: Option<State>, execution: Execution) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
+        let search = if state.is_none() {
+            case.search(execution.clone())
+        } else {
+            None
+        };
         let state = state.or_else(|| case.state());
         Self {
             case: Arc::clone(case),
             communicator: Arc::clone(&execution.communicator),
             threads: execution.threads,
-            simulation: Simulation::new(model, dt_star, state, execution),
+            simulation: Simulation::new(model, dt_star, state, execution.clone()),
             observers: Observers::new(case),
+            search,
+            execution,
         }
+    }
+
+    /// The instant that the search for the increments of a held drive has reached; none once the run has
+    /// begun.
+    pub fn search(&self) -> Option<Snapshot<'_>> {
+        self.search.as_ref().map(Search::snapshot)
     }
 
     /// Resumes a run from a saved state; none if the state does not belong to this case. `read` gets a byte
@@ -268,6 +293,13 @@ impl Running {
         execution: Execution,
         mut read: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
+        if state.searches {
+            return Ok(Some(Self::start(case, None, execution)));
+        }
+        let case = match state.increments {
+            Some(increments) => &Arc::new(case.with_increments(increments)),
+            None => case,
+        };
         let (checkpoint, mut observers) = (state.simulation, state.observers);
         let is_possible = checkpoint.is_consistent_with(&case.model)
             && checkpoint.drive_steps <= case.time_plan.last_step
@@ -289,6 +321,7 @@ impl Running {
             }
             Ok(())
         };
+        let kept = execution.clone();
         let simulation = Simulation::resume(model, dt_star, &checkpoint, execution, &mut read_blocks)?;
         let Some(simulation) = simulation else {
             return Ok(None);
@@ -326,15 +359,33 @@ impl Running {
             observers,
             communicator,
             threads,
+            search: None,
+            execution: kept,
         }))
     }
 
     /// Makes at most `steps` steps; returns the reason for the end, if the run ended. An error means that the
     /// run diverges. All ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
+        if let Some(search) = self.search.take() {
+            match search.advance(steps)? {
+                SearchOutcome::Unfinished(search) => self.search = Some(search),
+                SearchOutcome::Found(increments) => self.begin(increments),
+            }
+            return Ok(None);
+        }
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation
             .advance(self.case.time_plan.stop, steps, &mut observers)
+    }
+
+    /// Begins the run with the increments that were found.
+    fn begin(&mut self, increments: Increments) {
+        let case = Arc::new(self.case.with_increments(increments));
+        let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
+        self.simulation = Simulation::new(model, dt_star, case.state(), self.execution.clone());
+        self.observers = Observers::new(&case);
+        self.case = case;
     }
 
     /// The present instant.
@@ -372,7 +423,7 @@ impl Running {
     /// must call this together.
     pub fn kinetic(&self) -> Option<Kinetic> {
         let now = self.snapshot();
-        now.earliest_first_slip()?;
+        now.peak.first_slip_drive_time_star?;
         self.observers.summary.kinetic(&self.case, &now.peak)
     }
 
@@ -418,6 +469,8 @@ impl Running {
         RunState {
             simulation: self.simulation.checkpoint(),
             observers: &self.observers,
+            increments: self.case.increments(),
+            searches: self.search.is_some(),
         }
     }
 
@@ -506,6 +559,7 @@ impl Running {
             &*self.communicator,
         );
         RunData {
+            model: Arc::clone(&case.model),
             summary: numbers,
             rows: summary.curve.rows,
             observers: summary.optional,

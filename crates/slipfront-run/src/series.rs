@@ -61,9 +61,6 @@ pub struct SeriesRow {
     /// Energy lost to the dampers between blocks since the start, J, if there are any.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
-    /// Energy of the springs between the sheets of a bulk body, J; none for a single sheet.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
-    pub sheet_coupling_energy_j: Option<f64>,
     /// Energy of the springs in contact, J; none if contacts are not springs.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub contact_spring_energy_j: Option<f64>,
@@ -105,7 +102,6 @@ impl SeriesRow {
     pub fn new(row: &CurveRow, scales: &Scales, model: &Model) -> Self {
         let energy = scales.energy();
         let law = model.friction.needs();
-        let is_stack = !model.sheets().is_empty();
         let viscous_loss = row.energies.viscous_loss * energy;
         let unit = FrictionUnit::of(scales, model);
         Self {
@@ -128,7 +124,6 @@ impl SeriesRow {
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
             viscous_loss_j: model.slider().is_viscous().then_some(viscous_loss),
-            sheet_coupling_energy_j: is_stack.then_some(row.energies.stored.between_sheets * energy),
             contact_spring_energy_j: law.stores_energy.then_some(row.energies.contact_springs * energy),
             foundation_energy_j: model
                 .friction
@@ -160,7 +155,7 @@ macro_rules! columns_of {
 const COLUMNS: &[Column] = columns_of! {
     time_star time_s drive_time_star drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
     torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
-    viscous_loss_j sheet_coupling_energy_j contact_spring_energy_j foundation_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
+    viscous_loss_j contact_spring_energy_j foundation_energy_j broken_spring_loss_j weakening_loss_j mean_state_star
 };
 
 /// Columns that count from the start of a run; the next leg continues their count.
@@ -349,7 +344,6 @@ mod tests {
             friction_force_n: Some(0.0),
             lateral_force_n: Some(0.0),
             viscous_loss_j: Some(0.0),
-            sheet_coupling_energy_j: Some(0.0),
             contact_spring_energy_j: Some(0.0),
             foundation_energy_j: Some(0.0),
             broken_spring_loss_j: Some(0.0),

@@ -34,7 +34,7 @@ pub struct Summary {
     pub onset_time_star: f64,
     /// Time t_s of the onset, s.
     pub onset_time_s: f64,
-    /// t* of the first slip of a block in contact.
+    /// Time t* of the first slip of a block in contact, on the time of the drive.
     pub first_slip_time_star: Option<f64>,
     /// Time of the first slip of a block in contact, s.
     pub first_slip_time_s: Option<f64>,

@@ -95,7 +95,8 @@ impl SummaryObservers {
         reason: StopReason,
         instants: &[(char, Frame)],
     ) -> Summary {
-        let (peak, first_slip) = (simulation.peak(), simulation.snapshot().earliest_first_slip());
+        let peak = simulation.peak();
+        let first_slip = peak.first_slip_drive_time_star;
         // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and
         // neither has one in which nothing slipped.
         let kinetic = match reason {

@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::folder_error::FolderError;
 use crate::manifest::{ManifestError, ManifestFile};
 use crate::names::{CASE, MANIFEST, RO_CRATE, UNFINISHED};
+use crate::program;
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
 use slipfront_base::disk::read_limited;
@@ -97,7 +98,12 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
         truncated(&manifest.finished)
     );
     verdict.differences = differences(&manifest.files, &run.path, "were written", stop);
-    verdict.differences.extend(unresolved(run));
+    // Another version may have written other keys; its results are still what it wrote.
+    let (as_difference, as_note) = match unresolved(run) {
+        unresolved if manifest.build == program::this_build() => (unresolved, None),
+        unresolved => (None, unresolved),
+    };
+    verdict.differences.extend(as_difference);
     let listed = manifest.files.iter().map(|file| file.name.as_str());
     let has_unfinished = Unfinished::of(&run.path).is_managed()?;
     // An interrupted `slipfront plot` may have left a hidden file next to a picture.
@@ -109,6 +115,7 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
     let listed = listed.chain([MANIFEST]).chain(described).collect();
     verdict.notes = unlisted_files(&run.path, &listed, is_left);
     verdict.notes.extend(outdated);
+    verdict.notes.extend(as_note);
     Ok(verdict)
 }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront_base::ordered::map_of;
 use slipfront_base::text::truncated;
-use slipfront_case::case::{Case, Files, FilesInMemory, Ranks, Watch, key_of_body};
+use slipfront_case::case::{Case, Files, FilesInMemory, Ranks, Watch};
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of, parts_of};
 use toml::{Table, Value};
 
@@ -181,9 +181,7 @@ impl Document {
     /// # Errors
     /// A sentence, if the keys are not a case.
     pub(crate) fn twin(&self) -> Result<Self, String> {
-        let file = CaseFile::parse(&self.toml(), &self.name, &[]).map_err(|error| error.to_string())?;
-        let body = key_of_body(&file).map(|(key, value)| (key.to_owned(), Some(Value::from(value))));
-        let mut twin = self.without_texture().with(body)?;
+        let mut twin = self.without_texture();
         twin.drop_unnamed_files().map_err(|error| error.to_string())?;
         Ok(twin)
     }
@@ -509,20 +507,6 @@ mod tests {
             .with([("drive.v_star.more".to_owned(), Some(1.into()))])
             .unwrap_err();
         assert_eq!(error, "the case has no place for the key `drive.v_star.more`");
-    }
-
-    /// The longest wavelength of the body is derived from the texture, so the twin must set it explicitly.
-    #[test]
-    fn a_bulk_body_is_compared_with_the_same_body() {
-        let text = "slider = { blocks = [32, 32], body = 'bulk' }\ndrive.v_star = 0.01\n\
-                    texture = [{ shape = 'cavity', lambda = '2 um', pitch = '8 um' }]";
-        let textured = document(text);
-        let [body, twin] = [&textured, &textured.twin().unwrap()]
-            .map(|document| document.case(&mut |_| true).unwrap().bulk_body().unwrap());
-        assert_eq!((body.longest_wave, body), (8e-6, twin));
-        // The twin of a sheet needs no additional key.
-        let sheet = document("texture = [{ shape = 'cavity', coverage = 5 }]");
-        assert_eq!(sheet.twin().unwrap().toml(), sheet.without_texture().toml());
     }
 
     /// Masks are read back from their images unchanged, even if the width is not a multiple of the eight

@@ -306,7 +306,8 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) dt_star: f64,
     pub(crate) duration_star: f64,
     pub(crate) kinetic_from_star: f64,
-    /// Time t* at which the onset is expected first, or that of the end of the run, if that comes before.
+    /// Time t* of the blocks at which the onset is expected first, or that of the end of the run, if that
+    /// comes before.
     pub(crate) onset_star: f64,
     /// Direction of the drive, degrees from x towards y; none if it turns the slider.
     pub(crate) drive_degrees: Option<f64>,

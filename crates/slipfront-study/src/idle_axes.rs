@@ -88,9 +88,10 @@ fn digest(case: &Case) -> blake3::Hash {
     }
     number(f64::from(u8::from(drive.rotation.is_some())));
     number(model.springs().diagonal);
-    for sheet in model.sheets() {
-        number(sheet.thickness);
-        number(sheet.coupling);
+    if let Some(body) = model.body() {
+        number(body.height);
+        number(body.poisson);
+        number(f64::from(u8::from(body.face.is_pressure())));
     }
     for segment in drive.program.iter().flat_map(|program| program.segments()) {
         number(segment.v_star);

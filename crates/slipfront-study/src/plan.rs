@@ -16,7 +16,7 @@ use crate::work_memory::WorkMemory;
 use slipfront_base::machine::available_of;
 use slipfront_base::number_format::byte_size;
 use slipfront_base::text::display_path;
-use slipfront_case::case::{Case, ExpectedSteps, PICTURES, PROGRAM, Ranks, Watch, key_of_body};
+use slipfront_case::case::{Case, ExpectedSteps, PICTURES, PROGRAM, Ranks, Watch};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 
 /// Every run that a study may need.
@@ -273,31 +273,7 @@ impl Plan {
 
     /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
     fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
-        let file = base.with(&self.overrides(point, role, 0..self.axes.len()))?;
-        self.with_body_of_point(file, base, point, role, 0)
-    }
-
-    /// The case file of a run. A reference gets the bulk body of its point, whatever its own texture: sheets
-    /// are fitted for the wavelengths of a texture, and a reduction must compare textures on the same body.
-    fn with_body_of_point(
-        &self,
-        file: CaseFile,
-        base: &ParsedCase,
-        point: &Point,
-        role: Role,
-        slow: usize,
-    ) -> Result<CaseFile, CaseError> {
-        if role == Role::Point || key_of_body(&file).is_none() {
-            return Ok(file);
-        }
-        let of_point = self.case_file(&self.base.parse()?, point, Role::Point)?;
-        let Some((key, value)) = key_of_body(&of_point) else {
-            return Ok(file);
-        };
-        let body = Override::new(key, &toml::Value::from(value));
-        let mut overrides = self.overrides(point, role, slow..self.axes.len());
-        overrides.push(&body);
-        base.with(&overrides)
+        base.with(&self.overrides(point, role, 0..self.axes.len()))
     }
 
     /// The case file of the first point.
@@ -327,7 +303,6 @@ impl Plan {
         let file = base
             .case
             .with(&self.overrides(point, role, slow..self.axes.len()))?;
-        let file = self.with_body_of_point(file, &base.case, point, role, slow)?;
         self.check_seeds(&file)?;
         Ok(file)
     }
@@ -628,41 +603,6 @@ mod tests {
         // The drag of a slider without kinetic friction has its own note.
         assert!(notes("sigma_static_star = 0, r_star = 0")[1].contains("the same run"));
         assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
-    }
-
-    /// A bulk body is fitted for the wavelengths of its texture. If the reference had its own, a reduction
-    /// would compare two bodies.
-    #[test]
-    fn a_reference_is_the_same_bulk_body() {
-        let bodies = |keys: &str| {
-            let text = format!(
-                "[base]\nslider = {{ blocks = [24, 24], body = 'bulk'{keys} }}\n\
-                 texture = [{{ shape = 'cavity', lambda = '2 um', pitch = '8 um' }}]\n\
-                 [study]\nreference = {{ texture = [] }}\n\
-                 [[axes]]\nkey = 'texture.0.pitch'\nlist = ['6 um', '12 um']\n"
-            );
-            let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
-            let plan = Plan::new(&file, None).unwrap();
-            let body = |point, role| {
-                let run = RunKey {
-                    point,
-                    replicate: 0,
-                    role,
-                };
-                let case = plan.case(run, &mut |_| true).unwrap();
-                // The run equals the planned one.
-                let planned = plan.spec_of(run).physics;
-                assert_eq!(physics(&case, None).unwrap(), planned);
-                case.bulk_body().unwrap()
-            };
-            [0, 1].map(|point| {
-                let [of_point, reference] = [Role::Point, Role::Reference].map(|role| body(point, role));
-                assert_eq!(of_point, reference);
-                of_point.longest_wave
-            })
-        };
-        assert_eq!(bodies(""), [6e-6, 12e-6]);
-        assert_eq!(bodies(", longest_wave = '24 um'"), [24e-6, 24e-6]);
     }
 
     /// Threads also share the work on the blocks of a large case, so no thread may wait for another to finish

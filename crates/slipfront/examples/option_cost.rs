@@ -15,14 +15,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use slipfront::communicator::Alone;
-use slipfront::lattice::SpringStiffness;
 use slipfront::surface::{
     Adhesion, Coefficients, Contact, CorrelatedField, Distribution, Load, pressure_along,
 };
 use slipfront::{
-    AfterBreak, Ageing, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Execution, Friction, FrictionLaw,
-    Kernel, Lattice, Loading, Model, Outline, Program, RateAndState, Rotation, Sheet, Simulation, Slider,
-    SlipWeakening, State, Surface, VectorField, Weakening, scales,
+    AfterBreak, Ageing, Body, ContactSprings, Coulomb, DeadLoad, Drive, Edge, Edges, Execution, Face,
+    Friction, FrictionLaw, Kernel, Lattice, Loading, Model, Outline, Program, RateAndState, Rotation,
+    Simulation, Slider, SlipWeakening, State, Surface, VectorField, Weakening, scales,
 };
 
 const V_STAR: f64 = 0.03;
@@ -59,8 +58,8 @@ pub(crate) enum Choice {
     Literal,
     RateAndState,
     ContactSprings,
-    /// A sheet above the lattice, as in a deep body.
-    Stack,
+    /// A bulk body.
+    Bulk,
 }
 
 use Choice::{Disc, Grading, LoadProfile, Viscosity};
@@ -85,7 +84,7 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 26] = [
     ("grading", &[Grading]),
     ("disc", &[Disc]),
     ("graded disc, weakening", &[Grading, Disc, Choice::Weakening]),
-    ("stack of two sheets", &[Choice::Stack]),
+    ("bulk body", &[Choice::Bulk]),
     ("plain, general kernel", &[]),
     ("reversal", &[Choice::Reversal]),
     ("literal", &[Choice::Literal]),
@@ -106,7 +105,12 @@ pub(crate) const MEASURED: [(&str, &[Choice]); 26] = [
 
 pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Error + Send + Sync>> {
     let has = |choice: Choice| choices.contains(&choice);
-    let lattice = Lattice::free(size, size);
+    let edges = if has(Choice::Bulk) {
+        Edges::Periodic
+    } else {
+        Edges::Free
+    };
+    let lattice = Lattice::with_edges(size, size, [edges; 2]);
     let n = lattice.n_blocks();
     let (rows, damping) = (0..lattice.ny, scales::damping(0.1));
     let graded = |from_to: [f64; 2]| has(Grading).then(|| Slider::grade(&lattice, rows.clone(), 0, from_to));
@@ -204,12 +208,12 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
         let segments = [(V_STAR, 5.0), (0.5 * V_STAR, 9.0), (V_STAR, f64::INFINITY)];
         model.drive.program = Some(Arc::new(Program::new(segments)));
     }
-    if has(Choice::Stack) {
-        let sheet = Sheet {
-            thickness: 8.5,
-            coupling: 1.0,
-        };
-        model = model.with_sheets(vec![sheet], SpringStiffness::default());
+    if has(Choice::Bulk) {
+        model = model.with_body(Body {
+            height: 100.0,
+            poisson: 0.3,
+            face: Face::Pressure,
+        });
     }
     if has(Choice::Held) {
         model.drive.loading = Loading::Held {

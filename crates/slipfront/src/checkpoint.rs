@@ -60,11 +60,9 @@ impl Model {
         BlockColumn::ALL.len() + self.n_memory_columns()
     }
 
-    /// Number of columns in addition to [`BlockColumn::ALL`]: those of the law of friction, then displacement
-    /// and velocity along x and y of every sheet above the lowest one, at the same instants as for the lowest
-    /// one.
+    /// Number of columns in addition to [`BlockColumn::ALL`]: those of the law of friction.
     pub(crate) fn n_memory_columns(&self) -> usize {
-        self.friction.n_columns() + 4 * self.sheets.len()
+        self.friction.n_columns()
     }
 }
 

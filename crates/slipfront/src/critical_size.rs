@@ -18,7 +18,7 @@ const LINE_AT_AN_EDGE: f64 = 1.0;
 
 impl Model {
     /// Lower and upper bound on the critical size along the drive, in blocks: from this size on, a patch at
-    /// its threshold runs away if strength falls with slip. None under other laws, and for a stack of sheets.
+    /// its threshold runs away if strength falls with slip. None under other laws, and for a bulk body.
     /// All `ranks` of a lattice must call this together.
     ///
     /// Where all blocks are in contact, both bounds are the size of a long strip across the drive, with the
@@ -42,7 +42,7 @@ impl Model {
     /// W c_r n = 1.158 + k_e pi^2/n
     /// ```
     pub fn critical_size(&self, ranks: &dyn Communicator) -> Option<[f64; 2]> {
-        let weakening = self.weakening().filter(|_| self.sheets.is_empty())?;
+        let weakening = self.weakening().filter(|_| self.body.is_none())?;
         let row = self.densest_row(ranks);
         let is_chain = self.lattice.ny == 1;
         if self.friction.interface().is_some() && !is_chain {

@@ -7,7 +7,7 @@ use crate::slider::Slider;
 use slipfront_kernel::fixed_point::sum_over;
 
 /// Constant forces on the blocks from t = 0 on, in addition to the drive springs: a shear stress that loads
-/// the contact without a spring. In a stack they act on the blocks of the highest sheet.
+/// the contact without a spring.
 ///
 /// ```
 /// use slipfront::DeadLoad;

@@ -260,7 +260,6 @@ impl StepRecord {
                 kinetic,
                 lattice,
                 drive_springs,
-                between_sheets: 0.0,
             }),
         }
     }

@@ -1,7 +1,10 @@
-//! Drive of the slider: the far ends of the drive springs, which move together.
+//! Drive of the slider: the far ends of the drive springs, which move together. Under slow loading
+//! ([`Loading`]) they wait until no block in contact slides.
 
 use std::ops::Range;
 use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
 
 use crate::communicator::Communicator;
 use crate::lattice::{K_DIAGONAL, K_DRIVE, Lattice};
@@ -44,13 +47,13 @@ pub enum Loading {
 }
 
 /// Speed of the drive, constant over each of several segments. The far ends move without a jump.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Program {
     segments: Vec<Segment>,
 }
 
 /// A part of a program in which the speed is constant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
     /// Speed, which may be zero or negative.
     pub v_star: f64,

@@ -155,6 +155,8 @@ pub struct Peak {
     pub ended: bool,
     /// Largest mu* of the whole run so far.
     pub largest: Largest,
+    /// Time of the drive at the first step after which a block in contact slid.
+    pub first_slip_drive_time_star: Option<f64>,
     steady_level: f64,
     share_of_load: f64,
     longest_fall: f64,
@@ -170,8 +172,18 @@ pub struct Peak {
 struct HeldPeak {
     /// Number of steps of the drive after which the peak is final.
     onset_steps: u64,
+    /// Whether the fall that follows the last of these steps but one ends the search for the peak, as a bulk
+    /// body's does: its increments of the drive lead to the onset.
+    ends_with_fall: bool,
     /// Whether the fall after the largest mu* so far has occurred.
     has_fallen: bool,
+}
+
+impl HeldPeak {
+    fn is_final(&self, clock: &Clock, has_fallen: bool) -> bool {
+        let ends_with_fall = self.ends_with_fall && has_fallen;
+        clock.drive_steps + u64::from(ends_with_fall) >= self.onset_steps
+    }
 }
 
 impl Peak {
@@ -181,6 +193,7 @@ impl Peak {
             Loading::Constant => None,
             Loading::Held { onset_steps } => Some(HeldPeak {
                 onset_steps,
+                ends_with_fall: model.rests_by_excess(),
                 has_fallen: false,
             }),
         };
@@ -200,6 +213,7 @@ impl Peak {
             drive_time_star: 0.0,
             ended: false,
             largest: Largest::until(f64::INFINITY),
+            first_slip_drive_time_star: None,
             steady_level,
             share_of_load,
             longest_fall,
@@ -212,7 +226,7 @@ impl Peak {
     pub(crate) fn ends_at(&self, clock: &Clock, mu_star: f64) -> bool {
         match &self.held {
             None => !self.crept && self.is_transition_to(clock, mu_star),
-            Some(held) => clock.drive_steps >= held.onset_steps,
+            Some(held) => held.is_final(clock, held.has_fallen || self.is_transition_to(clock, mu_star)),
         }
     }
 
@@ -227,7 +241,7 @@ impl Peak {
         self.is_fall_to(mu_star) && clock.drive_time_star() - self.drive_time_star <= self.longest_fall
     }
 
-    fn is_fall_to(&self, mu_star: f64) -> bool {
+    pub(crate) fn is_fall_to(&self, mu_star: f64) -> bool {
         let half_way = 0.5 * (self.mu_star + self.steady_level);
         self.mu_star > self.steady_level && mu_star <= half_way && self.is_above(mu_star)
     }
@@ -238,16 +252,19 @@ impl Peak {
         self.mu_star - sliding >= LEAST_FALL * (self.share_of_load - self.steady_level).max(0.0)
     }
 
-    /// Includes the next step.
-    pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint) {
+    /// Includes the next step; `counts` says whether it can be the peak, as only instants at rest can be
+    /// under slow loading of a bulk body.
+    pub(crate) fn update(&mut self, clock: &Clock, point: &CurvePoint, counts: bool) {
         let (mu_star, time_star) = (point.mu_star, clock.time_star());
-        // The whole run counts, at any path: 0 is below infinity.
-        self.largest
-            .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
+        if counts {
+            // The whole run counts, at any path: 0 is below infinity.
+            self.largest
+                .update(0.0, clock.drive_time_star(), mu_star, point.mu_lateral_star);
+        }
         if self.is_final() {
             return;
         }
-        let is_higher = mu_star > self.mu_star;
+        let is_higher = counts && mu_star > self.mu_star;
         if is_higher {
             (self.mu_star, self.step, self.time_star) = (mu_star, clock.step, time_star);
             self.mu_lateral_star = point.mu_lateral_star;
@@ -262,7 +279,7 @@ impl Peak {
             }
             Some(held) => {
                 held.has_fallen = !is_higher && (held.has_fallen || falls);
-                if clock.drive_steps >= held.onset_steps {
+                if held.is_final(clock, held.has_fallen) {
                     (self.ended, self.crept) = (held.has_fallen, !held.has_fallen);
                 }
             }
@@ -288,7 +305,7 @@ mod tests {
                 mu_lateral_star: -mu,
                 ..CurvePoint::default()
             };
-            peak.update(&clock, &point);
+            peak.update(&clock, &point, true);
             clock = clock.next(true);
         }
         peak

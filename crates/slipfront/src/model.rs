@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::body::Body;
 use crate::communicator::Communicator;
 use crate::dead_load::DeadLoad;
 use crate::drive::{Drive, Loading, Program};
 use crate::friction::Friction;
-use crate::lattice::{K_DRIVE, Lattice, SpringStiffness};
-use crate::sheets::{self, Sheet};
+use crate::lattice::{Edges, K_DRIVE, Lattice, SpringStiffness};
 use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::{dot, length};
@@ -28,9 +28,9 @@ pub struct Model {
     pub rows: Range<usize>,
     /// Heterogeneous properties of the blocks of these rows.
     pub(crate) slider: Slider,
-    /// Sheets above the lattice, from the lowest on; none in the paper.
-    pub(crate) sheets: Vec<Sheet>,
-    /// Springs between neighbouring blocks of every sheet.
+    /// The bulk body of which the blocks are the face; none for a sheet, with springs between its blocks.
+    pub(crate) body: Option<Body>,
+    /// Springs between neighbouring blocks of a sheet.
     pub(crate) springs: SpringStiffness,
     /// Friction of every block of these rows.
     pub surface: Surface,
@@ -79,7 +79,7 @@ impl Model {
             lattice,
             rows,
             slider: Slider::default(),
-            sheets: Vec::new(),
+            body: None,
             springs: SpringStiffness::default(),
             surface,
             drive,
@@ -100,33 +100,32 @@ impl Model {
         Self { slider, ..self }
     }
 
-    /// Returns the model with sheets above the lattice, from the lowest on, and with these springs between
-    /// neighbouring blocks of each sheet and of the lattice itself. The drive springs pull the blocks of the
-    /// highest sheet.
+    /// Returns the model with a bulk body above its blocks in place of springs between them. The drive
+    /// springs pull the body as a whole. Its slider must be set before.
     ///
     /// # Panics
-    /// If blocks differ, there are dampers between them, the drive rotates, or friction acts along x alone:
-    /// stacks do not support these.
-    pub fn with_sheets(self, sheets: Vec<Sheet>, springs: SpringStiffness) -> Self {
+    /// If edges are free, blocks differ, there are dampers between them, the drive rotates, or friction acts
+    /// along x alone; or if this rank does not hold all rows.
+    pub fn with_body(self, body: Body) -> Self {
         let is_plain = self.slider == Slider::default()
             && self.drive.rotation.is_none()
             && self.friction.interface().is_none();
         assert!(
-            is_plain || sheets.is_empty(),
-            "a stack of sheets has equal blocks without dampers, a drive that does not rotate, and friction in the plane"
+            is_plain && self.lattice.edges == [Edges::Periodic; 2] && self.rows.len() == self.lattice.ny,
+            "a bulk body has periodic edges, equal blocks without dampers on one rank, a drive that does not rotate, and \
+             friction in the plane"
         );
         Self {
-            sheets,
-            springs,
+            body: Some(body),
             ..self
         }
     }
 
-    /// Returns the model with constant forces on its blocks. Its slider and sheets must be set before.
+    /// Returns the model with constant forces on its blocks. Its slider and body must be set before.
     ///
     /// # Panics
-    /// If forces that differ do not have one value for each block that this process holds, or act on a stack
-    /// of sheets; or if the drive rotates, since no constant force has its direction.
+    /// If forces that differ do not have one value for each block that this process holds, or if the drive
+    /// rotates, since no constant force has its direction.
     pub fn with_dead_load(self, dead_load: DeadLoad) -> Self {
         if let Some(field) = &dead_load.field {
             let (forces, blocks) = (field.relative.len(), self.surface.n_blocks());
@@ -134,7 +133,6 @@ impl Model {
                 forces, blocks,
                 "there are {forces} forces for {blocks} blocks: give one each"
             );
-            assert!(self.sheets.is_empty(), "forces on a stack of sheets are alike");
         }
         assert!(
             self.drive.rotation.is_none() || !dead_load.acts(),
@@ -163,7 +161,7 @@ impl Model {
             lattice: self.lattice,
             rows,
             slider: self.slider.of_some_blocks(&blocks),
-            sheets: self.sheets.clone(),
+            body: self.body,
             springs: self.springs,
             surface: self.surface.of_some_blocks(&blocks),
             drive: self.drive.clone(),
@@ -203,20 +201,20 @@ impl Model {
         [dot(vector, [dx, dy]), dot(vector, [-dy, dx])]
     }
 
-    /// Sheets above the lattice, from the lowest on.
-    pub fn sheets(&self) -> &[Sheet] {
-        &self.sheets
+    /// The bulk body of which the blocks are the face, if they are no sheet.
+    pub fn body(&self) -> Option<&Body> {
+        self.body.as_ref()
     }
 
-    /// Springs between neighbouring blocks of every sheet.
+    /// Whether a held drive waits until no force on a block exceeds its strength by more than a small share,
+    /// as it does for a bulk body; else until no block in contact slides.
+    pub fn rests_by_excess(&self) -> bool {
+        self.body.is_some() && self.drive.is_held()
+    }
+
+    /// Springs between neighbouring blocks of a sheet.
     pub fn springs(&self) -> SpringStiffness {
         self.springs
-    }
-
-    /// Stiffness of the spring through which the drive pulls a block if all blocks of a sheet move equally:
-    /// the drive spring and the springs between sheets, in series.
-    pub fn mount_stiffness(&self) -> f64 {
-        sheets::stiffness_in_series(&self.sheets, self.drive.k_drive)
     }
 
     /// Number of existing blocks of the whole lattice.
@@ -255,10 +253,10 @@ impl Model {
 
     /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this
     /// one. Waiting times are counted in it. The speed is V* times `sum k_s/(k_2 N)`, with the stiffness in
-    /// series of a stack of sheets, or of the rows of an upright sheet.
+    /// series of the rows of an upright sheet.
     pub fn loading_speed(&self) -> f64 {
         let per_contact = self.pull_through_rows();
-        let stiffness = per_contact.unwrap_or_else(|| self.mount_stiffness() * self.driven_share());
+        let stiffness = per_contact.unwrap_or_else(|| self.drive.k_drive * self.driven_share());
         self.drive.v_star * (stiffness * self.share_along_friction() / K_DRIVE)
     }
 
@@ -290,7 +288,7 @@ impl Model {
     /// loading time, 2.5/V* (Eq. 12), after which kinetic friction is measured; the time of a slip front
     /// across the slider, a block per t*; and the period of the slider on its drive springs.
     pub fn longest_fall(&self) -> f64 {
-        let delay = self.friction.loading_delay(self.mount_stiffness());
+        let delay = self.friction.loading_delay(self.drive.k_drive);
         let loading = ONSET_PATH / self.loading_speed() * delay;
         loading.max(self.response_time())
     }
@@ -299,7 +297,7 @@ impl Model {
     /// the slider on its drive springs.
     fn response_time(&self) -> f64 {
         let front = self.lattice.nx.max(self.lattice.ny) as f64;
-        front.max(TAU * sheets::mass(&self.sheets).sqrt() / self.drive.k_drive.sqrt())
+        front.max(TAU / self.drive.k_drive.sqrt())
     }
 
     /// The longest time, in t*, for which a held drive stands still. Without damping, kinetic friction of R*
@@ -316,7 +314,7 @@ impl Model {
         let drag = self.damping * self.drive.steady_speed();
         let Some(rotation) = &self.drive.rotation else {
             let blocks_per_facing = self.n_blocks() as f64 / self.surface.n_facing() as f64;
-            return drag * self.slider.mean_mass * sheets::mass(&self.sheets) * blocks_per_facing;
+            return drag * self.slider.mean_mass * blocks_per_facing;
         };
         let torque = sum_over(ranks, self.surface.n_blocks(), |b| {
             if self.slider.exists(b) {
@@ -331,11 +329,11 @@ impl Model {
     /// Level of mu* in steady sliding at V*:
     ///
     /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i) (1 + sum h_k) N/N_facing
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i) N/N_facing
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// The factor in brackets is the mass of a stack of sheets of relative thickness h_k, and `N_facing` the
+    /// `N_facing` is the
     /// number of [facing blocks](Surface::n_facing). V* counts as 0 under a held drive; a coefficient that
     /// depends on the speed is taken at V*. For contact springs that form again, half the mean threshold
     /// replaces kinetic friction. All `ranks` of a lattice must call this together.

@@ -31,7 +31,7 @@ impl Model {
             None => [together; 2],
             Some(factor) => {
                 let late = ONSET_PATH * factor.max(1.0);
-                let lone = factor / (springs_on_a_lone_block(self.mount_stiffness()) * K_DRIVE);
+                let lone = factor / (springs_on_a_lone_block(self.drive.k_drive) * K_DRIVE);
                 [lone.clamp(together, late), late]
             }
         };
@@ -39,7 +39,7 @@ impl Model {
         let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
         let adhesion = self.surface.adhesion().of_static * in_contact;
         let more = (adhesion - borne * self.share_along_friction()) / K_DRIVE;
-        let delay = self.friction.loading_delay(self.mount_stiffness());
+        let delay = self.friction.loading_delay(self.drive.k_drive);
         [early, late].map(|path| {
             let path = (path + more).max(0.0) * delay;
             match self.drive.program {
@@ -57,8 +57,7 @@ impl Model {
     /// ```
     ///
     /// In general, this is the time t at which the path of the drive reaches the path at constant speed at
-    /// this time, `path(t) = V* t*`. A dead load reduces each threshold by its part. For a stack of sheets
-    /// the stiffness in series is used, which holds for slow loading: the sheets above oscillate about it.
+    /// this time, `path(t) = V* t*`. A dead load reduces each threshold by its part.
     /// All `ranks` of a lattice must call this together.
     ///
     /// None if the slider bends before any block slips: for contact springs under drive springs that differ,
@@ -73,7 +72,7 @@ impl Model {
         if bends {
             return None;
         }
-        let k_drive = through_rows.unwrap_or_else(|| self.mount_stiffness());
+        let k_drive = through_rows.unwrap_or(self.drive.k_drive);
         let v_star = self.drive.v_star;
         // All contact springs have the same delay, at any radius.
         let delay = self.friction.loading_delay(k_drive);

@@ -5,6 +5,9 @@
 //! in `P mu_s l^2/(E h)`, forces in `P mu_s l^2`. An upright sheet touches the substrate with its edge: the
 //! contact area of a block is `l h`, which replaces `l^2` in all units. The case parser builds a [`Scales`];
 //! writers of results get their units from it.
+//!
+//! Kernels know no units. The factors are applied where a value is read, where it is written or shown, and in
+//! `leg.rs` of slipfront-run, where a run continues in the units of another case.
 
 use crate::lattice::K_STRAIGHT;
 

@@ -18,6 +18,7 @@ use crate::snapshot::Snapshot;
 use crate::state::State;
 use crate::stop::{Stop, StopReason};
 use crate::totals::Totals;
+use slipfront_kernel::Integrator;
 
 /// Largest number of steps under a held drive, where the number is not known in advance: the fused kernel
 /// stores step numbers in 32 bits.
@@ -27,6 +28,10 @@ const MAX_HELD_STEPS: u64 = u32::MAX as u64 - 1;
 /// is less than the rise of mu* in one step of a held drive, 3.75e-4 at V* = 0.01 and dt* = 0.1, which limits
 /// the accuracy of mu_s*.
 const FORCE_AT_REST: f64 = 1e-4;
+
+/// Ratio of the excess of the force on a block over its strength to the largest strength of a block, below
+/// which the blocks of a bulk body count as at rest.
+const EXCESS_AT_REST: f64 = 3e-4;
 
 /// A run in progress.
 pub struct Simulation {
@@ -38,6 +43,8 @@ pub struct Simulation {
     contact: ContactTotals,
     point: CurvePoint,
     peak: Peak,
+    /// Largest static threshold of a block.
+    largest_strength: f64,
     /// Whether observers have seen the present step.
     observed: bool,
 }
@@ -111,6 +118,7 @@ impl Simulation {
         let totals = engine.step(&model, &clock, true);
         let mut simulation = Self {
             peak: Peak::new(&model, model.steady_level(&*communicator)),
+            largest_strength: largest_strength(&model),
             model,
             clock,
             engine,
@@ -120,6 +128,9 @@ impl Simulation {
             point: CurvePoint::default(),
             observed: false,
         };
+        if simulation.model.rests_by_excess() {
+            simulation.clock.rest = simulation.rest(0.0);
+        }
         simulation.measure();
         simulation
     }
@@ -144,6 +155,7 @@ impl Simulation {
         let engine = execution.resume(&model, dt_star, checkpoint, read)?;
         Ok(engine.map(|engine| Self {
             point: CurvePoint::measure(&model, &totals, clock.drive_time_star()),
+            largest_strength: largest_strength(&model),
             model,
             clock,
             engine,
@@ -173,8 +185,8 @@ impl Simulation {
     }
 
     /// Writes the values of all blocks that [`Simulation::resume`] reads, part by part: `write` receives the
-    /// number of the column, the first block, and the values. The columns are [`BlockColumn::ALL`], those of
-    /// the law of friction and those of the sheets above the lowest, in total [`Model::n_columns`].
+    /// number of the column, the first block, and the values. The columns are [`BlockColumn::ALL`] and those
+    /// of the law of friction, in total [`Model::n_columns`].
     ///
     /// # Errors
     /// Errors of `write`.
@@ -221,8 +233,7 @@ impl Simulation {
     ) -> Result<Option<StopReason>, RunError> {
         let last_step = self.clock.step.saturating_add(steps);
         loop {
-            self.check_finite()?;
-            self.check_standing()?;
+            self.check()?;
             let mut now = self.snapshot();
             let reason = stop.reached(&now);
             now.last = reason.is_some();
@@ -258,6 +269,10 @@ impl Simulation {
     /// Criterion of rest for a held drive from this step on: by force, once the drive has stood still for so
     /// long that it would wait forever for blocks that hardly move, and in all later steps.
     fn rest(&self, speed_square_before: f64) -> Rest {
+        if self.model.rests_by_excess() {
+            let at_rest = self.engine.speed_square_max() <= self.rest_speed().powi(2);
+            return Rest::ByForce { at_rest };
+        }
         if self.clock.rest == Rest::Exact && !self.stands_too_long() {
             return Rest::Exact;
         }
@@ -267,6 +282,12 @@ impl Simulation {
             Rest::Exact if !at_rest => Rest::Exact,
             _ => Rest::ByForce { at_rest },
         }
+    }
+
+    /// Speed that the largest excess of force over strength at rest gives a block in a step.
+    fn rest_speed(&self) -> f64 {
+        let integrator = Integrator::new(self.model.damping, self.clock.dt_star);
+        EXCESS_AT_REST * self.largest_strength * integrator.force_to_velocity
     }
 
     /// The residual force that keeps the blocks moving, springs less friction, from the balance of power: the
@@ -301,7 +322,19 @@ impl Simulation {
     fn measure(&mut self) {
         self.contact = self.engine.contact_totals(&self.model);
         self.point = CurvePoint::measure(&self.model, &self.totals, self.clock.drive_time_star());
-        self.peak.update(&self.clock, &self.point);
+        let counts = !self.model.rests_by_excess() || self.is_at_rest();
+        self.peak.update(&self.clock, &self.point, counts);
+        if self.totals.n_slipping > 0 {
+            let drive_time_star = self.clock.drive_time_star();
+            self.peak
+                .first_slip_drive_time_star
+                .get_or_insert(drive_time_star);
+        }
+    }
+
+    /// Whether a held drive takes the blocks for at rest at the present instant.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.snapshot().next_clock().drive_moved()
     }
 
     /// The present instant.
@@ -334,11 +367,6 @@ impl Simulation {
         self.engine.state()
     }
 
-    /// Displacements now, velocities half a step later, of the sheets above the lattice.
-    pub fn sheets(&self) -> Vec<State> {
-        self.engine.sheets()
-    }
-
     /// The first peak of mu* found so far.
     pub fn peak(&self) -> Peak {
         self.peak
@@ -354,6 +382,12 @@ impl Simulation {
     /// Ends the run and reuses its memory for the times.
     pub fn into_first_slip_time_star(self) -> Vec<f64> {
         self.engine.into_first_slips()
+    }
+
+    /// Checks that the run can go on.
+    pub(crate) fn check(&self) -> Result<(), RunError> {
+        self.check_finite()?;
+        self.check_standing()
     }
 
     /// Checks that the run does not diverge. Sums of squares of speeds show divergence first, because they
@@ -426,4 +460,10 @@ impl Simulation {
         self.communicator.sum(&mut found);
         (found[0] as usize, f64::from_bits(found[1] as u64))
     }
+}
+
+/// Largest static threshold of a block of this rank.
+fn largest_strength(model: &Model) -> f64 {
+    let limits = (0..model.surface.n_blocks()).map(|b| model.surface.static_limit(b));
+    limits.filter(|limit| limit.is_finite()).fold(0.0, f64::max)
 }

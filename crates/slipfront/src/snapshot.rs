@@ -124,7 +124,7 @@ impl Snapshot<'_> {
         if !load.acts() {
             return 0.0;
         }
-        // The sum over equal blocks is known already, also over those of the highest sheet.
+        // The sum over equal blocks is known already.
         if load.field.is_none() && slider.drive_springs.is_none() {
             return dot(load.force, self.totals.displacement);
         }
@@ -202,28 +202,14 @@ impl Snapshot<'_> {
         self.engine.read_column(BlockColumn::FirstSlip, 0, values);
     }
 
-    /// Time t* at which the first block of all ranks slid while in contact. All ranks must call this
-    /// together.
-    pub fn earliest_first_slip(&self) -> Option<f64> {
-        const PART: usize = 1 << 10;
-        let (n, mut times) = (self.model.surface.n_blocks(), [0.0; PART]);
-        let mut earliest = f64::INFINITY;
-        for first in (0..n).step_by(PART) {
-            let times = &mut times[..PART.min(n - first)];
-            self.engine.read_column(BlockColumn::FirstSlip, first, times);
-            // The minimum of a number and NaN is the number.
-            earliest = times.iter().copied().fold(earliest, f64::min);
-        }
-        let mut latest_negative = [-earliest];
-        self.communicator.largest(&mut latest_negative);
-        latest_negative[0].is_finite().then_some(-latest_negative[0])
-    }
-
     /// The next instant: whether a held drive moves until then is known now.
     pub(crate) fn next_clock(&self) -> Clock {
         let rests_by_force = self.clock.rest == Rest::ByForce { at_rest: true };
-        let moves = self.model.drive.moves_after(self.totals.n_slipping);
-        self.clock.next(rests_by_force || moves)
+        let moves = match self.clock.rest {
+            Rest::ByForce { .. } if self.model.rests_by_excess() => rests_by_force,
+            _ => rests_by_force || self.model.drive.moves_after(self.totals.n_slipping),
+        };
+        self.clock.next(moves)
     }
 
     /// Time of the drive at the next step.

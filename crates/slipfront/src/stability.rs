@@ -4,7 +4,6 @@ use crate::communicator::Communicator;
 use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::sheets::largest_eigenvalue;
 use crate::slider::Slider;
 
 /// Largest stable time step of a block. `springs` is the largest eigenvalue of `2 sum_j k_ij e_ij e_ij^T/m_i`
@@ -33,17 +32,15 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
 
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
-    /// [`dt_star_limit`], the bound of the paper's slider. For a stack of sheets it is that of equal blocks
-    /// held by the springs between the sheets. Friction and damping do not lower it. All `ranks` of a lattice
-    /// must call this together.
+    /// [`dt_star_limit`], the bound of the paper's slider. A bulk body has the bound `2/sqrt(K)` with its
+    /// largest stiffness. Friction and damping do not lower it. All `ranks` of a lattice must call this
+    /// together.
     pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = self.friction.contact_stiffness();
-        if !self.sheets.is_empty() {
-            let held = largest_eigenvalue(&self.sheets, self.drive.k_drive, contact);
-            // Inside a region of equal blocks, 2 sum_j k_ij e_ij e_ij^T/m is this times the identity.
-            let springs = 4.0 * self.springs.along();
-            return stable_step(springs, held, 0.0).min(dt_star_limit());
+        if let Some(body) = &self.body {
+            let held = body.largest_stiffness().max(self.drive.k_drive) + contact;
+            return stable_step(0.0, held, 0.0);
         }
         let foundation = self
             .friction

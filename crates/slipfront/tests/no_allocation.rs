@@ -5,11 +5,12 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use slipfront::lattice::SpringStiffness;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Schedule, Scheduled};
 use slipfront::surface::{Coefficients, Distribution, Load};
-use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Sheet, Simulation, Stop, Surface};
+use slipfront::{
+    Body, Drive, Edges, Execution, Face, FrictionLaw, Kernel, Lattice, Model, Simulation, Stop, Surface,
+};
 
 /// The system's allocator, with a count of calls per thread.
 struct Counting;
@@ -90,13 +91,14 @@ fn a_step_allocates_nothing() {
         FrictionLaw::Reversal,
         FrictionLaw::Literal,
     ] {
-        // Stiff springs between sheets, so that a stack slips hardly later than a single sheet.
-        let above = Sheet {
-            thickness: 1.0,
-            coupling: 10.0,
+        let body = Body {
+            height: 5.0,
+            poisson: 0.3,
+            face: Face::Pressure,
         };
-        for sheets in [Vec::new(), vec![above; 2]] {
-            let model = model(law).with_sheets(sheets, SpringStiffness::default());
+        let mut periodic = model(law);
+        periodic.lattice.edges = [Edges::Periodic; 2];
+        for model in [model(law), periodic.with_body(body)] {
             for kernel in [Kernel::General, Kernel::Fused] {
                 let execution = Execution {
                     kernel,

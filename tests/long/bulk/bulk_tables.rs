@@ -1,5 +1,5 @@
 //! Reductions of static friction by dimples on a bulk body: on a half-space, from a quasi-static solver, and
-//! on the sheets and stacks with which the product models it.
+//! and as the product finds them on sheets and on the body.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront-long-tests --example bulk_tables
@@ -19,7 +19,7 @@ mod half_space;
 
 use std::f64::consts::PI;
 
-use crate::dimples::{Dimples, SLOWLY, Sharing, WITH_LITTLE_DRAG, patterns};
+use crate::dimples::{Dimples, Sharing, patterns};
 
 const PITCH: usize = 16;
 const THIRD: f64 = 1.0 / 3.0;
@@ -51,17 +51,13 @@ fn main() {
     ] {
         row(name, &|w| array.on_sheet(w, thickness, mount));
     }
-    row("stack of two sheets, nu = 1/3", &|w| {
-        array.on_stack(THIRD, w, equal, SLOWLY)
-    });
+    row("bulk body, nu = 1/3", &|w| array.on_body(THIRD, w, equal, &[]));
     row("half-space, nu = 1/4", &|w| array.on_half_space(0.25, w, equal));
-    row("stack of two sheets, nu = 1/4", &|w| {
-        array.on_stack(0.25, w, equal, SLOWLY)
-    });
+    row("bulk body, nu = 1/4", &|w| array.on_body(0.25, w, equal, &[]));
 
     println!(
         "\n{:36}{:>24}{:>12}{:>8}",
-        "4 x 4 pitches, nu = 1/3", "w p (1 - nu)/G", "half-space", "stack"
+        "4 x 4 pitches, nu = 1/3", "w p (1 - nu)/G", "half-space", "found"
     );
     for (name, dimples) in ["band", "patch", "random"].into_iter().zip(patterns(PITCH)) {
         for (sharing, how) in [
@@ -70,8 +66,8 @@ fn main() {
         ] {
             for w in [2.0, 10.0] {
                 let body = dimples.on_half_space(THIRD, w, sharing);
-                let stack = dimples.on_stack(THIRD, w, sharing, WITH_LITTLE_DRAG);
-                println!("{name:8}{how:28}{w:24}{body:12.2}{stack:8.2}");
+                let found = dimples.on_body(THIRD, w, sharing, &[]);
+                println!("{name:8}{how:28}{w:24}{body:12.2}{found:8.2}");
             }
         }
     }

@@ -15,11 +15,6 @@ pub(crate) const YOUNG_MODULUS: f64 = 2.6e6;
 /// Coefficient of static friction of the product; its pressure is 1 Pa.
 const MU_STATIC: f64 = 0.6;
 
-/// Keys of the product for a slow drive, and for little damping: sheets that move with the drive have a drag
-/// of 0.05 and 0.04 % of the strength.
-pub(crate) const SLOWLY: &[&str] = &["drive.v_star=0.0005"];
-pub(crate) const WITH_LITTLE_DRAG: &[&str] = &["slider.omega_star=0.02"];
-
 /// Dimples on a slider. Lengths are in blocks.
 pub(crate) struct Dimples {
     /// Blocks along an edge of the slider.
@@ -129,7 +124,7 @@ impl Dimples {
         let dimples: Vec<String> = self.centres.iter().map(dimple).collect();
         let text = format!(
             "slider = {{ blocks = [{side}, {side}], block_size = '{BLOCK:e} m', young_modulus = '{YOUNG_MODULUS} Pa', density = '1 g/cm^3',\n\
-             edges = 'periodic', omega_star = 0.1 }}\nload = {{ pressure = '1 Pa', redistribute = {{ within = '{within:e} m' }} }}\n\
+             edges = 'periodic' }}\nload = {{ pressure = '1 Pa', redistribute = {{ within = '{within:e} m' }} }}\n\
              drive.v_star = 0.002\ntime.stop = 'after_onset'\nfriction = {{ mu_static = {MU_STATIC}, r_star = {RATIO}, sigma_static_star = 0,\n\
              sigma_kinetic_star = 0, slip_weakening.length = '{slip_length:e} m' }}\ntexture = [{dimples}]",
             side = self.side,
@@ -150,14 +145,14 @@ impl Dimples {
         100.0 * (1.0 - body.largest_friction(&self.blocks(weakening, sharing)))
     }
 
-    /// Reduction in % that the product finds with these keys of the body, its drive and damping.
+    /// Reduction in % that the product finds with these keys.
     pub(crate) fn in_product(&self, poisson: f64, weakening: f64, sharing: Sharing, keys: &[String]) -> f64 {
         let case = self.case(poisson, weakening, sharing, keys);
         100.0 * (1.0 - run_summary(&case).unwrap().static_friction_star)
     }
 
-    /// Reduction in % on the stack with which the product models a deep body.
-    pub(crate) fn on_stack(&self, poisson: f64, weakening: f64, sharing: Sharing, keys: &[&str]) -> f64 {
+    /// Reduction in % that the product finds on a bulk body with these keys, deep without a height.
+    pub(crate) fn on_body(&self, poisson: f64, weakening: f64, sharing: Sharing, keys: &[&str]) -> f64 {
         let body = [
             "slider.body='bulk'".to_owned(),
             format!("slider.poisson={poisson}"),
@@ -188,26 +183,6 @@ impl Dimples {
         ];
         self.in_product(1.0 / 3.0, weakening, Sharing::Equal, &keys)
     }
-}
-
-/// Keys of the product for three sheets that are within 0.3 % of a deep body of nu = 1/4, for waves from
-/// `longest` blocks to a sixteenth of it.
-pub(crate) fn three_sheets(longest: usize) -> [String; 3] {
-    /// In `G/(0.6495 E q_a)` and `G q_a`, by a plain search over all six numbers (`docs/validation/bulk.md`).
-    const SHEETS: [[f64; 2]; 3] = [[0.0297, 13.25], [0.2146, 3.069], [0.9147, 0.5870]];
-    const POISSON: f64 = 0.25;
-    let q_a = std::f64::consts::TAU / (longest as f64 * BLOCK);
-    let shear_modulus = YOUNG_MODULUS / (2.0 * (1.0 + POISSON));
-    let sheet = |[thickness, coupling]: [f64; 2]| {
-        let thickness = thickness * shear_modulus / (0.6495 * YOUNG_MODULUS * q_a);
-        let coupling = coupling * shear_modulus * q_a;
-        format!("{{ thickness = '{thickness:e} m', coupling = '{coupling:e} N/m^3' }}")
-    };
-    [
-        "slider.body='bulk'".to_owned(),
-        format!("slider.sheets=[{}]", SHEETS.map(sheet).join(", ")),
-        "slider.along_to_across=2.278".to_owned(),
-    ]
 }
 
 /// A band of two columns of dimples across the drive, a patch of 2 x 2, and 16 dimples at random places, on a

@@ -1,4 +1,4 @@
-//! Bulk bodies against references that use neither sheets nor the engine.
+//! Bulk bodies against references that do not use the engine.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -8,6 +8,4 @@ mod fourier;
 mod half_space;
 mod layer;
 mod reductions;
-mod response;
 mod springs;
-mod strip;

@@ -1,7 +1,7 @@
-//! Reductions of static friction by dimples: the reference against figures of other solvers, the stack
+//! Reductions of static friction by dimples: the reference against figures of other solvers, the bulk body
 //! against the reference.
 
-use crate::dimples::{BLOCK, Dimples, SLOWLY, Sharing, WITH_LITTLE_DRAG, patterns, three_sheets};
+use crate::dimples::{BLOCK, Dimples, Sharing, patterns};
 use crate::half_space::Body;
 use crate::layer;
 
@@ -31,105 +31,85 @@ fn the_reference_finds_what_is_known() {
     assert!((finer - 16.98).abs() < 0.05, "{finer}");
 }
 
-/// Poisson's ratio, and the relative error in % of reductions with two sheets.
-const EXCESS: [(f64, [f64; 5]); 4] = [
-    (0.25, [-5.5, -1.4, -2.5, -0.6, -1.7]),
-    (0.3, [-4.3, -2.4, -2.1, 0.0, -7.2]),
-    (1.0 / 3.0, [-5.0, -2.0, -2.3, -0.5, -6.5]),
-    (0.49, [-6.4, -3.5, -1.1, 0.4, -0.5]),
-];
+/// Largest relative error of a reduction: a smallest increment of 3e-4 of the strength, of reductions from
+/// 2.4 %.
+const ERROR: f64 = 0.01;
 
-/// Two sheets reproduce each reduction of a half-space within 8 %, for Poisson's ratios from glass to rubber.
-/// At the smallest reductions, 1 to 2 % come from the drag of the drive. At the largest, most of the error
-/// comes from the mesh, which has 1.9 blocks in the critical size.
+/// Checks that a reduction is that of the reference.
+fn agrees(what: &str, found: f64, expected: f64) {
+    println!(
+        "{what}: {found:.2} % for {expected:.2} %, {:+.1}",
+        100.0 * (found / expected - 1.0)
+    );
+    assert!(
+        (found / expected - 1.0).abs() < ERROR,
+        "{what}: {found} {expected}"
+    );
+}
+
+/// Dimples reduce friction as on a half-space, for Poisson's ratios from glass to rubber.
 #[test]
-fn dimples_on_a_stack_reduce_friction_as_in_a_half_space() {
+fn dimples_on_a_deep_body() {
     let dimples = Dimples::array(16);
-    for (poisson, excess) in EXCESS {
-        for (weakening, measured) in WEAKENING.into_iter().zip(excess) {
+    for poisson in [0.0, 0.25, 1.0 / 3.0, 0.49] {
+        for weakening in WEAKENING {
             let expected = dimples.on_half_space(poisson, weakening, Sharing::Equal);
-            let found = dimples.on_stack(poisson, weakening, Sharing::Equal, WITH_LITTLE_DRAG);
-            let excess = 100.0 * (found / expected - 1.0);
-            println!(
-                "nu = {poisson:.2}, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %, {excess:+.1}"
-            );
-            // Rounding of the measured value.
-            assert!((excess - measured).abs() < 0.06, "{weakening}: {excess}");
-            assert!((-8.0..8.0).contains(&excess), "{weakening}: {excess}");
+            let found = dimples.on_body(poisson, weakening, Sharing::Equal, &[]);
+            let what = format!("nu = {poisson:.2}, w p (1 - nu)/G = {weakening}");
+            agrees(&what, found, expected);
         }
     }
 }
 
-/// Blocks in the height of a glued layer, Poisson's ratio, and the relative error in % of reductions with two
-/// sheets at w p (1 - nu)/G = 5 and at 10.
-const ON_LAYERS: [(f64, f64, [f64; 2]); 4] = [
-    (8.0, 0.3, [-2.9, -0.9]),
-    (8.0, 0.49, [-3.1, -1.0]),
-    (4.0, 0.3, [-12.0, -4.4]),
-    (4.0, 0.49, [-12.8, -6.5]),
-];
-
-/// Dimples on a layer that is glued to a rigid face, half and a quarter of a pitch high: in such a thin
-/// layer, both directions differ less for long waves, and more for short waves, than in the stack.
+/// Dimples on a layer that is glued to a rigid face, half, a quarter and an eighth of a pitch high, against
+/// the equations of elasticity integrated over its height.
 #[test]
 fn dimples_on_a_glued_layer() {
     let dimples = Dimples::array(16);
-    for (height, poisson, excess) in ON_LAYERS {
+    for (height, poisson) in [(8.0, 0.3), (8.0, 0.49), (4.0, 0.3), (4.0, 0.49), (2.0, 0.3)] {
         let layer = Body::new(16, |q| {
             layer::response(q * height, poisson).map(|r| (1.0 - poisson) * r / height)
         });
         let key = format!("slider.height='{:e} m'", height * BLOCK);
-        for (weakening, measured) in [5.0, 10.0].into_iter().zip(excess) {
+        for weakening in [5.0, 10.0] {
             let expected = 100.0 * (1.0 - layer.largest_friction(&dimples.blocks(weakening, Sharing::Equal)));
-            let found = dimples.on_stack(poisson, weakening, Sharing::Equal, &[SLOWLY[0], &key]);
-            let excess = 100.0 * (found / expected - 1.0);
-            println!(
-                "{height} blocks high, nu = {poisson}, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %, {excess:+.1}"
-            );
-            // Rounding of the measured value.
-            assert!((excess - measured).abs() < 0.06, "{excess}");
+            // On a soft mount, as the reference, which pulls by a traction: G/H would hold slip back that has
+            // begun.
+            let keys = [&*key, "drive.stiffness_star=0.005"];
+            let found = dimples.on_body(poisson, weakening, Sharing::Equal, &keys);
+            let what = format!("{height} blocks high, nu = {poisson}, w p (1 - nu)/G = {weakening}");
+            agrees(&what, found, expected);
         }
     }
 }
 
-/// Three sheets reproduce the reductions within 4 % where drag is negligible.
-#[test]
-fn three_sheets_are_closer() {
-    let (poisson, dimples) = (0.25, Dimples::array(16));
-    let slowly = SLOWLY.iter().map(|&key| key.to_owned());
-    let keys: Vec<String> = three_sheets(16).into_iter().chain(slowly).collect();
-    for weakening in [2.0, 5.0, 10.0] {
-        let expected = dimples.on_half_space(poisson, weakening, Sharing::Equal);
-        let found = dimples.in_product(poisson, weakening, Sharing::Equal, &keys);
-        println!("three sheets, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %");
-        assert!(
-            (found / expected - 1.0).abs() < 0.04,
-            "{weakening}: {found} {expected}"
-        );
-    }
-}
-
 /// Blocks in a pitch, and the reduction in % of an array with a critical size of 0.116 pitches.
-const ON_BLOCKS: [(usize, f64); 4] = [(16, 32.5), (24, 34.1), (32, 34.8), (48, 34.6)];
+const ON_BLOCKS: [(usize, f64); 6] = [
+    (8, 26.84),
+    (12, 32.48),
+    (16, 34.98),
+    (24, 34.42),
+    (32, 34.83),
+    (48, 34.69),
+];
 
-/// Three blocks in the critical size of a bulk body are enough for 2 % of a reduction, and two are not.
+/// Two blocks in the critical size of a bulk body are enough for 2 % of a reduction, and fewer are not.
 #[test]
-fn three_blocks_in_the_critical_size_are_enough() {
-    let finest = ON_BLOCKS[3].1;
-    let [coarse, .., last] = ON_BLOCKS.map(|(_, reduction)| reduction);
+fn two_blocks_in_the_critical_size_are_enough() {
+    let finest = ON_BLOCKS[5].1;
     let page = include_str!("../../../docs/validation/measures.md");
-    let (one, two) = (ON_BLOCKS[1].1, ON_BLOCKS[2].1);
-    let line = format!("reductions of {coarse}, {one}, {two} and {last} % on");
+    let [_, reductions @ .., last] = ON_BLOCKS.map(|(_, reduction)| format!("{reduction:.1}"));
+    let line = format!("reductions of {} and {last} % on", reductions.join(", "));
     assert!(page.contains(&line), "docs/validation/measures.md lacks {line}");
     for (pitch, measured) in ON_BLOCKS {
-        let found = Dimples::array(pitch).on_stack(0.3, 20.0, Sharing::Equal, WITH_LITTLE_DRAG);
+        let found = Dimples::array(pitch).on_body(0.3, 20.0, Sharing::Equal, &[]);
         let blocks = 2.316 * pitch as f64 / 20.0;
         println!("{blocks:.1} blocks in the critical size: {found:.2} %");
         // Rounding of the measured value.
-        assert!((found - measured).abs() < 0.06, "{blocks}: {found}");
+        assert!((found - measured).abs() < 0.006, "{blocks}: {found}");
         assert_eq!(
             (found / finest - 1.0).abs() < 0.02,
-            blocks > 2.5,
+            blocks > 1.5,
             "{blocks}: {found}"
         );
     }
@@ -147,21 +127,15 @@ fn an_array_whose_load_is_shared_within_a_pitch() {
     };
     for weakening in [2.0, 10.0] {
         let expected = dimples.on_half_space(poisson, weakening, Sharing::Near);
-        // Single dimples have no pitch: the case states the longest wave length of an array.
-        let keys = [WITH_LITTLE_DRAG, &["slider.longest_wave='160 um'"]].concat();
-        let found = dimples.on_stack(poisson, weakening, Sharing::Near, &keys);
-        println!("within a pitch, w p (1 - nu)/G = {weakening}: {found:.2} % for {expected:.2} %");
-        assert!((found / expected - 1.0).abs() < 0.08, "{found} {expected}");
+        let found = dimples.on_body(poisson, weakening, Sharing::Near, &[]);
+        agrees(&format!("within a pitch, {weakening}"), found, expected);
     }
 }
 
-/// Dimples on a part of a slider of 4 x 4 pitches, or anywhere in it, have waves up to its length: two sheets
-/// reproduce their reductions within 8 %.
+/// Dimples on a part of a slider of 4 x 4 pitches, or anywhere in it, have waves up to its length.
 #[test]
-fn other_patterns_on_a_stack_reduce_friction_as_in_a_half_space() {
+fn other_patterns_on_a_deep_body() {
     let weakening = 2.0;
-    // Patches need a slower drive than arrays.
-    let keys = [WITH_LITTLE_DRAG[0], "drive.v_star=0.001"];
     let [band, patch, random] = patterns(8);
     for (name, dimples, poisson, sharing) in [
         ("band", &band, 0.25, Sharing::Equal),
@@ -174,11 +148,7 @@ fn other_patterns_on_a_stack_reduce_friction_as_in_a_half_space() {
         ),
     ] {
         let expected = dimples.on_half_space(poisson, weakening, sharing);
-        let found = dimples.on_stack(poisson, weakening, sharing, &keys);
-        println!("nu = {poisson:.2}, {name}: {found:.2} % for {expected:.2} %");
-        assert!(
-            (found / expected - 1.0).abs() < 0.08,
-            "{name}: {found} {expected}"
-        );
+        let found = dimples.on_body(poisson, weakening, sharing, &[]);
+        agrees(&format!("nu = {poisson:.2}, {name}"), found, expected);
     }
 }

@@ -1,3 +1,5 @@
+//! Tests of the readers of arrays, tables of numbers and masks, also with files that are damaged.
+
 use std::fmt::Debug;
 use std::fs;
 use std::io::BufReader;

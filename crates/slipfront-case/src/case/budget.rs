@@ -15,7 +15,7 @@ use slipfront_base::number_format::{byte_size, count};
 use super::inputs::Input;
 use super::output::Output;
 use super::ranks::Ranks;
-use crate::case_file::{Attached, AttachedEdge, CaseError, CaseFile, Motion, Outline, Shape};
+use crate::case_file::{Attached, AttachedEdge, Body, CaseError, CaseFile, Loading, Motion, Outline, Shape};
 
 /// Bytes of a number.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -544,41 +544,42 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     let many = |options: &[bool]| options.iter().filter(|is_used| **is_used).count() as f64;
     let own = 2.0 * many(&varies) + 2.0 * many(&[has_outline, has_pressures]);
     let blocks_differ = own > 0.0;
-    let (stepped, of_sheet) = match kernel(file, friction) {
-        Kernel::Fused if varies.contains(&true) || needs.varies => {
-            (22.0 + 2.0 * many(&varies[3..]), FUSED_NUMBERS_OF_SHEET)
-        }
-        Kernel::Fused => (10.0 + own, FUSED_NUMBERS_OF_SHEET),
+    let stepped = match kernel(file, friction) {
+        Kernel::Fused if varies.contains(&true) || needs.varies => 22.0 + 2.0 * many(&varies[3..]),
+        Kernel::Fused => 10.0 + own,
         Kernel::General => {
             let differing = if blocks_differ { 9.0 } else { 0.0 };
             let dampers = if is_viscous(file) { 12.0 } else { 0.0 };
-            (29.0 + differing + dampers, NUMBERS_OF_SHEET)
+            29.0 + differing + dampers
         }
     };
-    let of_sheets = of_sheet * file.slider.n_sheets_above() as f64;
+    let stepped = match slider.body {
+        Body::Bulk => stepped + NUMBERS_OF_BODY,
+        Body::Sheet => stepped,
+    };
+    let stepped = stepped + 2.0 * needs.columns as f64;
+    // The search for the strength of a bulk body has a simulation of its own, and its last rest.
+    let searched = if slider.body == Body::Bulk && file.drive.loading == Loading::Held {
+        stepped + 7.0
+    } else {
+        0.0
+    };
     // While a kernel is made, the state of the case exists twice.
     let [state, begun] = if file.initial.is_at_rest() {
         [0.0; 2]
     } else {
         [4.0, 8.0]
     };
-    [
-        3.0 + own + state,
-        stepped + begun + of_sheets + 2.0 * needs.columns as f64,
-    ]
+    [3.0 + own + state, stepped + begun + searched]
 }
 
 /// Numbers per block of the whole lattice while the load of textured blocks is shared among nearby blocks:
 /// two marks, pressures as numbers and as bits, and sums of counts and of shares.
 const SHARED: f64 = 6.0;
 
-/// Numbers per block of a sheet above the lowest under the fused kernel: displacement and velocity, and space
-/// for a column of a checkpoint.
-const FUSED_NUMBERS_OF_SHEET: f64 = 5.0;
-
-/// Numbers per block of a sheet above the lowest under the general kernel: displacement, velocities before
-/// and after the step, forces of the springs in the sheet, along each bond, and from the sheet above.
-const NUMBERS_OF_SHEET: f64 = 18.0;
+/// Numbers per block of a bulk body: displacements and forces of the whole lattice, its response, and two
+/// complex arrays of a transform.
+const NUMBERS_OF_BODY: f64 = 13.0;
 
 /// Ratio of the memory of the general kernel on several threads to that on one: each thread also has the rows
 /// next to its own.
@@ -590,6 +591,9 @@ fn is_viscous(file: &CaseFile) -> bool {
 
 /// The kernel that computes the model of a case file.
 fn kernel(file: &CaseFile, friction: &Friction) -> Kernel {
+    if file.slider.body == Body::Bulk {
+        return Kernel::General;
+    }
     Kernel::default().for_law(friction, is_viscous(file), file.drive.motion == Motion::Rotation)
 }
 

@@ -11,9 +11,8 @@ use slipfront::lattice::POISSON_RATIO;
 
 use super::coefficients::sharing_distance;
 use super::runnable::Case;
-use super::stack::{BulkBody, Stack, shear_modulus};
 use super::textures::{pitch, regular_pitch};
-use slipfront_base::number_format::{four_digits, with_si_prefix};
+use slipfront_base::number_format::with_si_prefix;
 
 /// Thickness over the pitch, or over the smallest feature, above which there is a note.
 const THICK: f64 = 1.0 / 3.0;
@@ -26,9 +25,6 @@ const STRIP: f64 = 2.316;
 /// body over in the sheet. For a square array of dimples half a pitch wide, R* = 0.5, nu = 1/3, a height of
 /// five pitches, and `w p (1 - nu)/G` from 1 to 20 (`docs/validation/bulk.md`).
 const BULK_OVER_SHEET: [(f64, [f64; 2]); 3] = [(0.1, [0.42, 0.86]), (0.5, [1.5, 2.4]), (5.0, [11.0, 18.0])];
-/// Excess of the stiffness of the stack over that of the body above which there is a note.
-const LARGE_EXCESS: f64 = 0.1;
-
 /// Lengths of the textures of a case, m, by which it counts as a sheet or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TextureLengths {
@@ -41,16 +37,6 @@ struct TextureLengths {
 }
 
 impl Case {
-    /// The bulk body of the case; none for a sheet, or where `slider.sheets` gives the stack.
-    pub fn bulk_body(&self) -> Option<BulkBody> {
-        BulkBody::of(&self.file, &self.scales)
-    }
-
-    /// The stack of sheets of the case; none for one sheet.
-    fn stack(&self) -> Option<Stack> {
-        Stack::of(&self.file, &self.scales)
-    }
-
     /// Decrease of strength per slip of blocks in contact, `w = (mu_s - mu_k) P/D_c`, Pa/m; none under laws
     /// without a strength that decreases with slip.
     fn weakening_of_area(&self) -> Option<f64> {
@@ -66,18 +52,18 @@ impl Case {
     /// ```
     ///
     /// Z is the stiffness along a wave. For a deep body it is `G q/(1 - nu)`, and 2.316 is exact; for a strip
-    /// on a thin layer or on a given stack, the factor may be up to pi instead. A sheet has the critical size
+    /// on a thin layer, the factor may be up to pi instead. A sheet has the critical size
     /// of a deep body of its material.
     pub(super) fn critical_size_of_bulk(&self) -> Option<f64> {
         let (model, scales) = (&self.model, &self.scales);
         let weakening = self.weakening_of_area().filter(|weakening| *weakening > 0.0)?;
         let modulus = scales.young_modulus;
-        let metres = if let Some(body) = self.bulk_body() {
-            size_at(weakening, &|q| body.along(modulus, q))
-        } else if let Some(stack) = self.stack() {
-            size_at(weakening, &|q| stack.along(modulus, q))
-        } else {
-            STRIP * shear_modulus(modulus, POISSON_RATIO) / ((1.0 - POISSON_RATIO) * weakening)
+        let metres = match model.body() {
+            Some(body) => {
+                let per_block = weakening * scales.block_size / modulus;
+                size_at(per_block, &|q| body.along(q)) * scales.block_size
+            }
+            None => STRIP * shear_modulus(modulus, POISSON_RATIO) / ((1.0 - POISSON_RATIO) * weakening),
         };
         (model.lattice.nx > 1 && model.lattice.ny > 1).then_some(metres / scales.block_size)
     }
@@ -90,18 +76,17 @@ impl Case {
     }
 
     /// Largest strain of the slider under a wave of traction as large as its friction. For a sheet this is `P
-    /// mu_s l/(E h)` on one block, for a stack `P mu_s q/Z` with the stiffness Z along a wave at least two
+    /// mu_s l/(E h)` on one block, for a body `P mu_s q/K` with the stiffness K along a wave at least two
     /// blocks long.
     pub fn strain_of_load(&self) -> f64 {
         /// Number of wavelengths, in geometric progression; the longest is a thousand blocks.
         const WAVES: i32 = 40;
-        let scales = &self.scales;
-        let Some(stack) = self.stack() else {
+        let Some(body) = self.model.body() else {
             return self.groups.epsilon;
         };
         let strain = |k: i32| {
-            let q = PI / scales.block_size * libm::pow(500.0, -f64::from(k) / f64::from(WAVES));
-            scales.stress() * q / stack.along(scales.young_modulus, q)
+            let q = PI * libm::pow(500.0, -f64::from(k) / f64::from(WAVES));
+            self.scales.stress() / self.scales.young_modulus * q / body.along(q)
         };
         (0..=WAVES).map(strain).fold(0.0, f64::max)
     }
@@ -146,52 +131,6 @@ impl Case {
         ))
     }
 
-    /// Sentences on the limits of the stack as a model of the bulk body: waves shorter or longer than those
-    /// of the fit, and uniform slip of all blocks.
-    pub(super) fn bulk_notes(&self) -> Vec<String> {
-        let Some(body) = self.bulk_body() else {
-            return Vec::new();
-        };
-        let short = self.texture_lengths().feature.and_then(|feature| {
-            let excess = body.excess(self.scales.young_modulus, 2.0 * feature);
-            (2.0 * feature < body.longest_wave && excess > LARGE_EXCESS).then(|| {
-                format!(
-                    "the smallest feature of {} is small compared with the longest wavelength of {}: at twice the feature the \
-                     stack is {:.0} % stiffer than the body. Use one array with a `pitch` that fills the slider, which makes the \
-                     pitch the longest wavelength, or set `slider.longest_wave`, or three `slider.sheets`",
-                    with_si_prefix(feature, "m"),
-                    with_si_prefix(body.longest_wave, "m"),
-                    100.0 * excess
-                )
-            })
-        });
-        let long = self.texture_lengths().pitch.and_then(|pitch| {
-            let excess = body.excess(self.scales.young_modulus, pitch);
-            (pitch > body.longest_wave && excess > LARGE_EXCESS).then(|| {
-                format!(
-                    "the longest wavelength of the slider is {}, shorter than the pitch of {}: at the pitch the stack is {:.0} \
-                     % stiffer than the body; set `slider.longest_wave` = \"{1}\"",
-                    with_si_prefix(body.longest_wave, "m"),
-                    with_si_prefix(pitch, "m"),
-                    100.0 * excess
-                )
-            })
-        });
-        let modulus = self.scales.young_modulus;
-        let of_all = self.weakening_of_area().and_then(|weakening| {
-            let (held, by_body) = (body.stack().along(modulus, 0.0), body.along(modulus, 0.0));
-            (by_body < weakening && weakening < held).then(|| {
-                format!(
-                    "for uniform slip the stack is {} times as stiff as the body, and stiffer than the weakening of friction: \
-                     once all blocks slide, slip does not run away in the stack. mu* then falls in proportion to the drive path, \
-                     but drops at once in the body; a longer `slider.longest_wave` is closer to the body",
-                    if by_body > 0.0 { four_digits(held / by_body) } else { "infinitely many".to_owned() }
-                )
-            })
-        });
-        short.into_iter().chain(long).chain(of_all).collect()
-    }
-
     /// The smallest feature and pitch of all textures.
     fn texture_lengths(&self) -> TextureLengths {
         let textures = &self.file.texture;
@@ -228,8 +167,13 @@ impl TextureLengths {
     }
 }
 
-/// Critical size in m for this decrease of strength per slip in Pa/m, where the stiffness along a wave
-/// increases with its wave number.
+/// `G = E/(2 (1 + nu))`.
+fn shear_modulus(young_modulus: f64, poisson: f64) -> f64 {
+    young_modulus / (2.0 * (1.0 + poisson))
+}
+
+/// Critical size in blocks for this decrease of strength per slip, where the stiffness along a wave increases
+/// with its wave number; both in units of E over the block size.
 fn size_at(weakening: f64, along: &dyn Fn(f64) -> f64) -> f64 {
     /// Halvings after which the ends are adjacent floating-point numbers.
     const HALVINGS: usize = 60;

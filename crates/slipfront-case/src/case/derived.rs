@@ -9,15 +9,12 @@ use super::budget::Budget;
 use super::coefficients::check_correlation;
 use super::groups::Groups;
 use super::ranks::Ranks;
-use super::stack::{Stack, longest_wave};
-use crate::case_file::{CaseError, CaseFile, DriveStiffness, FrictionAlong};
+use crate::case_file::{Body, CaseError, CaseFile, DriveStiffness, FrictionAlong};
 use crate::quantity::Length;
 
 /// Quantities that follow from a case file without reading its input files.
 pub(super) struct Derived {
     pub(super) scales: Scales,
-    /// The stack of sheets; none if the slider is one sheet.
-    pub(super) stack: Option<Stack>,
     pub(super) groups: Groups,
     pub(super) budget: Budget,
     pub(super) friction: Friction,
@@ -33,7 +30,7 @@ impl Derived {
         ranks: &Ranks,
         to_run: bool,
     ) -> Result<Self, CaseError> {
-        let (scales, stack) = scales_and_stack(file);
+        let scales = scales(file);
         let groups = Groups::of(file, &scales)?;
         check_correlation(file)?;
         let n_ranks = ranks.communicator.size();
@@ -45,6 +42,11 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
+        if n_ranks > 1 && file.slider.body == Body::Bulk {
+            let why =
+                "a bulk body is not divided over ranks, since every block acts on all others: use one rank";
+            return Err(file.source.error("slider.body", why));
+        }
         if let Some((key, why)) = file.friction.takes_one_rank().filter(|_| n_ranks > 1) {
             return Err(file.source.error(key, why));
         }
@@ -55,7 +57,6 @@ impl Derived {
         budget.check_case(file, to_run)?;
         Ok(Self {
             scales,
-            stack,
             groups,
             budget,
             friction,
@@ -63,24 +64,8 @@ impl Derived {
     }
 }
 
-/// Units of the dimensionless quantities of a case file, with the thickness of the lowest sheet of a stack.
+/// Units of the dimensionless quantities of a case file. A bulk body has blocks as thick as they are long.
 pub fn scales(file: &CaseFile) -> Scales {
-    scales_and_stack(file).0
-}
-
-/// A key and its value that make a slider without texture the same bulk body as this case: both are then
-/// fitted for the same wavelengths, and differ only in the texture. None for a sheet, or where the case gives
-/// the key itself.
-pub fn key_of_body(file: &CaseFile) -> Option<(&'static str, String)> {
-    if file.slider.longest_wave.is_some() {
-        return None;
-    }
-    let longest = longest_wave(file, &scales_of_sheet(file))?;
-    Some(("slider.longest_wave", format!("{longest:e} m")))
-}
-
-/// Units of a case file for a slider of one sheet.
-fn scales_of_sheet(file: &CaseFile) -> Scales {
     let block_size = file.slider.block_size.si();
     let thickness = file.slider.thickness.as_ref().map_or(block_size, Length::si);
     let young_modulus = match &file.drive.stiffness {
@@ -100,17 +85,4 @@ fn scales_of_sheet(file: &CaseFile) -> Scales {
         pressure: file.load.pressure.si(),
         mu_static_mean: file.friction.mu_static,
     }
-}
-
-/// Units of a case file, and the stack that gives their thickness.
-fn scales_and_stack(file: &CaseFile) -> (Scales, Option<Stack>) {
-    let of_sheet = scales_of_sheet(file);
-    let stack = Stack::of(file, &of_sheet);
-    let scales = Scales {
-        thickness: stack
-            .as_ref()
-            .map_or(of_sheet.thickness, |stack| stack.thickness[0]),
-        ..of_sheet
-    };
-    (scales, stack)
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
+use slipfront::{Body, Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
 
 use super::derived::Derived;
 use super::files::Watch;
@@ -16,6 +16,9 @@ use crate::case_file::{
 
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
 const MAX_ANGLE: f64 = 1e-3;
+/// Largest height of a body for the stiffness of its drive springs, in lengths of the longer side: it sets
+/// how steeply mu* rises with the path of the drive, and not the strength.
+const HEIGHT_OF_DEEP: f64 = 5.0;
 
 /// The blocks of these rows that have a drive spring, if a file gives them.
 pub(super) fn attached(
@@ -54,8 +57,15 @@ pub(super) fn attach(
     Ok(())
 }
 
+/// Stiffness of the drive springs that stand for the shear of a body between its face and its driven back, in
+/// units of E times the block size.
+fn mount(body: &Body, lattice: &Lattice) -> f64 {
+    let longer = lattice.nx.max(lattice.ny) as f64;
+    body.shear_modulus() / body.height.min(HEIGHT_OF_DEEP * longer)
+}
+
 /// The drive of a slider. A total stiffness is shared by the driven blocks in proportion to their moduli; a
-/// stack of sheets has its own mount.
+/// bulk body without a given stiffness has that of its shear.
 pub(super) fn drive(
     file: &CaseFile,
     derived: &Derived,
@@ -64,10 +74,11 @@ pub(super) fn drive(
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
     let (scales, groups) = (&derived.scales, &derived.groups);
-    let k_drive = match (&derived.stack, total(file, scales)) {
-        (Some(stack), _) => scales.stiffness_of_area(stack.mount()),
-        (None, Some(total)) => total / slider.sum_of_drive_springs(lattice),
-        (None, None) => each(file, scales),
+    let is_given = file.drive.stiffness != DriveStiffness::Each(AutoOrStiffness::Auto);
+    let k_drive = match (file.slider.bulk_body(), total(file, scales)) {
+        (Some(body), _) if !is_given => mount(&body, lattice),
+        (_, Some(total)) => total / slider.sum_of_drive_springs(lattice),
+        (_, None) => each(file, scales),
     };
     within(
         file,

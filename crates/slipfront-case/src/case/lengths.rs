@@ -18,7 +18,7 @@ use slipfront_base::number_format::{four_digits, with_si_prefix};
 const OF_CRITICAL_SIZE: f64 = 5.0;
 /// Sufficient number of blocks in the critical size of a bulk body. For dimples four times as wide as this
 /// size, the reduction on 1.9 blocks differs by 6 % from that on 5.6, and on 2.8 blocks by 1.5 %.
-const OF_CRITICAL_SIZE_OF_BULK: f64 = 3.0;
+const OF_CRITICAL_SIZE_OF_BULK: f64 = 2.0;
 /// Sufficient number of blocks in the screening length along the drive, where it is the shorter length.
 const OF_SCREENING: f64 = 3.0;
 /// Ratio of critical size to screening length above which slip is stable or nearly so on this mount, and the
@@ -100,7 +100,7 @@ impl Case {
             }
         }
         if let Some(blocks) = self.critical_size_of_bulk() {
-            let is_of_slider = blocks.is_finite() && !self.model.sheets().is_empty();
+            let is_of_slider = blocks.is_finite() && self.model.body().is_some();
             let enough = is_of_slider.then_some(OF_CRITICAL_SIZE_OF_BULK);
             lengths.push(self.length("critical size, bulk body", blocks, enough));
         }
@@ -187,7 +187,7 @@ impl Case {
     fn has_spring_on_every_block(&self) -> bool {
         let drive = &self.file.drive;
         let is_on_all = matches!(drive.attached, Attached::At(AttachedEdge::All));
-        let is_sheet = self.model.sheets().is_empty();
+        let is_sheet = self.model.body().is_none();
         is_sheet && is_on_all && drive.motion != Motion::Rotation && self.model.n_blocks() > 1
     }
 

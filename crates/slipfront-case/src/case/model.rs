@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use slipfront::scales::damping;
 use slipfront::surface::share_load;
-use slipfront::{Communicator, Lattice, Model, State, Surface, SurfaceError};
+use slipfront::{Communicator, Lattice, Loading, Model, State, Surface, SurfaceError};
 
 use super::coefficients::{coefficients, contact, sharing_distance};
 use super::derived::Derived;
@@ -17,7 +17,7 @@ use super::shear;
 use super::slider::GivenBlocks;
 use super::textures;
 use super::topography::Topography;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{self, CaseError, CaseFile};
 
 /// The texture as requested and as meshed.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,9 +98,16 @@ pub(super) fn make(
     let (damping, friction) = (damping(groups.omega_star), derived.friction);
     let model = Model::of_rows(lattice, rows, surface, drive, damping, groups.epsilon, friction);
     let model = model.with_slider(slider);
-    let model = match &derived.stack {
+    let model = match file.slider.bulk_body() {
         None => model,
-        Some(stack) => model.with_sheets(stack.sheets(scales), stack.springs()),
+        Some(body) => model.with_body(body),
+    };
+    // How many of its steps count is decided with the time step.
+    let model = match file.drive.loading {
+        case_file::Loading::Constant => model,
+        case_file::Loading::Held => model.with_loading(Loading::Held {
+            onset_steps: u64::MAX,
+        }),
     };
     let load = shear::dead_load(file, scales, &model, shear, ranks.communicator);
     let model = model.with_dead_load(load);

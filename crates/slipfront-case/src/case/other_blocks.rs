@@ -69,8 +69,11 @@ impl Case {
                 "slider.blocks".to_owned(),
                 Value::from(blocks.map(i64::from).to_vec()),
             ),
-            ("time.step".to_owned(), Value::from(self.time_plan.dt_star)),
         ];
+        // Increments of a held drive, and the rest after each, depend on no time.
+        if !self.model.rests_by_excess() {
+            set.push(("time.step".to_owned(), Value::from(self.time_plan.dt_star)));
+        }
         // Every key of the case, with defaults filled in.
         let mut file = Value::try_from(self.explicit_times()).map_err(CaseError::from)?;
         if let Value::Table(file) = &mut file {
@@ -91,6 +94,9 @@ impl Case {
     /// The case file with explicit numbers for the "auto" times, which depend on the blocks.
     fn explicit_times(&self) -> CaseFile {
         let mut file = self.file.clone();
+        if self.model.rests_by_excess() {
+            return file;
+        }
         let plan = &self.time_plan;
         if matches!(file.time.duration, RunTime::Star(AutoOr::Auto)) {
             file.time.duration = RunTime::Star(AutoOr::Number(plan.end_star()));

@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::surface::{CorrelatedField, Texture};
-use slipfront::{Communicator, Lattice, Model, Scales, State};
+use slipfront::{
+    Communicator, Execution, Increments, Lattice, Loading, Model, Program, Scales, Search, State,
+};
 
 use super::budget::Budget;
 use super::coefficients::correlated_field;
@@ -207,7 +209,7 @@ impl Case {
             },
         };
 
-        let (model, texture, initial) =
+        let (mut model, texture, initial) =
             model::make(&file, &derived, (lattice, rows), (&named, &inputs), watch, &ranks)?;
         let Derived {
             scales,
@@ -215,7 +217,7 @@ impl Case {
             budget,
             ..
         } = derived;
-        let planned = TimePlan::of(&file, &scales, &groups, &model, ranks.communicator)
+        let planned = TimePlan::of(&file, &scales, &groups, &mut model, ranks.communicator)
             .and_then(|plan| Ok((plan, Output::of(&file, &plan)?)));
         let (time_plan, output) = ranks.agree(planned)?;
         let model = model
@@ -237,6 +239,38 @@ impl Case {
             output,
             file,
         })
+    }
+
+    /// The search for the increments of the drive that lead a bulk body to its onset under slow loading; none
+    /// for other cases.
+    pub fn search(&self, execution: Execution) -> Option<Search> {
+        let (model, plan) = (Model::clone(&self.model), &self.time_plan);
+        let searches = model.rests_by_excess() && model.drive.program.is_none();
+        searches.then(|| Search::new(model, plan.dt_star, self.state(), execution))
+    }
+
+    /// The increments of a held drive, if a search has found them.
+    pub fn increments(&self) -> Option<Increments> {
+        let Loading::Held { onset_steps } = self.time_plan.loading else {
+            return None;
+        };
+        let program = Program::clone(self.model.drive.program.as_ref()?);
+        self.model.rests_by_excess().then(|| Increments {
+            v_star: self.model.drive.v_star,
+            program,
+            onset_steps,
+        })
+    }
+
+    /// The case with the increments that its [search](Self::search) has found.
+    pub fn with_increments(&self, increments: Increments) -> Self {
+        let time_plan = self.time_plan.with_increments(&increments);
+        let model = Model::clone(&self.model).with_loading(time_plan.loading);
+        Self {
+            model: Arc::new(model.with_program(Some(Arc::new(increments.program)))),
+            time_plan,
+            ..self.clone()
+        }
     }
 
     /// Ratio of the dead load along the drive to the static friction of the blocks; none without a load, or

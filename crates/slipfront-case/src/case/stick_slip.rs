@@ -32,7 +32,7 @@ impl Case {
     /// ```
     ///
     /// and the step that reduces the error to 0.1 %. There is none where the drive is stiffer than
-    /// [critical](RateAndState::critical_stiffness), where blocks or sheets do not move as one, or where
+    /// [critical](RateAndState::critical_stiffness), where blocks do not move as one, or where
     /// slips are so large that the spring pushes back, because such slips differ from each other at any step.
     pub fn coarse_for_stick_slip(&self) -> Option<String> {
         let model = &self.model;
@@ -41,7 +41,7 @@ impl Case {
         };
         let (k, v) = (model.drive.k_drive, model.drive.v_star);
         let load = model.surface.mean_normal_force();
-        let moves_as_one = (model.driven_share() - 1.0).abs() < 1e-9 && model.sheets().is_empty();
+        let moves_as_one = (model.driven_share() - 1.0).abs() < 1e-9 && model.body().is_none();
         if !moves_as_one || k >= law.critical_stiffness(load, model.damping, v) {
             return None;
         }

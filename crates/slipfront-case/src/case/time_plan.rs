@@ -3,7 +3,7 @@
 use slipfront::communicator::Communicator;
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::KineticStart;
-use slipfront::{Loading, Model, ONSET_PATH, Scales, Stop, StopReason};
+use slipfront::{Increments, Loading, Model, ONSET_PATH, Scales, Stop, StopReason};
 
 use super::groups::{Groups, MAX_V_STAR};
 use crate::case_file::{
@@ -45,23 +45,33 @@ const AUTO_STEP: f64 = 0.1;
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
-    /// The time plan of a case; an error when the step is unstable, the run too long, or its kinetic window
-    /// or a snapshot after its end. All ranks must call this together.
+    /// The time plan of a case, which also sets the speed of a drive that is held for a bulk body; an error
+    /// when the step is unstable, the run too long, or its kinetic window or a snapshot after its end. All
+    /// ranks must call this together.
     pub(super) fn of(
         file: &CaseFile,
         scales: &Scales,
         groups: &Groups,
-        model: &Model,
+        model: &mut Model,
         ranks: &dyn Communicator,
     ) -> Result<Self, CaseError> {
         let time = &file.time;
         let limit = model.stable_step_limit(ranks);
-        let auto = if AUTO_STEP < limit { AUTO_STEP } else { 0.5 * limit };
+        let auto = match model.body() {
+            // Sliding blocks are as exact at any stable step.
+            Some(_) => 0.9 * limit,
+            None if AUTO_STEP < limit => AUTO_STEP,
+            None => 0.5 * limit,
+        };
         let dt_star = match time.step {
             TimeStep::Auto => auto,
             TimeStep::Paper => 2.0 / 3.0 * groups.v_star,
             TimeStep::Number(dt_star) => dt_star,
         };
+        if model.rests_by_excess() {
+            model.drive.v_star = slipfront::speed_of_increments(model, dt_star);
+        }
+        let model = &*model;
         if dt_star >= limit {
             let sentence = format!(
                 "the step dt* = {} is not stable: it must be less than {}; \"auto\" is {}",
@@ -134,6 +144,24 @@ impl TimePlan {
             return Err(file.source.error("output.snapshots", sentence));
         }
         Ok(())
+    }
+
+    /// The plan with the increments that lead a bulk body to its onset.
+    pub(super) fn with_increments(self, increments: &Increments) -> Self {
+        let onset_steps = increments.onset_steps;
+        // Increments after the onset are smaller than those of the plan.
+        let last_step = onset_steps + self.last_step * slipfront::REFINEMENT as u64;
+        Self {
+            last_step,
+            stop: if self.stop.is_after_onset() {
+                Stop::after_onset(last_step)
+            } else {
+                Stop::at_step(last_step)
+            },
+            kinetic: KineticStart::At(onset_steps as f64 * self.dt_star),
+            loading: Loading::Held { onset_steps },
+            ..self
+        }
     }
 
     /// t* of the last step.

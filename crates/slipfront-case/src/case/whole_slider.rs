@@ -94,7 +94,7 @@ impl Case {
             && !model.dead_load().acts()
             && self.initial.is_none()
             && *model.slider() == Slider::default()
-            && model.sheets().is_empty()
+            && model.body().is_none()
             && model.drive.program.is_none()
             && !model.drive.is_held()
             && drive.motion == Motion::Translation

@@ -133,6 +133,9 @@ impl Drive {
     }
 
     pub(super) fn check(&self, check: &Check, slider: &Slider) -> Result<(), CaseError> {
+        if slider.body == Body::Bulk {
+            self.check_for_bulk(check)?;
+        }
         self.speed.check(check)?;
         if let DriveSpeed::Program(segments) = &self.speed {
             check_program(segments, check)?;
@@ -163,9 +166,6 @@ impl Drive {
                 format!("`{key}` gives an edge, but the slider is periodic along {axis}; use free edges, or `attach_file`")
             });
         }
-        if slider.body == Body::Bulk {
-            self.check_for_bulk(check)?;
-        }
         if slider.rigid && !matches!(self.stiffness, DriveStiffness::Total(_)) {
             return check.refuse(self.stiffness.key(), |_| {
                 "a rigid slider (`slider.rigid`) is held by the spring `drive.total_stiffness`: give it in N/m".to_owned()
@@ -175,15 +175,9 @@ impl Drive {
         self.attached.check(check)
     }
 
-    /// Refuses drives that do not apply to a bulk body, which is driven over its whole upper face.
+    /// Refuses drives that do not apply to a bulk body, which is driven over its whole back.
     fn check_for_bulk(&self, check: &Check) -> Result<(), CaseError> {
-        let is_auto = self.stiffness == DriveStiffness::Each(AutoOrStiffness::Auto);
         let keys = [
-            (
-                self.stiffness.key(),
-                !is_auto,
-                "its stiffness follows from `slider.height`, or is in the last of `slider.sheets`",
-            ),
             (
                 "motion",
                 self.motion == Motion::Rotation,
@@ -192,9 +186,9 @@ impl Drive {
             (
                 "attach_file",
                 matches!(self.attached, Attached::File(_)),
-                "its whole upper face is driven",
+                "its whole back is driven",
             ),
-            ("attach", self.edge().is_some(), "its whole upper face is driven"),
+            ("attach", self.edge().is_some(), "its whole back is driven"),
         ];
         let given = keys.iter().find(|(_, is_given, _)| *is_given);
         given.map_or(Ok(()), |(key, _, why)| {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
+use slipfront::Edges;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -20,12 +21,12 @@ use super::motion::Load;
 use super::output::Output;
 use super::overrides::Override;
 use super::shapes::Shape;
-use super::slider::Slider;
+use super::slider::{Damping, Slider};
 use super::source::Source;
 use super::tables::Tables;
 use super::texture::Texture;
 use super::time::Time;
-use super::words::Loading;
+use super::words::{Body, Loading};
 
 /// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.
 ///
@@ -148,8 +149,7 @@ impl CaseFile {
         self.load.check(&check("load"))?;
         self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
-        let (motion, body, contact) = (self.drive.motion, self.slider.body, self.friction.contact);
-        self.load.check_shear(&check("load"), motion, body)?;
+        self.load.check_shear(&check("load"), self.drive.motion)?;
         self.check_interface()?;
         if self.drive.loading == Loading::Held {
             self.friction.check_held(&check("friction"))?;
@@ -161,9 +161,30 @@ impl CaseFile {
             let path = format!("texture.{index}");
             texture.check(&Check::new(&self.source, keys_of(texture.shape.name()), &path))?;
         }
-        self.initial.check(&check("initial"), body, contact)?;
+        self.initial.check(&check("initial"), self.friction.contact)?;
         self.time.check(&check("time"), &self.drive.speed)?;
-        self.output.check(&check("output"), body)
+        self.output.check(&check("output"))
+    }
+
+    /// Sets the keys that have another default for a bulk body, unless the file gives them: a bulk body is a
+    /// periodic piece of a larger part, and the strength of one that weakens with slip is found under slow
+    /// loading.
+    fn choose_defaults_of_body(&mut self) {
+        let is_bulk = self.slider.body == Body::Bulk;
+        if !self.source.has("slider.edges") {
+            self.slider.edges = [if is_bulk { Edges::Periodic } else { Edges::Free }; 2];
+        }
+        if !self.source.has("slider.omega_star") && !self.source.has("slider.damping_rate") {
+            self.slider.damping = Damping::OmegaStar(self.slider.critical_damping().unwrap_or(0.1));
+        }
+        if !self.source.has("drive.loading") {
+            let weakens = self.friction.falls_with_slip();
+            self.drive.loading = if is_bulk && weakens {
+                Loading::Held
+            } else {
+                Loading::Constant
+            };
+        }
     }
 
     /// Writes the case with all defaults filled in, in the order of the design. Reading it back gives an
@@ -385,6 +406,7 @@ impl<'t> ParsedCase<'t> {
             return Err(source.error_at(key.span(), keys::unknown_table(key.get_ref())));
         }
         case.source = source;
+        case.choose_defaults_of_body();
         case.check()?;
         Ok(case)
     }

@@ -6,7 +6,6 @@ use super::check::Check;
 use super::error::CaseError;
 use super::friction::ContactModel;
 use super::key::{ARRAY, KeyKind, above, key, quantity};
-use super::words::Body;
 use crate::key_rows;
 use crate::quantity::{Length, Speed};
 
@@ -65,7 +64,7 @@ impl Initial {
         ]
     }
 
-    pub(super) fn check(&self, check: &Check, body: Body, contact: ContactModel) -> Result<(), CaseError> {
+    pub(super) fn check(&self, check: &Check, contact: ContactModel) -> Result<(), CaseError> {
         check.value("state_file", &self.state_file)?;
         check.value("displacement_unit", &self.displacement_unit)?;
         check.value("velocity_unit", &self.velocity_unit)?;
@@ -92,13 +91,6 @@ impl Initial {
         if let Some(key) = state.and(displacements.or(velocities)) {
             return check.refuse(key, |key| {
                 format!("`{key}` cannot be combined with `initial.state_file`, which has displacements and velocities: leave one of them out")
-            });
-        }
-        if body == Body::Bulk
-            && let Some(key) = displacements.or(velocities).or(state)
-        {
-            return check.refuse(key, |key| {
-                format!("`{key}` cannot be combined with `slider.body` = \"bulk\": the sheets above the contact would not be displaced; leave it out, or use \"sheet\"")
             });
         }
         if contact == ContactModel::Springs

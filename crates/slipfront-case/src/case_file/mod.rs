@@ -3,6 +3,9 @@
 //! Text is parsed as TOML, changed by overrides (`--set`), read into these structs, and checked against every
 //! bound that depends only on the file. Everything else, from units to the lattice, is done when a case is
 //! built from the file.
+//!
+//! A key is a row of the struct of its table, with its meaning, unit, bounds, default and title. A test
+//! writes `docs/reference/case-file.md` from these rows.
 
 mod check;
 mod depth;
@@ -58,7 +61,7 @@ pub(crate) use pattern::MAX_COUNT;
 pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
 pub use shapes::*;
-pub use slider::{Damping, Grade, SheetOfStack, Slider};
+pub use slider::{Damping, Grade, Slider};
 pub(crate) use slider::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, MAX_RELATIVE, MIN_RELATIVE};
 pub use source::Source;
 pub use tables::Tables;

@@ -10,7 +10,7 @@ use super::key::{
 };
 use super::probe::names_of;
 use super::values::word;
-use super::words::{Body, Motion};
+use super::words::Motion;
 use crate::key_rows;
 use crate::quantity::{Length, Pressure, StiffnessPerArea};
 
@@ -118,26 +118,19 @@ impl Load {
         self.shear.as_ref().map(|_| "shear").or(of_star)
     }
 
-    /// Refuses a shear load with a drive, slider or contacts for which none is derived.
-    pub(super) fn check_shear(&self, check: &Check, motion: Motion, body: Body) -> Result<(), CaseError> {
+    /// Refuses a shear load with a drive for which none is derived.
+    pub(super) fn check_shear(&self, check: &Check, motion: Motion) -> Result<(), CaseError> {
         let Some(key) = self.shear_key() else {
             return Ok(());
         };
-        let reasons = [
-            (
-                motion == Motion::Rotation,
-                "`drive.motion` = \"rotation\": it acts along one direction, and this drive pulls every block another way",
-            ),
-            (
-                body == Body::Bulk,
-                "`slider.body` = \"bulk\": the sheets above the contact begin at rest, and would swing under it",
-            ),
-        ];
-        let reason = reasons.iter().find(|(is_given, _)| *is_given);
-        reason.map_or(Ok(()), |(_, reason)| {
-            check.refuse(key, |key| {
-                format!("`{key}` does not go with {reason}; leave one of them out")
-            })
+        if motion != Motion::Rotation {
+            return Ok(());
+        }
+        check.refuse(key, |key| {
+            format!(
+                "`{key}` does not go with `drive.motion` = \"rotation\": it acts along one direction, and this drive pulls every \
+                 block another way; leave one of them out"
+            )
         })
     }
 

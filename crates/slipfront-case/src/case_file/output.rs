@@ -9,7 +9,6 @@ use super::key::{AUTO, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, key, number, or_wo
 use super::probe::names_of;
 use super::slider::MAX_BLOCKS;
 use super::values::{AutoOr, words};
-use super::words::Body;
 use crate::key_rows;
 use slipfront_base::number_format::exact;
 
@@ -65,12 +64,7 @@ pub enum Snapshots {
 }
 
 impl Output {
-    pub(super) fn check(&self, check: &Check, body: Body) -> Result<(), CaseError> {
-        if self.final_state && body == Body::Bulk {
-            return check.refuse("final_state", |key| {
-                format!("`{key}` does not go with `slider.body` = \"bulk\": no case can begin with the sheets above the contact in motion; leave it out, or take \"sheet\"")
-            });
-        }
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         match &self.snapshots {
             Snapshots::Auto => {}
             // The place of the error is the key `every`, in a table of its own or within the value of

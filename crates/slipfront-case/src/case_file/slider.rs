@@ -1,17 +1,18 @@
 //! `[slider]`: the lattice of blocks and its material.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use slipfront::Edges;
+use slipfront::lattice::{K_STRAIGHT, POISSON_RATIO};
+use slipfront::{Edges, Face, next_side};
 
 use super::check::Check;
 use super::error::CaseError;
-use super::key::{ARRAY, Key, KeyKind, STIFFNESS_PER_AREA, StarUnit, key, number, quantity, whole, within};
+use super::key::{ARRAY, Key, KeyKind, StarUnit, key, number, quantity, whole, within};
 use super::motion::Along;
 use super::probe::names_of;
 use super::values::{Pair, pair, word};
 use super::words::{Body, EdgeSprings, Outline};
 use crate::key_rows;
-use crate::quantity::{Density, Length, Pressure, Rate, StiffnessPerArea};
+use crate::quantity::{Density, Length, Pressure, Rate};
 use slipfront_base::number_format::count;
 
 /// Reason why properties that differ between blocks are refused for a bulk body.
@@ -41,30 +42,22 @@ key_rows! {
         pub thickness: Option<Length> = key("", quantity("m", within(1e-12, 1e3)))
             .title("thickness", "h", "m")
             .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes, and what to write for a bulk body."),
-        /// Kind of body: a sheet, or a bulk body, for which a stack of two sheets with the springs of the
-        /// lattice takes the place of the one. Friction acts on the lower one.
+        /// Kind of body: a sheet, or a bulk body, which has the exact elastic response of a periodic piece of
+        /// a larger part, deep or glued to a rigid back.
         #[serde(deserialize_with = "word", skip_serializing_if = "Body::is_sheet")]
         pub body: Body = key("\"sheet\"", KeyKind::Words(names_of::<Body>))
             .note("See [bulk bodies](../model.md#bulk-bodies)."),
-        /// Height of a bulk body, from the contact to the driven face.
+        /// Height of a bulk body, from the contact to the driven back.
         pub height: Option<Length> = key("", quantity("m", within(1e-12, 1e6))).without("deep: many pitches")
             .title("height", "H", "m"),
         /// Poisson's ratio of a bulk body.
         pub poisson: Option<f64> = key("", number(within(0.0, 0.5), "most metals have 0.3, rubber nearly 0.5")).without("1/3")
             .title("Poisson's ratio", "\u{3bd}", ""),
-        /// Longest wavelength of the response. The sheets respond as the bulk body does for this wavelength
-        /// and down to an eighth of it. Studies, `converge` and the laboratory also use it for the untextured
-        /// slider of a comparison; give it when you compare runs yourself.
-        pub longest_wave: Option<Length> = key("", quantity("m", within(1e-12, 1e6)))
-            .without("pitch of the one array that fills the slider, else the longer side of the slider")
-            .title("longest wave length", "", "m"),
-        /// Sheets of a bulk body, starting with the lowest, instead of those that follow from height and
-        /// Poisson's ratio.
-        pub sheets: Option<Vec<SheetOfStack>> = key("", KeyKind::Table(
-            "[{ thickness = \"5 um\", coupling = \"2e15 N/m^3\" }, { thickness = \"40 um\", coupling = \"4e14 N/m^3\" }]", SheetOfStack::KEYS)),
-        /// Ratio of the stiffness along a wave to the stiffness across it, for each of the `sheets`.
-        pub along_to_across: Option<f64> = key("", number(within(1.1, 10.0), "the springs of the paper have 3")).without("3")
-            .title("stiffness along over across", "", ""),
+        /// Support of the contact face of a bulk body: a pressure that is given at every place, as on a
+        /// compliant foundation, or a rigid foundation that keeps the face flat. A flat face is 4 (1 -
+        /// nu)^2/(3 - 4 nu) times as stiff along: a third more at nu = 0, nothing at 0.5.
+        #[serde(deserialize_with = "word", skip_serializing_if = "Face::is_pressure")]
+        pub face: Face = key("\"pressure\"", KeyKind::Words(names_of::<Face>)),
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
             .title("Young's modulus", "E", "Pa"),
@@ -79,7 +72,8 @@ key_rows! {
         [
             /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
             pub damping: Damping or "the slider needs a damping: `omega_star` or `damping_rate`" {
-                /// Damping of the motion of the blocks.
+                /// Damping of the motion of the blocks. A bulk body has the critical damping of its longest
+                /// wave if not given.
                 omega_star: f64 => OmegaStar = key("0.1", number(within(0.0, 1e3), "a slider that rings little has 1"))
                     .star(StarUnit::Rate)
                     .or("damping_rate").paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),
@@ -121,19 +115,6 @@ key_rows! {
 }
 
 key_rows! {
-    /// A sheet of the stack that models a bulk body.
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    pub struct SheetOfStack {
-        /// Thickness of the sheet.
-        pub thickness: Length = key("", THICKNESS_OF_SHEET),
-        /// Stiffness per area of the springs from its blocks to those of the sheet above, of the last sheet
-        /// to the drive.
-        pub coupling: StiffnessPerArea = key("", STIFFNESS_PER_AREA),
-    }
-}
-
-key_rows! {
     /// A property relative to that of the whole slider, with a linear change along an axis, from one edge to
     /// the other.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -156,12 +137,6 @@ const RELATIVE_PROPERTY: KeyKind = number(
 );
 const GRADE: KeyKind = KeyKind::Table("{ along = \"x\", from = 1, to = 0.1 }", Grade::KEYS);
 
-/// Kind of the thickness of a sheet of a stack.
-const THICKNESS_OF_SHEET: KeyKind = quantity("m", within(1e-12, 1e3));
-/// Fewest and most sheets of a stack: one sheet has nothing to couple to, and three are within 0.1 % of a
-/// deep body.
-const SHEETS: std::ops::RangeInclusive<usize> = 2..=4;
-
 /// Young's modulus of a case without the key, in Pa.
 const DEFAULT_MODULUS: f64 = 100e9;
 
@@ -171,6 +146,28 @@ pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
 const MIN_BLOCKS_PERIODIC: u32 = 3;
 
 impl Slider {
+    /// The bulk body, in units of the block size; none for a sheet.
+    pub(crate) fn bulk_body(&self) -> Option<slipfront::Body> {
+        let body = || slipfront::Body {
+            height: self
+                .height
+                .as_ref()
+                .map_or(f64::INFINITY, |height| height.si() / self.block_size.si()),
+            poisson: self.poisson.unwrap_or(POISSON_RATIO),
+            face: self.face,
+        };
+        (self.body == Body::Bulk).then(body)
+    }
+
+    /// Omega* of the critical damping of the longest wave of a bulk body, `2 sqrt(K/k_1)`. Less lets inertia
+    /// carry blocks on after each local slip, which lowers the strength; more makes slow waves come to rest
+    /// slowly.
+    pub(super) fn critical_damping(&self) -> Option<f64> {
+        let longest = f64::from(self.blocks[0].max(self.blocks[1]));
+        let stiffness = self.bulk_body()?.along(std::f64::consts::TAU / longest);
+        Some(2.0 * (stiffness / K_STRAIGHT).sqrt())
+    }
+
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         let [nx, ny] = self.blocks;
         check.value("blocks", &self.blocks)?;
@@ -233,7 +230,7 @@ impl Slider {
         let why = if self.edge_springs.are_whole() {
             return Ok(());
         } else if self.body == Body::Bulk {
-            "a bulk body has the springs of its sheets"
+            "a bulk body has no springs"
         } else if self.outline != Outline::Rectangle {
             "an outline has corners and necks of single blocks, between which there is no square"
         } else if nx.min(ny) == 1 {
@@ -268,14 +265,10 @@ impl Slider {
     fn check_body(&self, check: &Check) -> Result<(), CaseError> {
         check.value("height", &self.height)?;
         check.value("poisson", &self.poisson)?;
-        check.value("longest_wave", &self.longest_wave)?;
-        check.value("along_to_across", &self.along_to_across)?;
         let of_bulk = [
             ("height", self.height.is_some()),
             ("poisson", self.poisson.is_some()),
-            ("longest_wave", self.longest_wave.is_some()),
-            ("sheets", self.sheets.is_some()),
-            ("along_to_across", self.along_to_across.is_some()),
+            ("face", self.face == Face::Flat),
         ];
         if self.body == Body::Sheet {
             let given = of_bulk.iter().find(|(_, is_given)| *is_given);
@@ -289,12 +282,12 @@ impl Slider {
             (
                 "thickness",
                 self.thickness.is_some(),
-                "the sheets of a bulk body have theirs by `height` or `sheets`",
+                "a bulk body has a `height`",
             ),
             (
                 "outline",
                 self.outline != Outline::Rectangle,
-                "what a free side does to a bulk body is not derived",
+                "it is a periodic piece of a larger part",
             ),
             ("stiffness_field", self.stiffness_field.is_some(), UNEQUAL),
             ("stiffness_grade", self.stiffness_grade.is_some(), UNEQUAL),
@@ -311,14 +304,6 @@ impl Slider {
                 format!("`{key}` does not apply to `slider.body` = \"bulk\": {why}; leave it out, or use \"sheet\"")
             });
         }
-        let [nx, ny] = self.blocks;
-        if nx.min(ny) == 1 {
-            return check.refuse("blocks", |key| {
-                format!(
-                    "`{key}` is [{nx}, {ny}]: a bulk body needs several blocks along x and along y; use \"sheet\" for a chain or a single block"
-                )
-            });
-        }
         if let Some(height) = &self.height
             && height.si() < self.block_size.si()
         {
@@ -329,61 +314,43 @@ impl Slider {
                 )
             });
         }
-        if let Some(wave) = &self.longest_wave
-            && wave.si() < 2.0 * self.block_size.si()
-        {
-            return check.refuse("longest_wave", |key| {
-                format!(
-                    "`{key}` is \"{wave}\", less than two blocks of \"{}\", the shortest possible wave: give the longest \
-                     wavelength of the texture, such as its pitch",
-                    self.block_size
-                )
-            });
-        }
-        let Some(sheets) = &self.sheets else {
-            return self.along_to_across.map_or(Ok(()), |_| {
-                check.refuse("along_to_across", |key| {
-                    format!("`{key}` belongs to `slider.sheets`; without them it follows from `slider.poisson`: give `sheets`, or leave it out")
-                })
-            });
+        let is_undamped = match &self.damping {
+            Damping::OmegaStar(damping) => *damping == 0.0,
+            Damping::Rate(damping) => damping.si() == 0.0,
         };
-        if let Some((key, _)) = of_bulk[..3].iter().find(|(_, is_given)| *is_given) {
-            return check.refuse(key, |key| {
-                format!("`{key}` has no effect if `slider.sheets` gives the stack: leave one of them out")
-            });
-        }
-        if !SHEETS.contains(&sheets.len()) {
-            return check.refuse("sheets", |key| {
+        if is_undamped {
+            return check.refuse(self.damping.key(), |key| {
                 format!(
-                    "`{key}` has {}: a stack has {} to {}",
-                    count(sheets.len(), "sheet"),
-                    SHEETS.start(),
-                    SHEETS.end()
+                    "`{key}` is 0: a bulk body without damping never rests, and gives wrong strengths; leave it out, for the \
+                     critical damping of its longest wave"
                 )
             });
         }
-        for (number, sheet) in sheets.iter().enumerate() {
-            check.value_of(
-                &THICKNESS_OF_SHEET,
-                &format!("sheets.{number}.thickness"),
-                &sheet.thickness,
-            )?;
-            check.value_of(
-                &STIFFNESS_PER_AREA,
-                &format!("sheets.{number}.coupling"),
-                &sheet.coupling,
-            )?;
-        }
-        Ok(())
+        self.check_sides(check)
     }
 
-    /// Number of sheets above the lowest one.
-    pub(crate) fn n_sheets_above(&self) -> usize {
-        match (self.body, &self.sheets) {
-            (Body::Sheet, _) => 0,
-            (Body::Bulk, None) => 1,
-            (Body::Bulk, Some(sheets)) => sheets.len() - 1,
+    /// Refuses edges and sides that the transform of a bulk body does not have.
+    fn check_sides(&self, check: &Check) -> Result<(), CaseError> {
+        if self.edges.contains(&Edges::Free) {
+            return check.refuse("edges", |key| {
+                format!(
+                    "`{key}` = \"free\" does not apply to `slider.body` = \"bulk\", which is computed as a piece of a larger part: \
+                     leave it out, and cut the piece to whole cells of the texture. A pad of its own loses 17 to 37 % of its \
+                     strength to its edges, or 4 to 17 % where its face is held flat, which no key computes"
+                )
+            });
         }
+        let [nx, ny] = self.blocks;
+        let next = self.blocks.map(|n| next_side(n as usize));
+        if next != [nx as usize, ny as usize] {
+            return check.refuse("blocks", |key| {
+                format!(
+                    "`{key}` is [{nx}, {ny}]: the sides of a bulk body are products of 2, 3 and 5; the next ones are [{}, {}]",
+                    next[0], next[1]
+                )
+            });
+        }
+        Ok(())
     }
 
     /// Whether the slider is as thick as a block because no key gives its thickness.

@@ -68,6 +68,18 @@ const COMMON: &[(&str, &str)] = &[
         "boundary",
         "the boundary condition at the edges is `slider.edges`",
     ),
+    (
+        "longest_wave",
+        "a bulk body is exact for every wavelength: leave it out",
+    ),
+    (
+        "sheets",
+        "a bulk body is given by `slider.height` and `slider.poisson`, not by sheets",
+    ),
+    (
+        "along_to_across",
+        "the stiffness of a bulk body along and across a wave follows from `slider.poisson`",
+    ),
     ("periodic", "periodic edges are `slider.edges` = \"periodic\""),
     ("P", PRESSURE),
     (

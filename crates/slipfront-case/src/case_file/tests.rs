@@ -1,3 +1,5 @@
+//! Tests of the case file as a whole: its table of keys, its overrides and its defaults.
+
 use super::*;
 
 /// The table of keys has every key that the structs read, in the same order.

@@ -37,9 +37,9 @@ key_rows! {
                     .title("duration", "t", "s"),
             }
         ]
-        /// Time step. `"auto"` is 0.1, or half the largest stable step if that is smaller. `"paper"` is (2/3)
-        /// V* (Eq. 13), which must also be less than 0.9058. Stiff blocks, mounts and stacks have a smaller
-        /// bound, which `slipfront check` prints.
+        /// Time step. `"auto"` is 0.1, or half the largest stable step if that is smaller, and 0.9 of it for
+        /// a bulk body. `"paper"` is (2/3) V* (Eq. 13). A sheet is stable below 0.9058, and less with stiff
+        /// blocks or mounts; `slipfront check` prints the bound.
         pub step: TimeStep = key("\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
             &["auto", "paper"])).paper("dt*").title("time step", "\u{394}t*", ""),
         /// Condition that ends the run: its duration, or the fall that ends the first peak as soon as it is
@@ -55,8 +55,8 @@ key_rows! {
     }
 }
 
-/// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
-const UNSTABLE_STEP: f64 = 0.9058;
+/// dt* beyond which no slider is stable, nor the softest bulk body: 2/sqrt(sqrt(2) pi/2) = 1.342.
+const UNSTABLE_STEP: f64 = 1.342;
 
 /// The time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,7 +66,7 @@ pub enum TimeStep {
     Auto,
     /// The value `"paper"`: dt* = (2/3) V* (Eq. 13).
     Paper,
-    /// dt* itself, more than 0 and less than 0.9058.
+    /// dt* itself, more than 0 and less than 1.342.
     Number(f64),
 }
 

@@ -21,7 +21,7 @@ pub enum Body {
     /// A sheet of the thickness of the slider.
     #[default]
     Sheet,
-    /// A stack of sheets, as a model of a body that is thick under its texture.
+    /// A body that is thick under its texture, by its exact elastic response.
     Bulk,
 }
 

@@ -1,3 +1,5 @@
+//! Tests of quantities: accepted spellings, prefixes of units, and messages.
+
 use proptest::prelude::*;
 
 use super::*;

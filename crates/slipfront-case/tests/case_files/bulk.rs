@@ -1,7 +1,7 @@
-//! Bulk bodies: the note on a slider that is a bulk body under its texture, not a sheet; the stack of sheets
-//! that models one; and its critical size.
+//! Bulk bodies: the note on a slider that is a bulk body under its texture, not a sheet; what a body has and
+//! has not; and its critical size.
 
-use slipfront::lattice::SpringStiffness;
+use slipfront::{Body, Edges, Face, Loading};
 use slipfront_case::case::Case;
 
 /// Dimples of 100 um with a pitch of 200 um on a slider of 1 mm.
@@ -93,7 +93,8 @@ fn the_keys_that_a_note_gives_make_a_body_without_one() {
         assert_eq!(keys, ["slider.body=\"bulk\"", "slider.height=\"2 mm\""]);
         let body = case(text, &keys);
         assert_eq!(body.thick_for_texture(), None, "{text}");
-        assert_eq!(body.bulk_body().unwrap().height, 2e-3);
+        // In blocks of 20 um.
+        assert_eq!(body.model.body().unwrap().height, 100.0);
     }
     assert!(
         note(&grooves("across"), "20.1 um")
@@ -102,107 +103,60 @@ fn the_keys_that_a_note_gives_make_a_body_without_one() {
     );
 }
 
-/// The longest wavelength is the pitch of an array that fills the slider, or otherwise the side of the
-/// slider.
+/// A body with its keys, in blocks, on the periodic edges and under the slow loading of the defaults. Its
+/// drive springs stand for its shear, G/H, unless they are given; a deep body has those of five times its
+/// side.
 #[test]
-fn the_stack_follows_from_the_longest_wave() {
-    let single = "slider = { blocks = [50, 40], block_size = '20 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '50 um'";
-    let patch = format!("{DIMPLES}array = [2, 2]");
-    for (text, longest) in [
-        (DIMPLES, 200e-6),
-        (single, 1e-3),
-        (&patch, 1e-3),
-        ("slider.blocks = [7, 9]", 9e-6),
-    ] {
-        let sets = ["slider.body=\"bulk\"", "load.redistribute={ within = '200 um' }"].map(str::to_owned);
-        let body = case(text, &sets).bulk_body().unwrap();
-        assert!((body.longest_wave / longest - 1.0).abs() < 1e-12, "{body:?}");
-    }
-}
-
-/// In the units of the lattice: `k_s = K l^2/(E h_1)` and `g* = g l^2/(E h_1)`. Finer blocks give the same
-/// body.
-#[test]
-fn the_model_has_the_sheets_of_the_body() {
-    let text = DIMPLES;
-    let keys = [
-        "slider.body=\"bulk\"",
-        "slider.height=\"0.5 mm\"",
-        "slider.poisson=0.3",
-    ]
-    .map(str::to_owned);
-    let coarse = case(text, &keys);
-    let body = coarse.bulk_body().unwrap();
-    let mut sets = keys.to_vec();
-    sets.extend(
-        coarse
-            .on_other_blocks(2.0)
-            .unwrap()
-            .iter()
-            .map(ToString::to_string),
-    );
-    let fine = case(text, &sets);
-    assert_eq!(fine.bulk_body().unwrap(), body);
-    for case in [&coarse, &fine] {
-        let per_area = case.scales.block_size.powi(2) / (case.scales.young_modulus * body.thickness[0]);
-        assert_eq!(case.scales.thickness, body.thickness[0]);
-        let [sheet] = case.model.sheets() else { panic!() };
-        let found = [sheet.thickness, sheet.coupling, case.model.drive.k_drive];
-        let expected = [
-            body.thickness[1] / body.thickness[0],
-            body.coupling * per_area,
-            body.mount * per_area,
-        ];
-        for (found, expected) in found.into_iter().zip(expected) {
-            // Rounding of some products.
-            assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
-        }
-    }
-}
-
-/// Given sheets are used unchanged.
-#[test]
-fn sheets_may_be_given() {
-    let sheets = "slider.sheets=[{ thickness = '2 um', coupling = '1e15 N/m^3' }, { thickness = '6 um', coupling = '4e14 N/m^3' }]";
-    let given = case(DIMPLES, &["slider.body=\"bulk\"".to_owned(), sheets.to_owned()]);
-    assert_eq!(given.bulk_body(), None);
-    assert_eq!(given.scales.thickness, 2e-6);
-    // l^2/(E h_1) = 4e-10/(1e11 2e-6) m^3/N.
-    let [sheet] = given.model.sheets() else { panic!() };
-    let found = [sheet.thickness, sheet.coupling, given.model.drive.k_drive];
-    for (found, expected) in found.into_iter().zip([3.0, 2.0, 0.8]) {
-        assert!((found / expected - 1.0_f64).abs() < 1e-14, "{found} {expected}");
-    }
-    assert_eq!(given.model.springs(), SpringStiffness::default());
-}
-
-/// The numbers of a body, given as sheets, make the same model up to rounding.
-#[test]
-fn the_sheets_of_a_body_may_be_given() {
+fn the_model_has_the_body_of_the_case() {
     let bulk = "slider.body=\"bulk\"";
-    let derived = case(DIMPLES, &sets(&[bulk, "slider.poisson=0.4"]));
-    let body = derived.bulk_body().unwrap();
-    let [lower, upper] = body.thickness;
-    let stack = format!(
-        "slider.sheets=[{{ thickness = '{lower:e} m', coupling = '{:e} N/m^3' }}, {{ thickness = '{upper:e} m', coupling = '{:e} N/m^3' }}]",
-        body.coupling, body.mount
+    let body = case(
+        DIMPLES,
+        &sets(&[
+            bulk,
+            "slider.height=\"0.5 mm\"",
+            "slider.poisson=0.25",
+            "slider.face=\"flat\"",
+        ]),
     );
-    let ratio = format!("slider.along_to_across={}", body.along_to_across);
-    let given = case(DIMPLES, &sets(&[bulk, &stack, &ratio]));
-    let numbers = |case: &Case| {
-        let springs = case.model.springs();
-        let [sheet] = case.model.sheets() else { panic!() };
-        [
-            springs.straight,
-            springs.diagonal,
-            sheet.thickness,
-            sheet.coupling,
-            case.model.drive.k_drive,
-        ]
+    let expected = Body {
+        height: 25.0,
+        poisson: 0.25,
+        face: Face::Flat,
     };
-    for (given, derived) in numbers(&given).into_iter().zip(numbers(&derived)) {
-        assert!((given / derived - 1.0).abs() < 1e-14, "{given} {derived}");
-    }
+    assert_eq!(body.model.body(), Some(&expected));
+    assert_eq!(body.model.lattice.edges, [Edges::Periodic; 2]);
+    // Strength does not fall with slip here.
+    assert_eq!(body.time_plan.loading, Loading::Constant);
+    // G = 0.4 E, over 25 blocks.
+    assert!((body.model.drive.k_drive / 0.016 - 1.0).abs() < 1e-14);
+    let deep = case(DIMPLES, &sets(&[bulk, "slider.poisson=0.25"]));
+    assert!(deep.model.body().unwrap().height.is_infinite());
+    assert!((deep.model.drive.k_drive / (0.4 / 250.0) - 1.0).abs() < 1e-14);
+    let given = case(DIMPLES, &sets(&[bulk, "drive.stiffness_star=0.2"]));
+    assert_eq!(given.model.drive.k_drive, 0.2);
+}
+
+#[test]
+fn strength_that_falls_with_slip_is_loaded_slowly() {
+    let weakening = "friction.slip_weakening={ length = '1 um' }";
+    let bulk = case(DIMPLES, &sets(&["slider.body=\"bulk\"", weakening]));
+    assert!(bulk.search(slipfront::Execution::default()).is_some());
+    let fast = case(
+        DIMPLES,
+        &sets(&[
+            "slider.body=\"bulk\"",
+            weakening,
+            "drive={ loading = 'constant', v_star = 0.1 }",
+        ]),
+    );
+    assert!(fast.search(slipfront::Execution::default()).is_none());
+    assert!(
+        fast.warnings()
+            .iter()
+            .any(|note| note.contains("loads this body in"))
+    );
+    let sheet = case(DIMPLES, &sets(&[weakening]));
+    assert_eq!(sheet.time_plan.loading, Loading::Constant);
 }
 
 #[test]
@@ -213,25 +167,17 @@ fn what_a_bulk_body_does_not_have_is_refused() {
     };
     let bulk = "slider.body=\"bulk\"";
     for (key, value, why) in [
-        (
-            "slider.thickness",
-            "'1 mm'",
-            "the sheets of a bulk body have theirs",
-        ),
-        ("slider.outline", "'disc'", "free side"),
+        ("slider.thickness", "'1 mm'", "a bulk body has a `height`"),
+        ("slider.outline", "'disc'", "periodic piece"),
+        ("slider.edges", "'free'", "a piece of a larger part"),
+        ("slider.blocks", "[50, 49]", "the next ones are [50, 50]"),
         (
             "slider.stiffness_grade",
             "{ along = 'x', from = 1, to = 0.5 }",
             "how far they reach",
         ),
         ("slider.viscosity_time_star", "0.1", "no dampers"),
-        ("drive.stiffness_star", "0.2", "follows from `slider.height`"),
-        (
-            "drive.total_stiffness",
-            "'10 N/m'",
-            "follows from `slider.height`",
-        ),
-        ("drive.attach", "'left'", "its whole upper face is driven"),
+        ("drive.attach", "'left'", "its whole back is driven"),
         (
             "drive.motion",
             "'rotation'",
@@ -241,32 +187,24 @@ fn what_a_bulk_body_does_not_have_is_refused() {
         let refused = refusal(&[bulk, &format!("{key}={value}")]);
         assert!(refused.contains(key) && refused.contains(why), "{refused}");
     }
-    for key in [
-        "slider.height='1 mm'",
-        "slider.poisson=0.3",
-        "slider.sheets=[]",
-        "slider.along_to_across=2",
-    ] {
+    for key in ["slider.height='1 mm'", "slider.poisson=0.3", "slider.face='flat'"] {
         let refused = refusal(&[key]);
         assert!(
             refused.contains("belongs to `slider.body` = \"bulk\""),
             "{refused}"
         );
     }
-    assert!(refusal(&[bulk, "slider.along_to_across=2"]).contains("follows from `slider.poisson`"));
-    let one = "slider.sheets=[{ thickness = '2 um', coupling = '1e15 N/m^3' }]";
-    assert!(refusal(&[bulk, one]).contains("has 1 sheet: a stack has 2 to 4"));
-    let two = one.replace("}]", "}, { thickness = '2 km', coupling = '1e15 N/m^3' }]");
-    assert!(refusal(&[bulk, &two]).contains("it must be"));
-    assert!(refusal(&[bulk, &two, "slider.height='1 mm'"]).contains("has no effect if"));
+    for (key, why) in [
+        ("slider.longest_wave='1 mm'", "exact for every wavelength"),
+        ("slider.sheets=[]", "`slider.height`"),
+        ("slider.along_to_across=2", "`slider.poisson`"),
+    ] {
+        assert!(refusal(&[bulk, key]).contains(why), "{}", refusal(&[bulk, key]));
+    }
     for blocks in ["[1, 1]", "[50, 1]"] {
-        assert!(
-            refusal(&[bulk, &format!("slider.blocks={blocks}")])
-                .contains("several blocks along x and along y")
-        );
+        assert!(refusal(&[bulk, &format!("slider.blocks={blocks}")]).contains("at least 3"));
     }
     assert!(refusal(&[bulk, "slider.height='19 um'"]).contains("less than a block of \"20 um\""));
-    assert!(refusal(&[bulk, "slider.longest_wave='39 um'"]).contains("less than two blocks of \"20 um\""));
     assert!(refusal(&[bulk, "slider.poisson=0.6"]).contains("rubber nearly 0.5"));
 }
 
@@ -323,29 +261,6 @@ fn a_texture_without_a_pitch_says_how_near() {
     );
     assert!(refused(&["load.redistribute={ within = '3 km' }"]).contains("it must be"));
     assert!(refused(&["load.redistribute='all'"]).contains("it must be true, false, or a distance"));
-}
-
-/// Small features, and pitches longer than the longest wavelength, need waves outside the fit.
-#[test]
-fn what_the_stack_leaves_out_is_noted() {
-    let notes = |text: &str, given: &[&str]| {
-        let all = [&["slider.body=\"bulk\""], given].concat();
-        case(text, &sets(&all)).warnings().join("\n")
-    };
-    assert!(!notes(DIMPLES, &[]).contains("sheets"));
-    let small = "slider = { blocks = [100, 100], block_size = '10 um' }\n[[texture]]\nshape = 'cavity'\nlambda = '15 um'\narray = [3, 3]\npitch = '100 um'";
-    let noted = notes(small, &[]);
-    assert!(noted.contains("at twice the feature the stack is"), "{noted}");
-    let noted = notes(DIMPLES, &["slider.longest_wave=\"100 um\""]);
-    assert!(
-        noted.contains("100 um, shorter than the pitch of 200 um: at the pitch the stack is 31 % stiffer"),
-        "{noted}"
-    );
-    assert!(
-        noted.contains("set `slider.longest_wave` = \"200 um\""),
-        "{noted}"
-    );
-    assert!(!notes(DIMPLES, &["slider.longest_wave=\"200 um\""]).contains("stiffer than"));
 }
 
 #[test]
@@ -410,7 +325,7 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
         let of_body = text.replace(&format!("thickness = '{thickness}'"), "body = 'bulk'");
         let of_body = case(&of_body, &[]).lengths();
         let of_body = of_body.iter().find(|length| length.name == found.name).unwrap();
-        assert_eq!(of_body.enough, Some(3.0));
+        assert_eq!(of_body.enough, Some(2.0));
         // Rounding of some products and sums of equal numbers.
         assert!((of_body.blocks / found.blocks - 1.0).abs() < 1e-12);
         // Rounding of some products and sums of equal numbers.
@@ -424,7 +339,7 @@ fn the_critical_size_of_a_bulk_body_depends_on_no_thickness() {
 
 /// A layer in which slip of any size is stable has no critical size. A layer just above this limit has one of
 /// the order of `pi sqrt(a G H/(w - G/H))` with `a = (4 - 2 kappa/3)/(1 + kappa)`, because the stiffness
-/// along a long wave is `G/H + a G H q^2`. For a given stack, the springs in series determine stability.
+/// along a long wave is `G/H + a G H q^2`.
 #[test]
 fn slip_in_stiff_layers_is_stable() {
     let text = "slider = { blocks = [50, 50], block_size = '20 um', body = 'bulk' }\n[friction]\nmu_static = 0.6\nr_star = 0.5\n\
@@ -447,7 +362,7 @@ fn slip_in_stiff_layers_is_stable() {
     let stable = size(&height(0.99));
     assert!(stable.blocks.is_infinite() && stable.enough.is_none());
     let found = size(&height(1.01));
-    assert_eq!(found.enough, Some(3.0));
+    assert_eq!(found.enough, Some(2.0));
     let (kappa, high): (f64, f64) = (3.0 - 4.0 / 3.0, 1.01 * shear_modulus / weakening);
     let of_layer = (4.0 - 2.0 * kappa / 3.0) / (1.0 + kappa) * shear_modulus * high;
     let expected = (of_layer / (weakening - shear_modulus / high)).sqrt();
@@ -457,15 +372,6 @@ fn slip_in_stiff_layers_is_stable() {
         "{} {expected}",
         found.metres
     );
-
-    let stack = |series: f64| {
-        let coupling = 2.0 * series * weakening;
-        [format!(
-            "slider.sheets=[{{ thickness = '2 um', coupling = '{coupling:e} N/m^3' }}, {{ thickness = '9 um', coupling = '{coupling:e} N/m^3' }}]"
-        )]
-    };
-    assert!(size(&stack(1.01)).blocks.is_infinite());
-    assert!(size(&stack(0.99)).blocks.is_finite());
 }
 
 /// The strain of a body follows from its modulus, not from the thickness of a sheet that models it. For a
@@ -474,9 +380,9 @@ fn slip_in_stiff_layers_is_stable() {
 fn the_strain_of_a_body_is_its_own() {
     let body = case(DIMPLES, &sets(&["slider.body=\"bulk\"", "slider.poisson=0.4"]));
     let expected = body.scales.stress() * 0.6 / (100e9 / 2.8);
-    // The stack is within about 5 % of the body for the waves of the fit.
+    // Rounding of some products.
     assert!(
-        (body.strain_of_load() / expected - 1.0).abs() < 0.06,
+        (body.strain_of_load() / expected - 1.0).abs() < 1e-12,
         "{} {expected}",
         body.strain_of_load()
     );

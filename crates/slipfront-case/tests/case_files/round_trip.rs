@@ -3,14 +3,14 @@ use proptest::sample::{select, subsequence};
 
 use slipfront::observe::Field;
 use slipfront::surface::Orientation;
-use slipfront::{Edges, StopReason};
+use slipfront::{Edges, Face, StopReason, next_side};
 use slipfront_case::case_file::{
     AfterBreak, Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr,
     AutoOrStiffness, Bearing, Body, CaseFile, Cavity, CavitySize, Center, ContactModel, Count, Damping,
     Drawing, Drive, DriveSpeed, DriveStiffness, EdgeSprings, Friction, Grade, Groove, GrooveSize, HeightMap,
     Initial, KineticFriction, Law, Level, Load, Loading, Mask, Missing, Motion, Near, Outline, Output,
-    Pattern, Pitch, Polygon, Profile, Redistribute, RunTime, Shape, SheetOfStack, Slider,
-    SlipWeakeningLength, Snapshots, Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
+    Pattern, Pitch, Polygon, Profile, Redistribute, RunTime, Shape, Slider, SlipWeakeningLength, Snapshots,
+    Source, SpeedSegment, Texture, Time, TimeStep, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 use slipfront_case::table::{DecimalSign, FieldSeparator};
@@ -93,9 +93,7 @@ fn slider() -> impl Strategy<Value = Slider> {
                 body: Body::Sheet,
                 height: None,
                 poisson: None,
-                longest_wave: None,
-                along_to_across: None,
-                sheets: None,
+                face: Face::Pressure,
                 young_modulus,
                 density,
                 damping,
@@ -121,40 +119,29 @@ fn slider() -> impl Strategy<Value = Slider> {
         )
 }
 
-/// A bulk body, given by its height and Poisson's ratio or by its sheets.
+/// A bulk body on sides that its transform has.
 fn bulk() -> impl Strategy<Value = Slider> {
-    let sheet = (length(), quantity(0, 20, &["N/m^3"]));
-    let sheet = sheet.prop_map(|(thickness, coupling)| SheetOfStack { thickness, coupling });
-    let sheets = (prop::collection::vec(sheet, 2..=4), prop::option::of(1.1..10.0))
-        .prop_map(|(sheets, ratio)| (None, None, None, Some((sheets, ratio))));
     // At least as high as the largest block.
-    let height = quantity(2, 6, &["km"]);
-    let by_height = (
-        prop::option::of(height),
-        prop::option::of(0.0..0.5),
-        prop::option::of(quantity(4, 6, &["km"])),
-    );
-    let by_height = by_height.prop_map(|(height, poisson, longest)| (height, poisson, longest, None));
-    (slider(), prop_oneof![by_height, sheets]).prop_map(
-        |(slider, (height, poisson, longest_wave, sheets))| Slider {
-            body: Body::Bulk,
-            edge_springs: EdgeSprings::Whole,
-            thickness: None,
-            height,
-            poisson,
-            longest_wave,
-            along_to_across: sheets.as_ref().and_then(|(_, ratio)| *ratio),
-            sheets: sheets.map(|(sheets, _)| sheets),
-            outline: Outline::Rectangle,
-            outline_file: None,
-            viscosity_time_star: 0.0,
-            stiffness_field: None,
-            stiffness_grade: None,
-            density_field: None,
-            density_grade: None,
-            ..slider
-        },
-    )
+    let height = prop::option::of(quantity(2, 6, &["km"]));
+    let face = prop::sample::select(vec![Face::Pressure, Face::Flat]);
+    (slider(), height, prop::option::of(0.0..0.5), face).prop_map(|(slider, height, poisson, face)| Slider {
+        body: Body::Bulk,
+        blocks: slider.blocks.map(|n| next_side(n as usize) as u32),
+        edges: [Edges::Periodic; 2],
+        edge_springs: EdgeSprings::Whole,
+        thickness: None,
+        height,
+        poisson,
+        face,
+        outline: Outline::Rectangle,
+        outline_file: None,
+        viscosity_time_star: 0.0,
+        stiffness_field: None,
+        stiffness_grade: None,
+        density_field: None,
+        density_grade: None,
+        ..slider
+    })
 }
 
 fn load() -> impl Strategy<Value = Load> {
@@ -671,10 +658,9 @@ fn case_file() -> impl Strategy<Value = CaseFile> {
         )
 }
 
-/// Cases that were once printed wrongly: a field of coefficients without a ratio, the longest wave of a body,
-/// and grades with contact springs.
+/// Cases that were once printed wrongly: a field of coefficients without a ratio, and grades with contact
+/// springs.
 #[test_case("[friction]\nmu_kinetic_field = 'a.npy'\nmu_static_field = 'b.npy'"; "fields in place of a ratio")]
-#[test_case("[slider]\nbody = 'bulk'\nlongest_wave = '50 um'"; "the longest wave of a body")]
 #[test_case(
     "[slider]\nstiffness_grade = { along = 'x', from = 1e-6, to = 1e-6 }\n\
      density_grade = { along = 'x', from = 1e-6, to = 1e-6 }\n\

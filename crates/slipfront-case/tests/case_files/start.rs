@@ -67,7 +67,7 @@ fn a_shear_load_leaves_the_rest_to_the_drive(load: &str) {
     simulation
         .run(Stop::at_step(case.time_plan.last_step), &mut [])
         .unwrap();
-    let found = simulation.snapshot().earliest_first_slip().unwrap();
+    let found = simulation.peak().first_slip_drive_time_star.unwrap();
     // The first slip is at the first instant after the exact time.
     assert!(found > exact * (1.0 - 1e-12) && found <= exact + case.time_plan.dt_star);
 }

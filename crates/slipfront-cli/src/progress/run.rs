@@ -1,6 +1,6 @@
 //! Progress of a run.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use slipfront::Snapshot;
 use slipfront_run::running::Running;
@@ -10,13 +10,16 @@ use super::display::{ProgressDisplay, time_left};
 /// Display of the progress of a run.
 pub(crate) struct RunProgress {
     display: ProgressDisplay,
-    steps: Steps,
+    /// None while the increments of a held drive are searched.
+    steps: Option<Steps>,
 }
 
 /// The steps of a run.
 struct Steps {
     /// Progress at which this process began.
     first: Place,
+    /// Instant at which this process began.
+    began: Instant,
     /// Number of steps in which the drive moves: all steps, unless the drive is held at times.
     last: u64,
     n_blocks: usize,
@@ -49,26 +52,33 @@ impl Place {
             value,
         }
     }
+
+    fn text(&self, mu_star: f64) -> String {
+        format!("{} = {:.1}  mu* = {mu_star:.3}", self.name, self.value)
+    }
 }
 
 impl RunProgress {
     /// Makes the display for a run that begins or is resumed at its present step.
     pub(crate) fn new(running: &Running, quiet: bool) -> Self {
-        let case = running.case();
         Self {
             display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
-            steps: Steps {
-                first: Place::of(&running.snapshot()),
-                last: case.time_plan.last_step,
-                n_blocks: case.model.lattice.n_blocks(),
-            },
+            steps: running.search().is_none().then(|| Steps::of(running)),
         }
     }
 
-    pub(crate) fn show(&mut self, now: &Snapshot) {
-        let (place, mu_star) = (Place::of(now), now.point.mu_star);
-        let steps = &self.steps;
-        self.display.show(now.drive_steps, steps.last, |passed| {
+    pub(crate) fn show(&mut self, running: &Running) {
+        if let Some(now) = running.search() {
+            let (place, mu_star) = (Place::of(&now), now.point.mu_star);
+            let text = |_| format!("loading until friction falls  {}", place.text(mu_star));
+            self.display.show(0, 1, text);
+            return;
+        }
+        let now = running.snapshot();
+        let (place, mu_star) = (Place::of(&now), now.point.mu_star);
+        let steps = self.steps.get_or_insert_with(|| Steps::of(running));
+        let passed = steps.began.elapsed();
+        self.display.show(now.drive_steps, steps.last, |_| {
             steps.text(place, mu_star, passed)
         });
     }
@@ -84,14 +94,21 @@ impl RunProgress {
 }
 
 impl Steps {
+    fn of(running: &Running) -> Self {
+        let case = running.case();
+        Self {
+            first: Place::of(&running.snapshot()),
+            began: Instant::now(),
+            last: case.time_plan.last_step,
+            n_blocks: case.model.lattice.n_blocks(),
+        }
+    }
+
     /// Progress line of a run. The rate counts only the steps of this process, which has run for the time
     /// `passed`.
     fn text(&self, now: Place, mu_star: f64, passed: Duration) -> String {
         let percent = 100.0 * now.drive_steps as f64 / self.last as f64;
-        let state = format!(
-            "{percent:3.0} %  {} = {:.1}  mu* = {mu_star:.3}",
-            now.name, now.value
-        );
+        let state = format!("{percent:3.0} %  {}", now.text(mu_star));
         let here = now.drive_steps - self.first.drive_steps;
         if here == 0 {
             return state;
@@ -121,6 +138,7 @@ mod tests {
     fn a_resumed_run_counts_its_own_steps() {
         let steps = Steps {
             first: at(8000, 800.0),
+            began: Instant::now(),
             last: 10_000,
             n_blocks: 60,
         };
@@ -139,6 +157,7 @@ mod tests {
     fn a_held_drive_shows_its_path() {
         let steps = Steps {
             first: at(0, 0.0),
+            began: Instant::now(),
             last: 2000,
             n_blocks: 60,
         };
@@ -158,6 +177,7 @@ mod tests {
     fn the_longest_text_fits_a_terminal() {
         let steps = Steps {
             first: at(0, 0.0),
+            began: Instant::now(),
             last: 100_000_000_000,
             n_blocks: 4_000_000_000,
         };

@@ -1,11 +1,11 @@
 //! The resolved physics of a case.
 
-use slipfront::Loading;
 use slipfront::surface::Clearance;
+use slipfront::{Face, Loading};
 use slipfront_base::number_format::{count, four_digits, with_si_prefix};
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{
-    Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Grade, Motion, Outline, SheetOfStack,
+    Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Grade, Motion, Outline,
 };
 
 use super::summary::notes;
@@ -58,38 +58,24 @@ fn slider(case: &Case) -> String {
     format!("{outline}{nx} x {ny} {blocks} of {size}{thickness}, {edges} edges")
 }
 
-/// The stack of sheets that represents a bulk body.
+/// Height, Poisson's ratio and contact face of a bulk body.
 fn body(case: &Case) -> Option<String> {
-    let Some(bulk) = case.bulk_body() else {
-        return case.file.slider.sheets.as_deref().map(|sheets| {
-            let sheet = |sheet: &SheetOfStack| format!("{} on {}", sheet.thickness, sheet.coupling);
-            let sheets: Vec<String> = sheets.iter().map(sheet).collect();
-            let springs = case.model.springs();
-            format!(
-                "a stack of {} sheets, lowest first: {}, {} times as stiff along a wave as across it",
-                sheets.len(),
-                sheets.join(", "),
-                four_digits(springs.along() / springs.diagonal)
-            )
-        });
-    };
-    let [lower, upper] = bulk.thickness.map(|thickness| with_si_prefix(thickness, "m"));
-    let height = if bulk.height.is_finite() {
-        format!("a body {} high", with_si_prefix(bulk.height, "m"))
+    let body = case.model.body()?;
+    let height = if body.height.is_finite() {
+        format!(
+            "{} high",
+            with_si_prefix(body.height * case.scales.block_size, "m")
+        )
     } else {
-        "a deep body".to_owned()
+        "deep".to_owned()
     };
-    let waves = bulk.waves().map(|wave| with_si_prefix(wave, "m"));
+    let face = match body.face {
+        Face::Pressure => "under a prescribed pressure",
+        Face::Flat => "held flat",
+    };
     Some(format!(
-        "{height} of nu = {}: sheets of {lower} and {upper}, {} times as stiff along a wave as across it, {:.3e} N/m^3 between them, {:.3e} N/m^3 to the drive, within {:.1} % for waves \
-         of {} to {}",
-        four_digits(bulk.poisson),
-        four_digits(bulk.along_to_across),
-        bulk.coupling,
-        bulk.mount,
-        100.0 * bulk.error,
-        waves[0],
-        waves[1]
+        "{height}, nu = {}, its face {face}",
+        four_digits(body.poisson)
     ))
 }
 
@@ -195,6 +181,9 @@ fn drive(case: &Case) -> String {
             four_digits(springs * drive.k_drive)
         ),
     };
+    if case.model.rests_by_excess() {
+        return format!("slow {motion}{stiffness}, in increments that become finer before the onset");
+    }
     let held = if drive.is_held() {
         ", stopped while a block in contact slides"
     } else {
@@ -263,6 +252,12 @@ fn time(case: &Case) -> String {
     let end_star = time_plan.end_star();
     let held = match time_plan.loading {
         Loading::Constant => String::new(),
+        Loading::Held { .. } if case.model.rests_by_excess() => {
+            return format!(
+                "to the rest after each increment, in steps of dt* = {}",
+                four_digits(time_plan.dt_star)
+            );
+        }
         Loading::Held { onset_steps } => format!(
             " of the drive, not counting steps in which it stops; mu_s* is the largest mu* up to t* = {} of the drive",
             four_digits(onset_steps as f64 * time_plan.dt_star)

@@ -161,7 +161,7 @@ impl Speeds {
 fn can_be_held(case: &Case) -> bool {
     let friction = &case.file.friction;
     let drives_all = case.file.drive.attached == Attached::At(AttachedEdge::All);
-    let is_stiff = case.model.mount_stiffness() >= 0.5 * K_DRIVE;
+    let is_stiff = case.model.drive.k_drive >= 0.5 * K_DRIVE;
     drives_all && is_stiff && friction.can_be_held() && case.model.weakening().is_none()
 }
 

@@ -217,7 +217,7 @@ const RUNS: [&str; 7] = [
 ];
 
 /// Whole runs with other laws, in the other kernel, with events and snapshots, and of cases that read files.
-const OTHER_RUNS: [&str; 17] = [
+const OTHER_RUNS: [&str; 18] = [
     // Laws of friction with more state variables.
     "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
      friction.contact_stiffness_star=0.1",
@@ -230,8 +230,9 @@ const OTHER_RUNS: [&str; 17] = [
     "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
     "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
      time.duration_star=1;output.snapshots=[]",
-    // Two sheets.
+    // Bulk bodies, and the search for the strength of one, which has a simulation of its own.
     "slider.blocks=[400,400];slider.body='bulk';time.duration_star=1;output.snapshots=[]",
+    "slider.blocks=[200,200];slider.body='bulk';friction.slip_weakening={length_star=0.5};time.stop='after_onset';output.snapshots=[]",
     // Events of slip.
     "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;friction.r_star=0.1;drive.attach='left';drive.v_star=1;\
      drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
@@ -256,7 +257,7 @@ const OTHER_RUNS: [&str; 17] = [
 ];
 
 /// Options of a model: kernels, sliders, laws.
-const MODELS: [&str; 20] = [
+const MODELS: [&str; 19] = [
     "",
     ";slider.outline='disc'",
     ";slider.stiffness_grade={along='x',from=1,to=2}",
@@ -268,7 +269,6 @@ const MODELS: [&str; 20] = [
     ";slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};drive.attach='left';\
      load.profile={along='x',relative_slope=0.5}",
     ";slider.body='bulk'",
-    ";slider.body='bulk';friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
     ";slider.viscosity_time_star=0.1",
     ";slider.outline='disc';slider.viscosity_time_star=0.1",
     ";slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};drive.attach='left';\
@@ -315,7 +315,7 @@ fn runs(all: &[&str], folder: &Path) {
 /// Models with every option, on one thread and on as many threads as there are bands.
 fn models(folder: &Path) {
     for sets in MODELS {
-        let sets = format!("slider.blocks=[496,496];time.duration_star=0.5;output.snapshots=[]{sets}");
+        let sets = format!("slider.blocks=[500,500];time.duration_star=0.5;output.snapshots=[]{sets}");
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
         let taken_on = |threads| {
             let before = LIVE.load(Ordering::Relaxed) as f64;

@@ -368,8 +368,8 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
         "was written by slipfront 7.",
     );
     refused(
-        &text("\"slipfront_checkpoint\":5", "\"slipfront_checkpoint\":1"),
-        "has layout 1, but this version reads layout 5",
+        &text("\"slipfront_checkpoint\":6", "\"slipfront_checkpoint\":1"),
+        "has layout 1, but this version reads layout 6",
     );
     for (from, to) in [
         ("\"rows\":50", "\"rows\":51"),

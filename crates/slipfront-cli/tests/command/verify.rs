@@ -383,6 +383,14 @@ fn a_case_that_is_none_any_more_is_told() {
         let (status, said, _) = verified(&workspace, "a");
         assert_eq!((status, said.lines().count()), (1, 1), "{said}");
         assert!(said.contains(words), "{said}");
+        reseal(&workspace, |manifest| {
+            manifest["build"] = "slipfront 0.0.9, sources 0".into();
+        });
+        let (status, said, _) = verified(&workspace, "a");
+        assert!(
+            status == 0 && said.contains("unchanged since") && said.contains(words),
+            "{said}"
+        );
         for (name, bytes) in before {
             workspace.write(&format!("a/{name}"), bytes);
         }

@@ -188,7 +188,7 @@ fn jobs_show_what_is_printed() {
 #[test]
 fn the_tutorial_of_a_workshop_shows_what_is_printed() {
     let workspace = with_cases();
-    assert!(check_in(&workspace, "tutorials/laser-workshop.md", true) >= 6);
+    assert!(check_in(&workspace, "tutorials/laser-workshop.md", true) >= 5);
     assert!(workspace.exists("dimples.dxf") && workspace.exists("dimples.png"));
 }
 

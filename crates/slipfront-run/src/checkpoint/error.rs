@@ -6,7 +6,7 @@ use slipfront_case::same::Difference;
 use thiserror::Error;
 
 /// Version of the file's layout. A program reads no other layout.
-pub(super) const LAYOUT: u32 = 5;
+pub(super) const LAYOUT: u32 = 6;
 
 /// Reason why a run cannot be resumed from a checkpoint.
 #[derive(Debug, Error)]

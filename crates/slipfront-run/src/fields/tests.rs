@@ -1,3 +1,5 @@
+//! Tests of `fields.nc`: files are read as they were written, and damaged ones are refused.
+
 use std::fs;
 use std::io::{Cursor, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

@@ -27,7 +27,9 @@ impl Observed for Cycles {
     type Numbers = Vec<CycleSummary>;
 
     fn of_run(case: &Case) -> Option<Self> {
-        case.model.drive.program.is_some().then(Self::default)
+        // The increments that lead a bulk body to its onset are no program.
+        let has_program = case.model.drive.program.is_some() && !case.model.rests_by_excess();
+        has_program.then(Self::default)
     }
 
     fn fits(&self, _new: &Self, now: Times) -> bool {

@@ -1,4 +1,5 @@
-//! The observers that only some runs have: each has its own file, and a row here.
+//! The observers that only some runs have: each has its own file with its numbers, table and words, a row
+//! here, and a field for its numbers in `summary.rs`.
 
 pub mod cycles;
 pub mod events;

@@ -151,6 +151,7 @@ pub fn overlay(
     look: &FrictionLook,
 ) -> Result<Overlay, RunPictureError> {
     let runs = DrawnRun::read_all(folders)?;
+    let against = against.or(path_of_uneven(&runs));
     let (scale, note) = match units {
         AxisUnits::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
         AxisUnits::Star => dimensionless(&runs, against)?,
@@ -323,13 +324,29 @@ fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
 /// Draws the friction curve of a run against t*.
 pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Picture, RunPictureError> {
     let runs = [DrawnRun::read(run)?];
-    let (scale, _) = dimensionless(&runs, Some(Against::Time))?;
+    let against = path_of_uneven(&runs).unwrap_or(Against::Time);
+    let (scale, _) = dimensionless(&runs, Some(against))?;
     let curves = scale.curves(&runs);
     let look = FrictionLook {
         size,
         ..FrictionLook::default()
     };
     look.draw(scale, curves)
+}
+
+/// The path as abscissa if the increments of a held drive differ: the time of the drive counts them, so that
+/// friction against it has kinks where they change.
+fn path_of_uneven(runs: &[DrawnRun]) -> Option<Against> {
+    let is_uneven = |run: &DrawnRun| {
+        let rates = run.rows.iter().filter(|row| row[0] > 0.0);
+        let rates = rates.map(|row| row[1] / row[0]);
+        let [least, most] = rates.fold([f64::INFINITY, 0.0], |[least, most], rate| {
+            [rate.min(least), rate.max(most)]
+        });
+        // Increments become four times smaller; the quotients of equal ones are rounded.
+        run.summary.drive_steps.is_some() && most > least * (1.0 + 1e-6)
+    };
+    runs.iter().any(is_uneven).then_some(Against::Displacement)
 }
 
 /// The curve of mu* against t* with all marks that a summary has, without its points.

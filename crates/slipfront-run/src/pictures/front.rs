@@ -37,7 +37,12 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
             .map(|site| [site.x_m, site.y_m])
             .collect(),
     };
-    let rows = rows_of_the_front(&kymograph.time_star, &summary);
+    let earliest = map
+        .first_slips
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, |least, slip| least.min(slip.into()));
+    let rows = rows_of_the_front(&kymograph.time_star, earliest, &summary);
     let space_time = space_time(&kymograph, rows, &summary);
     let drawn = plot::front(&map, &space_time, size).map(Some);
     drawn.map_err(|source| RunPictureError::Picture {
@@ -86,11 +91,18 @@ pub fn title_of_place(motion: Option<Motion>) -> &'static str {
 }
 
 /// The rows of a kymograph while the front passes, with a quarter of that time before it and the same time
-/// again after it.
-fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
-    let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
+/// again after it. Under a held drive the summary has times of the drive, and the rows have those of the
+/// blocks, which slid first at `earliest`.
+fn rows_of_the_front(times: &[f64], earliest: f64, summary: &Summary) -> Range<usize> {
+    let onset = summary.onset_time_star;
+    let (from, rise) = match summary.drive_steps {
+        None => summary
+            .first_slip_time_star
+            .map_or((onset, 0.0), |from| (from, onset - from)),
+        Some(_) => (earliest, 0.0),
+    };
     let passes = summary.front_duration_star.unwrap_or_default();
-    let duration = (1.2 * passes).max(summary.onset_time_star - from).max(0.0);
+    let duration = (1.2 * passes).max(rise);
     let start = times.partition_point(|time| *time < from - 0.25 * duration);
     let end = times.partition_point(|time| *time <= from + 2.0 * duration);
     let more = MIN_INSTANTS.saturating_sub(end.saturating_sub(start)).div_ceil(2);

@@ -1,8 +1,8 @@
 //! The pictures of a run, drawn from its files, so that a run, `slipfront plot` and a page without a disk
 //! draw the same pictures.
 //!
-//! No other module of this crate draws pictures: a program that writes a run calls [`write_run`] here, or
-//! [`complete`] after the results of several ranks.
+//! No other module of this crate draws pictures or imports this one: a program that writes a run calls
+//! [`write_run`] here, or [`complete`] after the results of several ranks.
 
 pub mod error;
 mod events;

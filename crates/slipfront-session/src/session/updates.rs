@@ -19,6 +19,9 @@ use crate::{controls, search, shapes};
 
 /// Times between two reports of numbers, two reports of the block under the pointer, and two kymographs.
 const NUMBERS_INTERVAL: Duration = Duration::from_millis(200);
+/// Number of steps of a bulk body under slow loading up to its onset: some forty increments, and some 25
+/// steps until the blocks rest after each.
+const STEPS_TO_ONSET: f64 = 1000.0;
 const PROBE_INTERVAL: Duration = Duration::from_millis(100);
 const KYMOGRAPH_INTERVAL: Duration = Duration::from_millis(500);
 
@@ -59,7 +62,11 @@ impl Session {
                     .kinetic
                     .time_star(&peak, case.model.loading_speed())
             },
-            onset_star: case.expected.onset_star[0].min(case.time_plan.end_star()),
+            onset_star: if case.model.rests_by_excess() {
+                STEPS_TO_ONSET * case.time_plan.dt_star
+            } else {
+                case.expected.onset_star[0].min(case.time_plan.end_star())
+            },
             drive_degrees: is_pulled.then_some(case.file.drive.direction),
             loading_rate: is_pulled.then(|| case.model.loading_speed() * K_DRIVE),
             steady_level: case.expected.steady_level,

@@ -30,7 +30,7 @@ impl DeviceLattice {
         let remembers_slip_alone = needs.columns == 0 || needs.weakens_with_slip;
         let is_common_law = needs.is_fused && !needs.varies && remembers_slip_alone;
         let reasons = [
-            (!model.sheets.is_empty(), "a stack of sheets is"),
+            (model.body.is_some(), "a bulk body is"),
             (model.friction.interface().is_some(), "an upright sheet is"),
             (
                 !is_common_law,

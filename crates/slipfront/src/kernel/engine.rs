@@ -50,9 +50,6 @@ pub(crate) trait Engine: Send + Sync {
     /// Displacements now and velocities half a step later of all blocks.
     fn state(&self) -> State;
 
-    /// Displacements now and velocities half a step later of all blocks of the sheets above the lowest.
-    fn sheets(&self) -> Vec<State>;
-
     /// Reads a column of a checkpoint for the blocks from `first` on.
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);
 
@@ -62,6 +59,11 @@ pub(crate) trait Engine: Send + Sync {
 
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, clock: &Clock) -> f64;
+
+    /// Largest square of a speed half a step after the present instant, if the kernel computes bulk bodies.
+    fn speed_square_max(&self) -> f64 {
+        0.0
+    }
 
     /// Power dissipated by the dampers between blocks at the present step, `-sum F_v . v`; 0 for a kernel
     /// without dampers.
@@ -78,8 +80,7 @@ pub(crate) trait Engine: Send + Sync {
     }
 
     /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*.
-    /// `column` counts from 0, first the columns of the law,
-    /// [`Friction::n_columns`](crate::friction::Friction::n_columns).
+    /// `column` counts from 0.
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
 
     /// Energy dissipated by the fall of strength since the start, a part of the friction loss: for each block

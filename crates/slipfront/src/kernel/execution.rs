@@ -19,8 +19,8 @@ pub enum Kernel {
     /// The general kernel: one pass over the blocks per equation, for every model.
     General,
     /// The fused kernel: one sweep for all equations. The general kernel replaces it for models that it does
-    /// not support: [some laws of friction](crate::Needs::is_fused), internal viscosity, and drives that
-    /// rotate.
+    /// not support: [some laws of friction](crate::Needs::is_fused), internal viscosity, drives that rotate,
+    /// and bulk bodies.
     #[default]
     Fused,
 }
@@ -60,6 +60,9 @@ pub struct Execution {
 impl Kernel {
     /// The kernel that computes a model if this one is requested.
     pub fn for_model(self, model: &Model) -> Self {
+        if model.body.is_some() {
+            return Self::General;
+        }
         let (is_viscous, rotates) = (model.slider.is_viscous(), model.drive.rotation.is_some());
         self.for_law(&model.friction, is_viscous, rotates)
     }

@@ -14,7 +14,7 @@ pub(crate) mod execution;
 pub(crate) mod fused;
 mod general;
 pub(crate) mod replay;
-mod vectors;
+pub(crate) mod vectors;
 
 pub use block::Block;
 pub use execution::{Execution, Kernel};

@@ -401,10 +401,6 @@ impl Engine for Replay {
         self.kernel().state()
     }
 
-    fn sheets(&self) -> Vec<State> {
-        Vec::new()
-    }
-
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         if column != BlockColumn::FirstSlip || self.on_cpu().is_some() {
             return self.kernel().read_column(column, first, values);

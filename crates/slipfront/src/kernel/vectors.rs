@@ -4,8 +4,6 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::Level;
-#[cfg(target_arch = "x86_64")]
-use fearless_simd::Simd;
 
 /// Names of vector instruction sets, narrow ones first: the one that every processor has, and two that some
 /// x86-64 processors have.
@@ -42,19 +40,6 @@ pub(crate) fn level() -> Level {
     }
     #[cfg(not(target_arch = "x86_64"))]
     own
-}
-
-/// Does work whose loops the compiler turns into vectors of two or four numbers. They are as fast as vectors
-/// of eight in the passes of the general kernel, which wait for memory.
-#[inline(always)]
-pub(super) fn vectorized<R>(level: Level, work: impl FnOnce() -> R) -> R {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(avx2) = level.as_avx2() {
-        return avx2.vectorize(work);
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = level;
-    work()
 }
 
 /// Name of the vector instructions that kernels use, the widest of this processor unless they were limited;

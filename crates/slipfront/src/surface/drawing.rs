@@ -1,4 +1,5 @@
-//! Parts of a drawing: closed lines, and the rule by which they are filled.
+//! Parts of a drawing: closed lines, and the rule by which they are filled. slipfront-case reads them from
+//! files, and `outline.rs` lays them over the blocks.
 
 /// Closed polylines that are filled together.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,7 +23,6 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
         stored.kinetic,
         stored.lattice,
         stored.drive_springs,
-        stored.between_sheets,
         simulation.contact_stress_max(),
         contact.spring_energy,
         contact.broken_energy,
@@ -37,13 +36,13 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
     bits(&numbers)
 }
 
-/// x and y of the displacements, then of the velocities, of the lattice and of the sheets above.
+/// x and y of the displacements, then of the velocities.
 pub(crate) fn state(simulation: &Simulation) -> Vec<Vec<u64>> {
     let of = |State {
                   displacement: u,
                   velocity: v,
               }| [u.x, u.y, v.x, v.y].map(|field| bits(&field));
-    let states = std::iter::once(simulation.state()).chain(simulation.sheets());
+    let states = std::iter::once(simulation.state());
     states.flat_map(of).collect()
 }
 

@@ -1,17 +1,16 @@
-//! Options that only the general kernel computes, including stacks under such laws, have the same bits on
+//! Options that only the general kernel computes have the same bits on
 //! several ranks and threads as on one, and continue from a checkpoint on any other number of them.
 
 use slipfront::communicator::Alone;
 use slipfront::{
-    AfterBreak, Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model,
-    RateAndState, Rotation,
+    AfterBreak, Ageing, Body, Communicator, ContactSprings, Coulomb, Edges, Face, Friction, FrictionLaw,
+    Model, RateAndState, Rotation,
 };
 use test_case::test_matrix;
 
 use crate::common::{Slider, cavity, thrown, varied};
 use crate::executions::assert_same_bits;
 use crate::ranks::{assert_goes_on, assert_same_with};
-use crate::stacks::{SHEETS, springs};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Variety {
@@ -22,8 +21,6 @@ enum Variety {
     Springs,
     Slide,
     Turns,
-    /// Two sheets above the lattice.
-    Stack,
     /// Moduli and densities that differ, and blocks that do not exist.
     Differ,
     /// A dead load, which differs from block to block if the blocks do.
@@ -50,7 +47,7 @@ fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
             Differ => slider.body = varied(blocks[0] * blocks[1], true),
             Loaded => slider.dead_load = ([0.3, 0.2], options.contains(&Differ)),
             Viscous => (slider.body.viscosity_time, slider.dt_star) = (0.2, 0.05),
-            Ages | RateState | Springs | Slide | Turns | Stack => {}
+            Ages | RateState | Springs | Slide | Turns => {}
         }
     }
     slider
@@ -95,19 +92,16 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
                 let turned = Rotation::about_centroid(&model.lattice, &model.rows, model.slider(), ranks);
                 model.drive.rotation = Some(turned);
             }
-            Stack => {
-                *model = model.clone().with_sheets(SHEETS.to_vec(), springs());
-            }
         }
     }
 }
 
-use Variety::{Ages, Differ, Law, Loaded, RateAndState as RateState, Slide, Springs, Stack, Turns, Viscous};
+use Variety::{Ages, Differ, Law, Loaded, RateAndState as RateState, Slide, Springs, Turns, Viscous};
 
 #[test_matrix(
     [
         &[Law(FrictionLaw::Reversal)], &[Law(FrictionLaw::Literal), Differ], &[Viscous], &[Ages], &[RateState],
-        &[Springs], &[Turns], &[Stack, RateState], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
+        &[Springs], &[Turns], &[Viscous, Differ, Turns], &[Viscous, Differ, RateState],
         &[Springs, Turns, Differ], &[Slide, Differ, Loaded], &[Ages, Loaded], &[Viscous, Differ, Loaded]
     ],
     [Edges::Free, Edges::Periodic]
@@ -120,7 +114,7 @@ fn the_same_bits_over_ranks(options: &'static [Variety], edges: Edges) {
     assert_same_with(&slider, &change, Some(&from), 100);
 }
 
-#[test_matrix([&[Viscous, Differ, Ages, Loaded], &[RateState], &[Springs, Turns], &[Slide, Loaded], &[Stack, Ages, Loaded]])]
+#[test_matrix([&[Viscous, Differ, Ages, Loaded], &[RateState], &[Springs, Turns], &[Slide, Loaded],])]
 fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_goes_on(&slider(BLOCKS, Edges::Free, options), &change);
@@ -128,7 +122,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(options: &'static [Variety]) {
 
 #[test_matrix(
     [
-        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Stack, Springs], &[Slide, Loaded],
+        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Slide, Loaded],
         &[Viscous, Differ, Turns],
         &[Viscous, Differ, RateState, Loaded], &[Springs, Turns, Differ], &[Ages, Loaded]
     ],
@@ -142,7 +136,7 @@ fn the_same_bits_over_threads(options: &'static [Variety], edges: Edges) {
     assert_same_bits(&model, slider.dt_star, Some(&from), 30);
 }
 
-#[test_matrix([&[Viscous, Differ, Turns], &[RateState], &[Stack, Ages]], [Edges::Free, Edges::Periodic])]
+#[test_matrix([&[Viscous, Differ, Turns], &[RateState]], [Edges::Free, Edges::Periodic])]
 fn the_same_bits_over_threads_of_ranks(options: &'static [Variety], edges: Edges) {
     // Three bands on each of the three ranks, which have two threads each: the middle band has only bands of
     // its own rank as neighbours.
@@ -163,4 +157,17 @@ fn springs_drawn_anew_on_threads() {
     });
     let from = thrown(MANY[0] * MANY[1], 1.0, 2);
     assert_same_bits(&model, 0.1, Some(&from), 30);
+}
+
+/// A bulk body, on enough blocks for several bands, and on few.
+#[test_matrix([[40, 120], [24, 15]])]
+fn a_body_has_the_same_bits_over_threads(blocks: [usize; 2]) {
+    let slider = slider(blocks, Edges::Periodic, &[Loaded]);
+    let model = slider.model().with_body(Body {
+        height: 12.0,
+        poisson: 0.3,
+        face: Face::Pressure,
+    });
+    let from = thrown(blocks[0] * blocks[1], 1.0, 2);
+    assert_same_bits(&model, slider.dt_star, Some(&from), 30);
 }

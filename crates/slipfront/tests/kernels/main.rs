@@ -84,5 +84,4 @@ mod replay;
 mod rest_and_widths;
 mod sliders;
 mod small_velocities;
-mod stacks;
 mod variations;

@@ -11,7 +11,7 @@ use slipfront::observe::{Curve, Field, Frames, Instants, KineticStart, Kymograph
 use slipfront::surface::{Load, Texture};
 use slipfront::testing::FusedDevice;
 use slipfront::{
-    Ageing, Coulomb, Edges, Execution, Friction, Interface, Loading, Model, Rotation, Sheet, Simulation,
+    Ageing, Body, Coulomb, Edges, Execution, Face, Friction, Interface, Loading, Model, Rotation, Simulation,
     SlipWeakening, State, Stop,
 };
 use test_case::test_matrix;
@@ -444,7 +444,12 @@ fn models_that_are_not_plain_are_refused() {
         blocks: [8, 6],
         ..Slider::default()
     };
-    let (n, springs) = (48, plain().model().springs());
+    let n = 48;
+    let body = Body {
+        height: 5.0,
+        poisson: 0.3,
+        face: Face::Pressure,
+    };
     let mut turning = plain().model();
     turning.drive.rotation = Some(Rotation::about_centroid(
         &turning.lattice,
@@ -463,14 +468,13 @@ fn models_that_are_not_plain_are_refused() {
     aged.friction = ageing;
     let cases = [
         (
-            plain().model().with_sheets(
-                vec![Sheet {
-                    thickness: 1.0,
-                    coupling: 1.0,
-                }],
-                springs,
-            ),
-            "a stack of sheets is",
+            Slider {
+                edges: [Edges::Periodic; 2],
+                ..plain()
+            }
+            .model()
+            .with_body(body),
+            "a bulk body is",
         ),
         (
             Slider {

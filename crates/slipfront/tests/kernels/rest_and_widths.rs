@@ -6,8 +6,6 @@ use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::testing::FusedKernel;
 use slipfront::{DeadLoad, Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
 
-use crate::stacks::{SHEETS, springs};
-
 /// Number of steps between two measurements of displacements and their differences; in between, bounds are
 /// used.
 const MEASUREMENT_INTERVAL: u64 = 16;
@@ -48,7 +46,6 @@ fn history(model: &Model, width: usize, steps: u64) -> Vec<u64> {
             stored.kinetic,
             stored.lattice,
             stored.drive_springs,
-            stored.between_sheets,
             kernel.stress_square_max(),
         ];
         numbers.extend(
@@ -71,8 +68,7 @@ fn every_vector_width_gives_the_same_bits() {
     // Either series, and the square root.
     for epsilon in [1e-6, 2e-4, 1e-2] {
         for edges in [[Edges::Free; 2], [Edges::Periodic; 2]] {
-            let sheet = model(Lattice::with_edges(21, 30, edges), 0.1, 20.0, epsilon);
-            for model in [sheet.clone(), sheet.with_sheets(SHEETS.to_vec(), springs())] {
+            for model in [model(Lattice::with_edges(21, 30, edges), 0.1, 20.0, epsilon)] {
                 let narrowest = history(&model, 0, 250);
                 for width in 1..FusedKernel::n_widths() {
                     assert!(

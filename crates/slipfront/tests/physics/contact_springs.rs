@@ -71,7 +71,7 @@ fn the_weakest_spring_breaks_first() {
         off < 1.0 / (K_DRIVE + 0.2_f64).sqrt() * (1.0 + 0.2) + 0.1,
         "{off}"
     );
-    assert_eq!(simulation.snapshot().earliest_first_slip(), Some(found));
+    assert_eq!(simulation.peak().first_slip_drive_time_star, Some(found));
     // The first block to slip is the one with the least threshold.
     let weakest = (0..400).min_by(|&a, &b| model.surface.mu_static[a].total_cmp(&model.surface.mu_static[b]));
     assert!(!simulation.snapshot().first_slip_time_star()[weakest.unwrap()].is_nan());
@@ -215,7 +215,7 @@ fn a_kinetic_friction_above_the_static_one_holds() {
         .run(until, &mut [Scheduled::always(&mut curve)])
         .unwrap();
     // The block lags by the drag and oscillates by at most V/w.
-    let first = simulation.snapshot().earliest_first_slip().unwrap();
+    let first = simulation.peak().first_slip_drive_time_star.unwrap();
     assert!(
         (first - expected).abs() < delay * (0.1 + 1.0) / K_DRIVE,
         "{first} {expected}"

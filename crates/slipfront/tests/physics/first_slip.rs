@@ -43,7 +43,7 @@ fn the_weakest_block_slips_when_its_drive_spring_reaches_its_threshold(slider: S
     let model = slider.model();
     assert!((model.first_slip_estimate(&Alone).unwrap() / exact - 1.0).abs() < 1e-14);
     let simulation = slipping(&model, slider.dt_star);
-    let earliest = simulation.snapshot().earliest_first_slip().unwrap();
+    let earliest = simulation.peak().first_slip_drive_time_star.unwrap();
     assert_is_first_instant_after(earliest, exact, slider.dt_star);
     // The block that slips has the least threshold.
     let threshold = |b: usize| drawn.mu_static[b].max(drawn.mu_kinetic[b]);
@@ -67,7 +67,7 @@ fn the_scale_of_coefficients_is_their_static_mean() {
         FrictionLaw::Projection,
     );
     assert_is_first_instant_after(
-        slipping(&model, 0.01).snapshot().earliest_first_slip().unwrap(),
+        slipping(&model, 0.01).peak().first_slip_drive_time_star.unwrap(),
         exact,
         0.01,
     );
@@ -88,7 +88,7 @@ fn a_block_holds_up_to_the_larger_of_its_coefficients() {
         );
         let exact = first_slip_time_star(&[mu_static], &[mu_kinetic], 1.0, 0.03);
         assert_is_first_instant_after(
-            slipping(&model, 0.02).snapshot().earliest_first_slip().unwrap(),
+            slipping(&model, 0.02).peak().first_slip_drive_time_star.unwrap(),
             exact,
             0.02,
         );
@@ -140,7 +140,7 @@ fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
         FrictionLaw::Projection,
     );
     assert_eq!(model.surface.load_factor(), 1.0);
-    let found = slipping(&model, 0.5).snapshot().earliest_first_slip().unwrap();
+    let found = slipping(&model, 0.5).peak().first_slip_drive_time_star.unwrap();
     let exact = 1.0 / (springs_on_a_lone_block(K_DRIVE) * K_DRIVE * v_star);
     assert!((found / exact - 1.0).abs() < 5e-3, "{found}, exactly {exact}");
 }

@@ -100,11 +100,11 @@ fn the_block_with_the_least_threshold_for_its_spring_slips_first(sigma: f64) {
     let model = slider.model();
     assert!((model.first_slip_estimate(&Alone).unwrap() / exact - 1.0).abs() < 1e-14);
     let mut simulation = at_rest(&model, slider.dt_star);
-    while simulation.snapshot().earliest_first_slip().is_none() {
+    while simulation.peak().first_slip_drive_time_star.is_none() {
         simulation.step();
     }
     let now = simulation.snapshot();
-    let late = now.earliest_first_slip().unwrap() - exact;
+    let late = now.peak.first_slip_drive_time_star.unwrap() - exact;
     assert!(-1e-10 < late && late < slider.dt_star * (1.0 + 1e-9), "{late}");
     let first = |a: &usize, b: &usize| (limits[*a] / stiffness[*a]).total_cmp(&(limits[*b] / stiffness[*b]));
     let expected = (0..81).min_by(first).unwrap();

@@ -44,7 +44,7 @@ fn the_weakest_block_slips_first(pressure: Option<(usize, f64)>, adhesion: f64) 
     let mut simulation = at_rest(&model, slider.dt_star);
     simulation.run(Stop::at_step(slider.steps(5.0)), &mut []).unwrap();
     let now = simulation.snapshot();
-    let earliest = now.earliest_first_slip().unwrap();
+    let earliest = now.peak.first_slip_drive_time_star.unwrap();
     let late = earliest - exact;
     assert!(
         -1e-10 < late && late < slider.dt_star * (1.0 + 1e-9),
@@ -88,7 +88,7 @@ fn adhesion_is_not_redistributed((facing, orientation): (Facing, Orientation), a
     simulation.run(Stop::at_step(slider.steps(5.0)), &mut []).unwrap();
     let factor = groove_edge_factor(facing, 5);
     let exact = (20.0 / 15.0 + adhesion) / (0.375 * slider.v_star * factor);
-    let found = simulation.snapshot().earliest_first_slip().unwrap();
+    let found = simulation.peak().first_slip_drive_time_star.unwrap();
     let late = slider.dt_star + 2.5 * model.damping / (0.375 * factor);
     assert!(
         (found - exact).abs() < late,

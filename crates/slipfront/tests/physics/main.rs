@@ -47,7 +47,6 @@ mod slip_cycle;
 mod slip_weakening;
 mod springs;
 mod stability;
-mod stack;
 mod steady_sliding;
 mod straight_groove;
 mod symmetry;

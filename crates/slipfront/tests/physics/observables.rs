@@ -40,7 +40,7 @@ fn instants_are_those_of_their_definitions(slider: Slider, kinetic: KineticStart
     simulation
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
-    let first = simulation.snapshot().earliest_first_slip();
+    let first = simulation.peak().first_slip_drive_time_star;
     let peak = simulation.peak();
     let found = instants.found();
     let letters: String = found.iter().map(|(letter, _)| *letter).collect();

@@ -141,12 +141,15 @@ fn slip_begins_at_the_slip_speed() {
         if speed(&simulation) > LAW.slip_speed {
             break now.time_star;
         }
-        assert_eq!((now.totals.n_slipping, now.earliest_first_slip()), (0, None));
+        assert_eq!(
+            (now.totals.n_slipping, now.peak.first_slip_drive_time_star),
+            (0, None)
+        );
         simulation.step();
     };
     let now = simulation.snapshot();
     assert_eq!(
-        (now.totals.n_slipping, now.earliest_first_slip()),
+        (now.totals.n_slipping, now.peak.first_slip_drive_time_star),
         (1, Some(first))
     );
 }

@@ -82,7 +82,7 @@ fn textured_blocks_move_at_once(law: FrictionLaw) {
         assert_eq!(time.is_nan(), model.surface.textured[b], "block {b}");
     }
     let earliest = first.iter().copied().fold(f64::INFINITY, f64::min);
-    assert_eq!(simulation.snapshot().earliest_first_slip(), Some(earliest));
+    assert_eq!(simulation.peak().first_slip_drive_time_star, Some(earliest));
     // The pull of the cavity's blocks makes its rim slip before an untextured surface would.
     assert!(earliest < model.first_slip_estimate(&Alone).unwrap());
 }

@@ -47,8 +47,6 @@ mod shapes;
 mod slip_cycle;
 #[path = "../physics/stability.rs"]
 mod stability;
-#[path = "../physics/stack.rs"]
-mod stack;
 #[path = "../physics/steady_sliding.rs"]
 mod steady_sliding;
 #[path = "../physics/straight_groove.rs"]

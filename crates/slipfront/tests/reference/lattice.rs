@@ -78,13 +78,7 @@ pub(crate) fn springs(model: &Model, b: usize) -> Vec<Spring> {
             continue;
         }
         let straight = di == 0 || dj == 0;
-        let of_stack = model.springs();
-        let k = match (model.sheets().is_empty(), straight) {
-            (true, true) => 0.75,
-            (true, false) => 0.375,
-            (false, true) => of_stack.straight,
-            (false, false) => of_stack.diagonal,
-        };
+        let k = if straight { 0.75 } else { 0.375 };
         let (here, there) = (modulus(model, b), modulus(model, to));
         let along_edge = (dj == 0 && is_end(j, lattice.ny, lattice.edges[1]))
             || (di == 0 && is_end(i, lattice.nx, lattice.edges[0]));

@@ -106,15 +106,16 @@ impl Reference<'_> {
         self.sum_over(|b| {
             let mean = 0.5 * (square(self.velocity_before[b]) + square(self.velocity[b]));
             0.5 * self.blocks[b].mass * mean
-        }) + 0.5 * self.sheets_m_v_squared(true)
+        })
     }
 
-    /// Energy of the springs between blocks of all sheets, `k_ij (r_ij - d_ij)^2/2`.
+    /// Energy of the springs between blocks, `k_ij (r_ij - d_ij)^2/2`, or of a body, `-u_i . F_c,i/2`.
     pub(crate) fn lattice_energy(&self) -> f64 {
+        if self.body.is_some() {
+            return self.sum_over(|b| -0.5 * dot(self.displacement[b], self.force_lattice[b]));
+        }
         let epsilon = self.model.epsilon;
-        let lowest =
-            self.sum_over(|b| elastic_energy(b, &self.blocks[b].springs, &self.displacement, epsilon));
-        lowest + self.sheets_lattice_energy()
+        self.sum_over(|b| elastic_energy(b, &self.blocks[b].springs, &self.displacement, epsilon))
     }
 
     /// Energy of the drive springs, `k_s,i (X g_i - u_i)^2/2`.
@@ -170,14 +171,14 @@ impl Reference<'_> {
         Powers {
             pull: self.sum_over(|b| dot(self.pull(b), self.blocks[b].direction)),
             friction: if is_stored { 0.0 } else { self.sum_over(friction) },
-            damping: self.sum_over(damping) + self.model.damping * self.sheets_m_v_squared(false),
+            damping: self.sum_over(damping),
             viscosity: self.sum_over(|b| -dot(self.force_dampers[b], self.velocity_now(b))),
         }
     }
 
     /// Work of the dead load in the step from t_n on, `sum F_0,i . (u_n+1 - u_n)`.
     pub(super) fn work_of_dead_load(&self) -> f64 {
-        self.dt * self.sum_over(|b| dot(self.blocks[b].dead_load, self.pulled_velocity(b)))
+        self.dt * self.sum_over(|b| dot(self.blocks[b].dead_load, self.velocity[b]))
     }
 
     /// Adds the step that ends at t_n, by the trapezoidal rule: the work of the drive is

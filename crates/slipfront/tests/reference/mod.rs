@@ -4,6 +4,7 @@
 //! Lattices, surfaces and parameters come from the library; every force, threshold, friction and sum is
 //! computed here. Units are those of the library (Eq. 11).
 
+mod body;
 mod contact_springs;
 mod coulomb;
 mod drive;
@@ -12,7 +13,6 @@ mod lattice;
 mod load;
 mod measure;
 mod rate_and_state;
-mod sheets;
 mod springs;
 mod step;
 mod vector;
@@ -77,10 +77,9 @@ pub(crate) struct Reference<'a> {
     velocity_before: Vec<Vector>,
     /// Velocities half a step after t_n.
     pub(crate) velocity: Vec<Vector>,
-    /// Sheets above the lattice.
-    sheets: Vec<sheets::Blocks>,
-    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface; in a stack
-    /// the forces of the sheet above.
+    /// Matrices of a bulk body between two blocks, by their distance.
+    body: Option<Vec<[Vector; 2]>>,
+    /// Drive forces `F_s` with the dead load and the change of the normal force of an interface.
     pub(crate) force_drive: Vec<Vector>,
     /// Forces `F_v` of the dampers.
     force_dampers: Vec<Vector>,
@@ -123,12 +122,9 @@ impl<'a> Reference<'a> {
             Friction::RateAndState(law) => law.theta_0,
             Friction::Coulomb(_) | Friction::ContactSprings(_) => 0.0,
         };
-        // Springs hold the dead load with the blocks at their sites; the load of a stack acts on its highest
-        // sheet.
+        // Springs hold the dead load with the blocks at their sites.
         let anchor = |b: usize| match model.friction {
-            Friction::ContactSprings(law) if model.sheets().is_empty() => {
-                times(-1.0 / law.stiffness, drive::dead_load(model, b))
-            }
+            Friction::ContactSprings(law) => times(-1.0 / law.stiffness, drive::dead_load(model, b)),
             _ => [0.0, 0.0],
         };
         let memory = |b: usize| Memory {
@@ -152,11 +148,7 @@ impl<'a> Reference<'a> {
             displacement: zeros.clone(),
             velocity_before: zeros.clone(),
             velocity: zeros.clone(),
-            sheets: model
-                .sheets()
-                .iter()
-                .map(|sheet| sheets::Blocks::at_rest(*sheet, n))
-                .collect(),
+            body: body::matrices(model),
             force_drive: zeros.clone(),
             force_dampers: zeros.clone(),
             force_lattice: zeros.clone(),
@@ -166,18 +158,15 @@ impl<'a> Reference<'a> {
             first_slips: vec![f64::NAN; n],
             losses: Losses::default(),
         };
-        reference.move_to(state, &[]);
+        reference.move_to(state);
         reference.velocity_before.clone_from(&reference.velocity);
         reference.evaluate();
         reference
     }
 
-    /// Sets the positions of blocks from a state and those of the sheets above, and the velocities half a
-    /// step after t_n. The memory stays the same.
-    pub(crate) fn move_to(&mut self, state: &State, sheets: &[State]) {
-        for (blocks, state) in self.sheets.iter_mut().zip(sheets) {
-            blocks.move_to(state);
-        }
+    /// Sets the positions of blocks from a state, and the velocities half a step after t_n. The memory stays
+    /// the same.
+    pub(crate) fn move_to(&mut self, state: &State) {
         let [u, v] = [&state.displacement, &state.velocity];
         for b in 0..self.blocks.len() {
             self.displacement[b] = [u.x[b], u.y[b]];
@@ -195,8 +184,15 @@ impl<'a> Reference<'a> {
         self.drive_steps as f64 * self.dt
     }
 
-    /// Whether the drive moves from t_n to t_n+1: a held drive only if no block in contact slides.
+    /// Whether the drive moves from t_n to t_n+1: a held drive only if no block in contact slides, or no
+    /// block of a bulk body is faster than an excess of 3e-4 of the largest strength makes it in a step.
     pub(crate) fn drive_moves(&self) -> bool {
+        if self.model.drive.is_held() && self.body.is_some() {
+            let limits = (0..self.blocks.len()).map(|b| self.model.surface.static_limit(b));
+            let strongest = limits.fold(0.0, f64::max);
+            let slow = 3e-4 * strongest * self.dt / (1.0 + 0.5 * self.model.damping * self.dt);
+            return self.velocity.iter().all(|velocity| length(*velocity) <= slow);
+        }
         let slips = |b: usize| self.blocks[b].in_contact && self.slides[b];
         !self.model.drive.is_held() || !(0..self.blocks.len()).any(slips)
     }
@@ -218,7 +214,6 @@ impl<'a> Reference<'a> {
         }
         self.losses.work += self.work_of_dead_load();
         self.velocity_before.clone_from(&self.velocity);
-        self.sheets.iter_mut().for_each(|blocks| blocks.step(self.dt));
         self.evaluate();
     }
 
@@ -226,7 +221,7 @@ impl<'a> Reference<'a> {
     /// the measures.
     fn evaluate(&mut self) {
         for b in 0..self.blocks.len() {
-            self.force_drive[b] = sum(self.pull_on(None, b), self.reaction(b));
+            self.force_drive[b] = sum(self.drive_force(b), self.reaction(b));
             self.force_dampers[b] = self.damper_force(b);
             self.force_lattice[b] = sum(self.elastic_force(b), self.force_dampers[b]);
         }
@@ -238,14 +233,37 @@ impl<'a> Reference<'a> {
                 self.first_slips[b] = self.time();
             }
         }
-        self.accelerate_sheets();
         self.add_losses();
     }
 
-    /// Force of the springs between blocks (Eq. 3).
+    /// Force of the springs between blocks (Eq. 3), or of the body above them.
     fn elastic_force(&self, b: usize) -> Vector {
+        if let Some(matrices) = &self.body {
+            let lattice = &self.model.lattice;
+            return body::force(matrices, [lattice.nx, lattice.ny], b, &self.displacement);
+        }
         let (springs, epsilon) = (&self.blocks[b].springs, self.model.epsilon);
         springs::elastic_force(b, springs, &self.displacement, epsilon)
+    }
+
+    /// Displacement by which the drive spring over block `b` is shorter: that of the block, or the mean of
+    /// all blocks of a bulk body, which drive springs pull as a whole.
+    fn pulled_displacement(&self, b: usize) -> Vector {
+        match &self.body {
+            None => self.displacement[b],
+            Some(_) => {
+                let all = self.displacement.iter().fold([0.0; 2], |all, u| sum(all, *u));
+                times(1.0 / self.displacement.len() as f64, all)
+            }
+        }
+    }
+
+    /// Force of the drive spring over block `b` (Eq. 2), and the dead load.
+    fn drive_force(&self, b: usize) -> Vector {
+        let (block, path) = (&self.blocks[b], drive::path(self.model, self.drive_time()));
+        let u = self.pulled_displacement(b);
+        let spring = drive::spring_force(block.drive_stiffness, path, block.direction, u);
+        sum(spring, block.dead_load)
     }
 
     /// Force of the dampers between blocks.

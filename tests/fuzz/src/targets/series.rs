@@ -172,7 +172,6 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
             friction_loss_j: 0.1 + 0.2,
             damping_loss_j: f64::NAN,
             viscous_loss_j: (rows == 3).then_some(1e-9),
-            sheet_coupling_energy_j: None,
             contact_spring_energy_j: None,
             foundation_energy_j: None,
             broken_spring_loss_j: None,

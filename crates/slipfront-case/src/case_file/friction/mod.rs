@@ -446,6 +446,11 @@ impl Friction {
         }
     }
 
+    /// Whether strength falls with slip.
+    pub(crate) fn falls_with_slip(&self) -> bool {
+        self.slip_weakening.is_some()
+    }
+
     /// Whether the friction of a block depends on time or speed, and not only on its slip.
     pub fn depends_on_time(&self) -> bool {
         let [velocity, ageing, _, healing] = self.options();

@@ -72,7 +72,7 @@ pub(super) fn in_words(law: &RateAndState, mu_static: f64) -> String {
 
 /// A warning if steady sliding of the whole slider, which has the least stiffness, is unstable.
 pub(super) fn warning(law: &RateAndState, model: &Model) -> Option<String> {
-    let (k_drive, v_star) = (model.mount_stiffness(), model.drive.v_star);
+    let (k_drive, v_star) = (model.drive.k_drive, model.drive.v_star);
     let critical = law.critical_stiffness(model.surface.mean_normal_force(), model.damping, v_star);
     (k_drive < critical).then(|| {
         format!(

@@ -56,7 +56,7 @@ pub(super) fn complete(
                 return ranks.agree(Err(Failure::running(error)));
             }
         }
-        progress.show(&running.snapshot());
+        progress.show(&running);
         timer.save_if_due(&running, &progress)?;
     };
     progress.finish();

@@ -99,49 +99,6 @@ pub(super) fn read_memory(
     }
 }
 
-/// Sets a column of the sheets above from block `first` on, for the blocks of the band. Each sheet has
-/// columns for displacement and velocity along x and y.
-pub(super) fn set_upper_column(
-    band: &mut Band,
-    layout: &Layout,
-    column: usize,
-    first: usize,
-    values: &[f64],
-) {
-    let halo = band.halo;
-    for [of_values, own] in common(band, layout, first, values.len()) {
-        let [u, v] = band.of_sheet_mut(1 + column / 4);
-        let with_halo = halo + own.start..halo + own.end;
-        let array = match column % 4 {
-            0 => &mut u.x[with_halo],
-            1 => &mut u.y[with_halo],
-            2 => &mut v.x[own],
-            _ => &mut v.y[own],
-        };
-        array.copy_from_slice(&values[of_values]);
-    }
-}
-
-/// Writes to `values` a column of [`set_upper_column`].
-pub(super) fn read_upper_column(
-    band: &Band,
-    layout: &Layout,
-    column: usize,
-    first: usize,
-    values: &mut [f64],
-) {
-    let [u, v] = band.of_sheet(1 + column / 4);
-    for [of_values, own] in common(band, layout, first, values.len()) {
-        let with_halo = band.halo + own.start..band.halo + own.end;
-        values[of_values].copy_from_slice(match column % 4 {
-            0 => &u.x[with_halo],
-            1 => &u.y[with_halo],
-            2 => &v.x[own],
-            _ => &v.y[own],
-        });
-    }
-}
-
 /// Blocks of the band among the `count` from `first` on, and the elements that hold them, row after row.
 fn common(
     band: &Band,

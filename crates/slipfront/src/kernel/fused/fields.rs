@@ -24,7 +24,7 @@ pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displac
     }
 }
 
-/// Block `b` under the given force of its drive spring or of the sheet above. `motion` returns displacement
+/// Block `b` under the given force of its drive spring. `motion` returns displacement
 /// and velocity of a block.
 pub(super) fn block(
     model: &Model,

@@ -82,8 +82,6 @@ pub(crate) struct Fused {
     largest: LargestFactors,
     /// Sum of the relative stiffness of all drive springs: the number of blocks if all are equal.
     drive_springs: f64,
-    /// Number of columns that the law of friction adds to a checkpoint.
-    columns_of_law: usize,
 }
 
 impl Fused {
@@ -98,7 +96,7 @@ impl Fused {
     ) -> Self {
         let layout = Layout::new(&model.lattice, &model.rows);
         let (tiles, inner) = bands_of(&layout, threads);
-        let neighbours = Neighbours::new(communicator, &layout, 1 + model.sheets.len());
+        let neighbours = Neighbours::new(communicator, &layout);
         let moduli = Moduli::new(
             &model.slider,
             &model.lattice,
@@ -130,8 +128,8 @@ impl Fused {
             inner,
             threads,
             level: vectors::level(),
-            // Nothing rests in a stack, see `sheets`, nor in an upright sheet, which moves freely along y.
-            skips: skips && model.sheets.is_empty() && model.friction.interface().is_none(),
+            // Nothing rests in an upright sheet, which moves freely along y.
+            skips: skips && model.friction.interface().is_none(),
             touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
             active_from_step: 0,
             swept_step: None,
@@ -147,7 +145,6 @@ impl Fused {
             stress_square_max: 0.0,
             largest,
             drive_springs: model.slider.sum_of_drive_springs(&model.lattice),
-            columns_of_law: model.friction.n_columns(),
             neighbours,
         };
         // Later, ghosts and halos are updated where blocks move; at rest they must be set once.
@@ -211,11 +208,6 @@ impl Fused {
         }
     }
 
-    /// Number of sheets, the lowest included.
-    fn n_sheets(&self) -> usize {
-        self.bands.first().map_or(1, |band| 1 + band.upper.len())
-    }
-
     /// Continues from a checkpoint. Every tile is swept at the next step, including those that could be
     /// skipped: both give the same bits. The step of the checkpoint counts as one in which all tiles were
     /// swept.
@@ -257,14 +249,10 @@ impl Fused {
         }
     }
 
-    /// Sets a column of the memory of the law of friction, or of the sheets above, of the blocks from `first`
-    /// on.
+    /// Sets a column of the memory of the law of friction of the blocks from `first` on.
     fn set_memory(&mut self, column: usize, first: usize, values: &[f64]) {
         for band in &mut self.bands {
-            match column.checked_sub(self.columns_of_law) {
-                None => columns::set_memory(band, &self.layout, column, first, values),
-                Some(column) => columns::set_upper_column(band, &self.layout, column, first, values),
-            }
+            columns::set_memory(band, &self.layout, column, first, values);
         }
     }
 
@@ -388,8 +376,7 @@ impl Fused {
         let mut speed = [self.motion_bounds.speed];
         communicator.largest(&mut speed);
         self.motion_bounds.speed = speed[0];
-        // The drive pulls the highest sheet of a stack, and the stack begins at rest.
-        if speed[0] == 0.0 || self.n_sheets() > 1 {
+        if speed[0] == 0.0 {
             return;
         }
         let fixed_point = FixedPoint::new(self.largest.drive_spring * speed[0]);
@@ -410,10 +397,10 @@ impl Fused {
     fn write_own_rows(&mut self, move_dt: f64) {
         let (stride, len) = (self.layout.stride, self.layout.n_elements());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
-            // Nothing beyond a free edge; one sheet after the other.
+            // Nothing beyond a free edge.
             for k in 0..self.neighbours.own[end].len() {
-                let (band, at) = self.locate(first + k % stride);
-                self.neighbours.own[end][k] = self.bands[band].advanced(k / stride, at, move_dt);
+                let (band, at) = self.locate(first + k);
+                self.neighbours.own[end][k] = self.bands[band].advanced(at, move_dt);
             }
         }
     }
@@ -424,14 +411,11 @@ impl Fused {
         while element < elements.end {
             let (other, at) = self.locate(element);
             let n = (LANES - at % LANES).min(elements.end - element);
-            for sheet in 0..self.n_sheets() {
-                // Elements at rest were copied when they last moved.
-                if all || sheet > 0 || self.bands[other].moving[at / LANES] != 0 {
-                    for offset in 0..n {
-                        let u = self.bands[other].advanced(sheet, at + offset, move_dt);
-                        let [displacement, _] = self.bands[b].of_sheet_mut(sheet);
-                        displacement.set(k + offset, u);
-                    }
+            // Elements at rest were copied when they last moved.
+            if all || self.bands[other].moving[at / LANES] != 0 {
+                for offset in 0..n {
+                    let u = self.bands[other].advanced(at + offset, move_dt);
+                    self.bands[b].displacement.set(k + offset, u);
                 }
             }
             (element, k) = (element + n, k + n);
@@ -465,27 +449,12 @@ impl Fused {
                     continue;
                 }
                 let (to, k) = self.locate(ghost);
-                for sheet in 0..self.n_sheets() {
-                    let band = &self.bands[from];
-                    let [displacement, velocity] = band.of_sheet(sheet);
-                    let (u, v) = (displacement.at(band.halo + at), velocity.at(at));
-                    let band = &mut self.bands[to];
-                    let place = band.halo + k;
-                    let [displacement, velocity] = band.of_sheet_mut(sheet);
-                    displacement.set(place, u);
-                    velocity.set(k, v);
-                    if sheet == 0 {
-                        band.set_moving(k, v != [0.0, 0.0]);
-                    }
-                }
+                let (u, v) = (band.displacement.at(band.halo + at), band.velocity.at(at));
+                let band = &mut self.bands[to];
+                band.displacement.set(band.halo + k, u);
+                band.velocity.set(k, v);
+                band.set_moving(k, v != [0.0, 0.0]);
             }
-        }
-    }
-
-    /// Reads one of the columns of the sheets above, for the blocks from `first` on.
-    fn read_upper_column(&self, column: usize, first: usize, values: &mut [f64]) {
-        for band in &self.bands {
-            columns::read_upper_column(band, &self.layout, column, first, values);
         }
     }
 
@@ -525,18 +494,6 @@ impl Fused {
         self.sums = Some((sums, *quanta));
     }
 
-    /// Energy of the springs between the sheets of a stack at the present step, if the sweep computed
-    /// energies.
-    fn energy_between_sheets(&self, quanta: &Quanta) -> f64 {
-        if self.n_sheets() == 1 {
-            return 0.0;
-        }
-        let upper = self.bands.iter().flat_map(|band| &band.upper);
-        let mut words = split(upper.map(|sheet| sheet.energy_below).sum());
-        self.neighbours.communicator.sum(&mut words);
-        0.5 * quanta.between_sheets.value(join(words))
-    }
-
     /// Energies stored at the present step, if there was a sweep.
     fn stored_energy(&self, step: Step) -> Option<StoredEnergy> {
         let (sums, quanta) = self.sums.as_ref()?;
@@ -548,7 +505,6 @@ impl Fused {
             stretch_square += self.drive_springs * position * (position - 2.0 * mean);
         }
         Some(StoredEnergy {
-            between_sheets: self.energy_between_sheets(quanta),
             kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
             lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * self.largest.springs.straight),
             drive_springs: 0.5 * step.k_drive * stretch_square.max(0.0),
@@ -589,10 +545,7 @@ impl Engine for Fused {
         let (band, k) = self.locate(self.layout.element_of(b));
         let band = &self.bands[band];
         let u = band.displacement.at(band.halo + k);
-        let force_drive = match band.upper.first() {
-            Some(above) => above.pull_on(band.halo + k, u),
-            None => fields::drive_force(model, clock.drive_time_star(), b, u),
-        };
+        let force_drive = fields::drive_force(model, clock.drive_time_star(), b, u);
         let kinetic_force = self.kinetic_force(model, b);
         fields::block(model, b, force_drive, kinetic_force, |b| self.motion(b))
     }
@@ -660,22 +613,6 @@ impl Engine for Fused {
         state
     }
 
-    fn sheets(&self) -> Vec<State> {
-        let n = self.layout.n_own_blocks();
-        let of_sheet = |sheet: usize| {
-            let mut state = State::at_rest(n);
-            let State {
-                displacement: u,
-                velocity: v,
-            } = &mut state;
-            for (number, values) in [&mut u.x, &mut u.y, &mut v.x, &mut v.y].into_iter().enumerate() {
-                self.read_upper_column(4 * sheet + number, 0, values);
-            }
-            state
-        };
-        (0..self.n_sheets() - 1).map(of_sheet).collect()
-    }
-
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         for band in &self.bands {
             columns::read_column(band, &self.layout, self.dt_star, column, first, values);
@@ -685,7 +622,6 @@ impl Engine for Fused {
     fn into_first_slips(mut self: Box<Self>) -> Vec<f64> {
         for band in &mut self.bands {
             (band.displacement, band.velocity) = (Vectors::default(), Vectors::default());
-            band.upper = Vec::new();
         }
         let mut first_slips = vec![0.0; self.layout.n_own_blocks()];
         self.read_column(BlockColumn::FirstSlip, 0, &mut first_slips);
@@ -718,10 +654,6 @@ impl Engine for Fused {
     }
 
     fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
-        if let Some(column) = column.checked_sub(self.columns_of_law) {
-            self.read_upper_column(column, first, values);
-            return;
-        }
         for band in &self.bands {
             columns::read_memory(band, &self.layout, time_star, column, first, values);
         }
@@ -766,11 +698,8 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
     for band in bands {
         for element in band.halos(layout).into_iter().flatten() {
             let k = band.halo_index(element);
-            for sheet in 0..=band.upper.len() {
-                if let Some(u) = neighbours.displacement(layout, sheet, element) {
-                    let [displacement, _] = band.of_sheet_mut(sheet);
-                    displacement.set(k, u);
-                }
+            if let Some(u) = neighbours.displacement(layout, element) {
+                band.displacement.set(k, u);
             }
         }
     }

@@ -7,8 +7,8 @@ use slipfront_kernel::Layout;
 
 use crate::communicator::Communicator;
 
-/// Displacements of the row below the first row of this rank and of the row above the last, ghosts included,
-/// one sheet after the other; none beyond a free edge.
+/// Displacements of the row below the first row of this rank and of the row above the last, ghosts included;
+/// none beyond a free edge.
 pub(super) struct Neighbours {
     pub(super) communicator: Arc<dyn Communicator>,
     /// The first and the last row of this rank, which are sent to the ranks below and above.
@@ -17,17 +17,17 @@ pub(super) struct Neighbours {
     rows: [Vec<[f64; 2]>; 2],
     /// Rows of the ranks below and above before the latest exchange.
     before: [Vec<[f64; 2]>; 2],
-    /// Elements of the lowest sheet in the neighbouring rows that have moved in the latest exchange, counted
+    /// Elements of the neighbouring rows that have moved in the latest exchange, counted
     /// from the first element of this rank.
     pub(super) moved: Vec<isize>,
 }
 
 impl Neighbours {
-    pub(super) fn new(communicator: Arc<dyn Communicator>, layout: &Layout, n_sheets: usize) -> Self {
+    pub(super) fn new(communicator: Arc<dyn Communicator>, layout: &Layout) -> Self {
         let rows = || {
             layout
                 .has_neighbours()
-                .map(|has| vec![[0.0; 2]; if has { n_sheets * layout.stride } else { 0 }])
+                .map(|has| vec![[0.0; 2]; if has { layout.stride } else { 0 }])
         };
         Self {
             communicator,
@@ -66,16 +66,14 @@ impl Neighbours {
         }
     }
 
-    /// Displacement of an element of a sheet in the row below or above, counted from the first element of
-    /// this rank.
-    pub(super) fn displacement(&self, layout: &Layout, sheet: usize, element: isize) -> Option<[f64; 2]> {
+    /// Displacement of an element in the row below or above, counted from the first element of this rank.
+    pub(super) fn displacement(&self, layout: &Layout, element: isize) -> Option<[f64; 2]> {
         let ([below, above], stride) = (&self.rows, layout.stride);
         let (row, k) = match element {
             ..0 => (below, stride.checked_add_signed(element)?),
             _ => (above, (element as usize).checked_sub(layout.n_elements())?),
         };
-        // The next sheet follows after the row.
-        (k < stride).then(|| row.get(sheet * stride + k))?.copied()
+        row.get(k).copied()
     }
 }
 

@@ -6,7 +6,6 @@ use crate::clock::Clock;
 use crate::communicator::Communicator;
 use crate::model::Model;
 use crate::moduli::Moduli;
-use crate::sheets::Sheet;
 use crate::state::State;
 
 /// The blocks of a model in a state, or at rest.
@@ -70,7 +69,6 @@ impl<'a> ModelBlocks<'a> {
             has_gaps: model.slider.outline.is_some(),
             changing: changing_law(model),
             foundation: model.friction.interface().map(|law| law.foundation),
-            sheets: &model.sheets,
             force_to_velocity: Integrator::new(model.damping, dt_star).force_to_velocity,
         }
     }
@@ -127,17 +125,8 @@ pub(crate) fn largest_factors(model: &Model, communicator: &dyn Communicator) ->
     ];
     communicator.largest(&mut found);
     let [modulus, drive_spring, mass, inverse_mass, load] = found;
-    let of_sheets =
-        |value: &dyn Fn(&Sheet) -> f64, lowest: f64| model.sheets.iter().map(value).fold(lowest, f64::max);
-    // The springs between two sheets pull on both: at most two such sets act on a sheet.
-    let coupling = of_sheets(&|sheet| sheet.coupling, 0.0);
-    let inverse_thickness = of_sheets(&|sheet| 1.0 / sheet.thickness, 1.0);
     LargestFactors {
         springs: model.springs,
-        thickness: of_sheets(&|sheet| sheet.thickness, 1.0),
-        inverse_thickness,
-        coupling,
-        couplings_over_thickness: 2.0 * coupling * inverse_thickness,
         foundation: model
             .friction
             .interface()

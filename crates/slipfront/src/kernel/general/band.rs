@@ -4,11 +4,9 @@ use std::ops::Range;
 
 use super::drive::DrivenBlocks;
 use super::rows::Rows;
-use super::sheets::{self, UpperSheet};
 use super::springs::{damper_forces, lattice_forces, row_energies};
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::clock::Clock;
-use crate::dead_load::DeadLoad;
 use crate::forces::{Forces, part, part_mut};
 use slipfront_kernel::Integrator;
 use slipfront_kernel::fixed_point::RunningSum;
@@ -85,6 +83,15 @@ impl<T> From<[T; 12]> for Summed<T> {
     }
 }
 
+/// Forces of a body on the blocks of a band.
+#[derive(Clone, Copy)]
+pub(super) struct BodyForces<'a> {
+    /// Force on every block of the band along x and y.
+    pub(super) force: [&'a [f64]; 2],
+    /// Mean displacement of all blocks, by which the drive springs pull.
+    pub(super) mean: [f64; 2],
+}
+
 /// Dampers in parallel with the springs between blocks.
 #[derive(Debug)]
 struct Dampers {
@@ -100,8 +107,6 @@ pub(super) struct Band {
     /// Displacements at t_n, velocities half a step later.
     pub(super) state: State,
     pub(super) forces: Forces,
-    /// The sheets above the lowest, which are without friction.
-    pub(super) sheets: Vec<UpperSheet>,
     /// Static thresholds `mu_s F_n`, changed by the law of friction since a block last slipped.
     static_limit: Vec<f64>,
     /// Kinetic friction `mu_k F_n`.
@@ -113,16 +118,17 @@ pub(super) struct Band {
     relative_springs: Option<[Vec<f64>; 4]>,
     dampers: Option<Dampers>,
     pub(super) sums: BandSums,
-    /// Sums of energies: kinetic half a step before and after, of the drive springs, and of the springs
-    /// between sheets.
+    /// Sums of energies: kinetic half a step before and after, of the drive springs, and of a body.
     pub(super) energy_sums: [RunningSum; 4],
-    /// Energies of the springs between blocks of each sheet along each bond, one number per row.
-    pub(super) row_energies: Vec<[Vec<f64>; 4]>,
+    /// Energies of the springs between blocks along each bond, one number per row; none of a body.
+    pub(super) row_energies: [Vec<f64>; 4],
     /// Number of sliding blocks, and of sliding blocks in contact.
     pub(super) counts: [i64; 2],
     scratch: WeightedScratch,
     pub(super) first_slip: Vec<f64>,
     pub(super) stress_square_max: f64,
+    /// Largest square of a speed after the latest step, for a bulk body.
+    pub(super) speed_square_max: f64,
 }
 
 impl Band {
@@ -133,12 +139,6 @@ impl Band {
         let zeros = || VectorField::zeros(n);
         let bonds = || [(); 4].map(|()| VectorField::zeros(rows.lattice.n_blocks()));
         let (slider, first_block) = (&model.slider, model.lattice.blocks_of(&model.rows).start);
-        // The load of a stack acts on its highest sheet, and reaches the contact later.
-        let on_contact = if model.sheets.is_empty() {
-            model.dead_load.clone()
-        } else {
-            DeadLoad::default()
-        };
         let relative = || Bond::ALL.map(|bond| rows.springs_along(moduli, &bond));
         Self {
             dt_star,
@@ -151,15 +151,10 @@ impl Band {
                 slides: vec![false; n],
                 springs: bonds(),
             },
-            sheets: model
-                .sheets
-                .iter()
-                .map(|sheet| UpperSheet::new(model, *sheet))
-                .collect(),
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
-            contact: BandContact::new(&model.friction, &model.surface, &on_contact, first_block),
+            contact: BandContact::new(&model.friction, &model.surface, &model.dead_load, first_block),
             relative_springs: (!slider.has_equal_springs()).then(relative),
             dampers: slider.is_viscous().then(|| Dampers {
                 force: zeros(),
@@ -172,22 +167,19 @@ impl Band {
             scratch: WeightedScratch::new(part_len(model).min(n)),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
+            speed_square_max: 0.0,
             rows,
         }
     }
 
     /// Columns of a checkpoint in addition to those of every block, see [`Model::n_memory_columns`].
     pub(super) fn memory(&self) -> Vec<&[f64]> {
-        let mut columns = self.contact.columns();
-        columns.extend(self.sheets.iter().flat_map(UpperSheet::columns));
-        columns
+        self.contact.columns()
     }
 
     /// Columns of a checkpoint in addition to those of every block, to be filled.
     pub(super) fn memory_mut(&mut self) -> Vec<&mut [f64]> {
-        let mut columns = self.contact.columns_mut();
-        columns.extend(self.sheets.iter_mut().flat_map(UpperSheet::columns_mut));
-        columns
+        self.contact.columns_mut()
     }
 
     /// Computes the values that follow from the memory of the law of friction, after a checkpoint has
@@ -205,55 +197,48 @@ impl Band {
                 self.move_blocks(model, &blocks);
             }
             self.rows.take_over(&self.state, &blocks);
-            for UpperSheet { rows, state, .. } in &mut self.sheets {
-                if moves {
-                    let State {
-                        displacement,
-                        velocity,
-                    } = state;
-                    move_blocks(displacement, velocity, &blocks, self.dt_star);
-                }
-                rows.take_over(state, &blocks);
-            }
         }
     }
 
-    /// The motion of the first and the last row of this band in all sheets, see [`Rows::read_ends`].
+    /// The motion of the first and the last row of this band, see [`Rows::read_ends`].
     pub(super) fn read_ends(&self, ends: &mut [Vec<f64>; 2]) {
         ends.iter_mut().for_each(Vec::clear);
         self.rows.read_ends(&self.state, ends);
-        for UpperSheet { rows, state, .. } in &self.sheets {
-            rows.read_ends(state, ends);
-        }
     }
 
-    /// Sets the motion of the row below and of the row above in all sheets, see
-    /// [`read_ends`](Self::read_ends).
+    /// Sets the motion of the row below and of the row above, see [`read_ends`](Self::read_ends).
     pub(super) fn set_beside(&mut self, ends: [&[f64]; 2]) {
-        let n_sheets = self.sheets.len() + 1;
-        let all = std::iter::once(&mut self.rows).chain(self.sheets.iter_mut().map(|sheet| &mut sheet.rows));
-        for (number, rows) in all.enumerate() {
-            rows.set_beside(ends.map(|row| {
-                let len = row.len() / n_sheets;
-                &row[number * len..(number + 1) * len]
-            }));
-        }
+        self.rows.set_beside(ends);
     }
 
     /// Computes the forces on the blocks and their next velocities, unless these are known, and adds up the
     /// `sums` over them.
     #[inline(always)]
-    pub(super) fn evaluate(&mut self, model: &Model, clock: &Clock, is_known: bool, sums: BandSums) {
+    pub(super) fn evaluate(
+        &mut self,
+        model: &Model,
+        clock: &Clock,
+        is_known: bool,
+        sums: BandSums,
+        body: Option<BodyForces>,
+    ) {
         self.sums = sums;
         if !is_known {
-            self.counts = [0; 2];
+            (self.counts, self.speed_square_max) = ([0; 2], 0.0);
         }
         for blocks in parts(model) {
             // Sums may be needed a second time, if a term has exceeded its bound. Forces and memory stay as
             // they are then.
             if !is_known {
-                self.find_forces(model, &blocks, clock);
+                self.find_forces(model, &blocks, clock, body);
                 self.count(model, &blocks, clock.time_star());
+                if body.is_some() {
+                    let (n, terms) = (blocks.len(), &mut self.scratch.terms);
+                    let after = part(&self.forces.velocity, &blocks);
+                    dot_products(after, after, &mut terms[..n]);
+                    let largest = reductions::largest(n, |k| terms[k]);
+                    self.speed_square_max = self.speed_square_max.max(largest);
+                }
             }
             self.add_up(model, &blocks);
         }
@@ -262,14 +247,16 @@ impl Band {
     /// Adds up the energies of the blocks and the drive springs, and computes those of the springs between
     /// blocks row by row, after the next velocities are known.
     #[inline(always)]
-    pub(super) fn add_energies(&mut self, model: &Model, drive_time_star: f64, sums: [RunningSum; 4]) {
+    pub(super) fn add_energies(
+        &mut self,
+        model: &Model,
+        drive_time_star: f64,
+        sums: [RunningSum; 4],
+        body: Option<BodyForces>,
+    ) {
         self.energy_sums = sums;
-        let [before, after, drive_springs, between_sheets] = &mut self.energy_sums;
-        let displacement = &self.state.displacement;
-        let pulled = self
-            .sheets
-            .last()
-            .map_or(displacement, |sheet| &sheet.state.displacement);
+        let [before, after, drive_springs, of_body] = &mut self.energy_sums;
+        let (displacement, mean) = (&self.state.displacement, body.map(|body| body.mean));
         for blocks in parts(model) {
             let (n, scratch) = (blocks.len(), &mut self.scratch);
             let masses = masses(model, &blocks);
@@ -281,24 +268,24 @@ impl Band {
                 dot_products(velocity, velocity, &mut scratch.terms[..n]);
                 add_weighted(sum, &scratch.terms[..n], masses, &mut scratch.products);
             }
-            for sheet in &self.sheets {
-                let velocities = sheet.velocities(&blocks).into_iter();
-                for (velocity, sum) in velocities.zip([&mut *before, &mut *after]) {
-                    sheet.add_velocity_square(&blocks, velocity, sum, scratch);
-                }
+            if body.is_some() {
+                let (u, force) = (part(displacement, &blocks), part(&self.forces.lattice, &blocks));
+                dot_products(u, force, &mut scratch.terms[..n]);
+                of_body.add(&scratch.terms[..n]);
             }
-            sheets::add_squares(&self.sheets, &blocks, displacement, between_sheets, scratch);
-            self.driven
-                .add_squares(model, &blocks, pulled, drive_time_star, drive_springs, scratch);
+            self.driven.add_squares(
+                model,
+                &blocks,
+                (displacement, mean),
+                drive_time_star,
+                drive_springs,
+                scratch,
+            );
         }
-        let relative = self.relative_springs.as_ref();
-        let u = &self.rows.state(&self.state).displacement;
-        let lowest = row_energies(model, &self.rows, u, relative, &mut self.scratch.terms);
-        self.row_energies.clear();
-        self.row_energies.push(lowest);
-        for sheet in &self.sheets {
-            self.row_energies
-                .push(sheet.row_energies(model, &mut self.scratch));
+        if body.is_none() {
+            let relative = self.relative_springs.as_ref();
+            let u = &self.rows.state(&self.state).displacement;
+            self.row_energies = row_energies(model, &self.rows, u, relative, &mut self.scratch.terms);
         }
     }
 
@@ -306,9 +293,6 @@ impl Band {
     pub(super) fn end_step(&mut self) {
         // Not earlier: sums and energies need the velocities on both sides of the instant.
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
-        for UpperSheet { state, velocity, .. } in &mut self.sheets {
-            std::mem::swap(&mut state.velocity, velocity);
-        }
     }
 
     /// Block `b` of these rows with the forces on it.
@@ -340,26 +324,32 @@ impl Band {
 
     /// Computes the forces on some blocks, and their next velocities.
     #[inline(always)]
-    fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, clock: &Clock) {
+    fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, clock: &Clock, body: Option<BodyForces>) {
         let (time_star, drive_time_star) = (clock.time_star(), clock.drive_time_star());
         let displacement = &self.state.displacement;
-        let (upper, driven) = (&mut self.sheets, &self.driven);
-        let drive = &mut self.forces.drive;
-        sheets::pull(upper, driven, model, blocks, displacement, drive_time_star, drive);
+        let (drive, mean) = (&mut self.forces.drive, body.map(|body| body.mean));
+        self.driven
+            .forces(model, blocks, (displacement, mean), drive_time_star, drive);
         if let Some(interface) = model.friction.interface() {
             interface.add_reactions(&model.surface, blocks, displacement, drive);
         }
         let Forces { lattice, springs, .. } = &mut self.forces;
         let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
         let state = rows.state(&self.state);
-        lattice_forces(model, rows, blocks, state, relative, lattice, springs);
+        match body {
+            Some(BodyForces { force, .. }) => {
+                for (own, force) in part_mut(lattice, blocks).into_iter().zip(force) {
+                    own.copy_from_slice(&force[blocks.clone()]);
+                }
+            }
+            None => lattice_forces(model, rows, blocks, state, relative, lattice, springs),
+        }
         if let Some(Dampers { force, bonds }) = &mut self.dampers {
             damper_forces(model, rows, blocks, state, relative, force, bonds);
             add_to(lattice, force, blocks);
         }
         // Chosen outside of the loop: equal masses share one integrator, without a division per block.
         let integrator = Integrator::new(model.damping, self.dt_star);
-        sheets::accelerate(&mut self.sheets, model, blocks, &self.forces.drive, integrator);
         match masses(model, blocks) {
             None => self.apply_friction(blocks, |_| integrator, time_star, model),
             Some(masses) => {
@@ -416,20 +406,11 @@ impl Band {
         // Moved out while sums use the rest of the scratch arrays.
         let mut velocity = std::mem::take(&mut scratch.velocity);
         let sums = Summed::from(self.sums.each_mut());
-        let (mut displacement, mut pulled) = (&self.state.displacement, own);
-        for sheet in &self.sheets {
-            (displacement, pulled) = (&sheet.state.displacement, sheet.velocities(blocks));
-            let now = mean(pulled, &mut velocity, n);
-            sheet.add_velocity_square(blocks, now, sums.velocity_square, scratch);
-        }
-        let mut now = mean(pulled, &mut velocity, n);
-        let (driven, displacement) = (&self.driven, part(displacement, blocks));
+        let now = mean(own, &mut velocity, n);
+        let (driven, displacement) = (&self.driven, part(&self.state.displacement, blocks));
         driven.add(model, blocks, displacement, sums.displacement, scratch);
         driven.add(model, blocks, now, sums.velocity, scratch);
-        driven.add(model, blocks, pulled[1], sums.velocity_after, scratch);
-        if !self.sheets.is_empty() {
-            now = mean(own, &mut velocity, n);
-        }
+        driven.add(model, blocks, own[1], sums.velocity_after, scratch);
         let masses = masses(model, blocks);
         dot_products(now, now, &mut scratch.terms[..n]);
         add_weighted(

@@ -31,13 +31,13 @@ impl DrivenBlocks {
     }
 
     /// Forces of the drive springs (Eq. 2) on some blocks at a time of the drive, `F_s = k_s,i (V t - u)`,
-    /// with the dead load.
+    /// with the dead load. Where there is a mean displacement, all springs have it for u.
     #[inline(always)]
     pub(super) fn forces(
         &self,
         model: &Model,
         blocks: &Range<usize>,
-        u: &VectorField,
+        (u, mean): (&VectorField, Option<[f64; 2]>),
         drive_time_star: f64,
         force: &mut VectorField,
     ) {
@@ -45,15 +45,20 @@ impl DrivenBlocks {
         let ([fx, fy], [ux, uy]) = (part_mut(force, blocks), part(u, blocks));
         let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
         // The cases are distinguished outside of the loops, which then have no branches and are vectorised.
-        match &self.direction {
-            None => {
+        match (&self.direction, mean) {
+            (None, Some([ux, uy])) => {
+                let [x, y] = model.drive.position(drive_time_star);
+                fx.fill(k_drive * (x - ux));
+                fy.fill(k_drive * (y - uy));
+            }
+            (None, None) => {
                 let [x, y] = model.drive.position(drive_time_star);
                 for k in 0..n {
                     fx[k] = k_drive * (x - ux[k]);
                     fy[k] = k_drive * (y - uy[k]);
                 }
             }
-            Some(direction) => {
+            (Some(direction), _) => {
                 let path = model.drive.path(drive_time_star);
                 let [gx, gy] = part(direction, blocks);
                 let (gx, gy) = (&gx[..n], &gy[..n]);
@@ -81,22 +86,27 @@ impl DrivenBlocks {
         &self,
         model: &Model,
         blocks: &Range<usize>,
-        u: &VectorField,
+        (u, mean): (&VectorField, Option<[f64; 2]>),
         drive_time_star: f64,
         sum: &mut RunningSum,
         scratch: &mut WeightedScratch,
     ) {
         let ([ux, uy], n) = (part(u, blocks), blocks.len());
         let (ux, uy, squares) = (&ux[..n], &uy[..n], &mut scratch.terms[..n]);
-        match &self.direction {
-            None => {
+        match (&self.direction, mean) {
+            (None, Some([ux, uy])) => {
+                let [x, y] = model.drive.position(drive_time_star);
+                let (x, y) = (x - ux, y - uy);
+                squares.fill(x * x + y * y);
+            }
+            (None, None) => {
                 let [x, y] = model.drive.position(drive_time_star);
                 for k in 0..n {
                     let (x, y) = (x - ux[k], y - uy[k]);
                     squares[k] = x * x + y * y;
                 }
             }
-            Some(direction) => {
+            (Some(direction), _) => {
                 let path = model.drive.path(drive_time_star);
                 let [gx, gy] = part(direction, blocks);
                 let (gx, gy) = (&gx[..n], &gy[..n]);

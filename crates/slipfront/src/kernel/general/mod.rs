@@ -12,30 +12,33 @@
 mod band;
 mod drive;
 mod rows;
-mod sheets;
 mod springs;
 mod weighted;
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use self::band::{Band, BandSums, Summed};
+use self::band::{Band, BandSums, BodyForces, Summed};
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::{Engine, TakeSliding};
-use super::vectors::{level, vectorized};
+use super::vectors::level;
+use crate::body::Body;
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::clock::Clock;
 use crate::communicator::Communicator;
+use crate::forces::{part, part_mut};
 use crate::friction::ContactTotals;
+use crate::lattice::Lattice;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::parallel::join;
 use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::VectorField;
-use slipfront_kernel::MotionBounds;
 use slipfront_kernel::fixed_point::RunningSum;
+use slipfront_kernel::{MotionBounds, SurfaceResponse, Threads, vectorized};
 
 /// Least number of blocks in a band if there are several: some tens of microseconds of work.
 const MIN_BAND_BLOCKS: usize = 1024;
@@ -57,11 +60,66 @@ pub(crate) struct General {
     beside: [Vec<f64>; 2],
     sums: BandSums,
     energy_sums: [RunningSum; 4],
+    body: Option<BodyOfBlocks>,
     /// Power dissipated by the dampers.
     viscous_power: f64,
     contact_totals: ContactTotals,
     /// Largest square of a contact stress before the checkpoint from which the run continues.
     stress_square_before: f64,
+}
+
+/// The response of a body with what it acts upon: the displacements of all blocks, and the forces on them.
+struct BodyOfBlocks {
+    response: SurfaceResponse,
+    displacement: VectorField,
+    force: VectorField,
+    mean: [f64; 2],
+}
+
+impl BodyOfBlocks {
+    fn new(body: &Body, lattice: &Lattice, threads: usize) -> Self {
+        let zeros = || VectorField::zeros(lattice.n_blocks());
+        Self {
+            response: body.response([lattice.nx, lattice.ny], threads),
+            displacement: zeros(),
+            force: zeros(),
+            mean: [0.0; 2],
+        }
+    }
+
+    /// Finds the forces at the displacements of all bands.
+    fn respond(&mut self, bands: &[BandOfRank]) {
+        let Self {
+            response,
+            displacement,
+            force,
+            mean,
+        } = self;
+        for BandOfRank { blocks, band, .. } in bands {
+            let [x, y] = part_mut(displacement, blocks);
+            x.copy_from_slice(&band.state.displacement.x);
+            y.copy_from_slice(&band.state.displacement.y);
+        }
+        let threads = Threads {
+            level: level(),
+            join: |one, other| {
+                join(one, other);
+            },
+        };
+        *mean = response.forces(
+            threads,
+            [&displacement.x, &displacement.y],
+            [&mut force.x, &mut force.y],
+        );
+    }
+
+    /// The forces on some blocks.
+    fn forces(&self, blocks: &Range<usize>) -> BodyForces<'_> {
+        BodyForces {
+            force: part(&self.force, blocks),
+            mean: self.mean,
+        }
+    }
 }
 
 /// A band of the rows of a rank.
@@ -138,6 +196,10 @@ impl General {
             bands,
             sums: BandSums::default(),
             energy_sums: Default::default(),
+            body: model
+                .body
+                .as_ref()
+                .map(|body| BodyOfBlocks::new(body, &model.lattice, threads)),
             viscous_power: 0.0,
             contact_totals: ContactTotals::default(),
             stress_square_before: 0.0,
@@ -208,16 +270,6 @@ impl General {
         }
     }
 
-    /// Motion of all blocks of a sheet.
-    fn motion_of(&self, sheet: impl Fn(&Band) -> &State) -> State {
-        let mut state = State::at_rest(self.bands.last().map_or(0, |one| one.blocks.end));
-        self.read(0, &mut state.displacement.x, |band| &sheet(band).displacement.x);
-        self.read(0, &mut state.displacement.y, |band| &sheet(band).displacement.y);
-        self.read(0, &mut state.velocity.x, |band| &sheet(band).velocity.x);
-        self.read(0, &mut state.velocity.y, |band| &sheet(band).velocity.y);
-        state
-    }
-
     /// The band of block `b`, and the number of the block in it.
     fn locate(&self, b: usize) -> (&Band, usize) {
         let one = &self.bands[self.bands.partition_point(|one| one.blocks.end <= b)];
@@ -250,14 +302,16 @@ impl General {
 
     /// Energies of all blocks, after their next velocities are known.
     fn stored_energy(&mut self, model: &Model, drive_time_star: f64) -> StoredEnergy {
-        let [before, after, drive_springs, between_sheets] = loop {
+        let body = self.body.as_ref();
+        let [before, after, drive_springs, of_body] = loop {
             let sums = self.energy_sums;
             for_each_band(self.threads, &mut self.bands, &|one| {
+                let forces = body.map(|body| body.forces(&one.blocks));
                 let (model, band) = one.with_model(model);
                 vectorized(
                     level(),
                     #[inline(always)]
-                    || band.add_energies(model, drive_time_star, sums),
+                    || band.add_energies(model, drive_time_star, sums, forces),
                 );
             });
             for one in &self.bands {
@@ -267,16 +321,20 @@ impl General {
                 break found;
             }
         };
-        let along_bond = |(sheet, bond): (usize, usize)| {
-            let rows = self.bands.iter();
-            self.sum_rows(model, rows.map(|one| &*one.band.row_energies[sheet][bond]))
+        let lattice = if body.is_some() {
+            // Half the work against the forces of the body.
+            -0.5 * of_body
+        } else {
+            let along_bond = |bond: usize| {
+                let rows = self.bands.iter();
+                self.sum_rows(model, rows.map(|one| &*one.band.row_energies[bond]))
+            };
+            (0..4).map(along_bond).sum()
         };
-        let bonds = (0..=model.sheets.len()).flat_map(|sheet| (0..4).map(move |bond| (sheet, bond)));
         StoredEnergy {
             kinetic: 0.25 * (before + after),
-            lattice: bonds.map(along_bond).sum(),
+            lattice,
             drive_springs: 0.5 * model.drive.k_drive * drive_springs,
-            between_sheets: 0.5 * between_sheets,
         }
     }
 
@@ -309,15 +367,20 @@ impl Engine for General {
         // Springs join blocks of different bands: all blocks must have moved, and bands exchanged their rows,
         // before any band computes forces.
         self.exchange();
+        if let Some(body) = &mut self.body {
+            body.respond(&self.bands);
+        }
+        let body = self.body.as_ref();
         let mut is_known = false;
         let found = Summed::from(loop {
             let sums = self.sums;
             for_each_band(threads, &mut self.bands, &|one| {
+                let forces = body.map(|body| body.forces(&one.blocks));
                 let (model, band) = one.with_model(model);
                 vectorized(
                     level,
                     #[inline(always)]
-                    || band.evaluate(model, clock, is_known, sums),
+                    || band.evaluate(model, clock, is_known, sums, forces),
                 );
             });
             for one in &self.bands {
@@ -412,14 +475,12 @@ impl Engine for General {
     }
 
     fn state(&self) -> State {
-        self.motion_of(|band| &band.state)
-    }
-
-    fn sheets(&self) -> Vec<State> {
-        let sheets = self.bands.first().map_or(0, |one| one.band.sheets.len());
-        (0..sheets)
-            .map(|sheet| self.motion_of(|band| &band.sheets[sheet].state))
-            .collect()
+        let mut state = State::at_rest(self.bands.last().map_or(0, |one| one.blocks.end));
+        self.read(0, &mut state.displacement.x, |band| &band.state.displacement.x);
+        self.read(0, &mut state.displacement.y, |band| &band.state.displacement.y);
+        self.read(0, &mut state.velocity.x, |band| &band.state.velocity.x);
+        self.read(0, &mut state.velocity.y, |band| &band.state.velocity.y);
+        state
     }
 
     fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
@@ -443,6 +504,11 @@ impl Engine for General {
         let mut largest = [squares.fold(self.stress_square_before, f64::max)];
         self.ranks.largest(&mut largest);
         largest[0]
+    }
+
+    fn speed_square_max(&self) -> f64 {
+        let squares = self.bands.iter().map(|one| one.band.speed_square_max);
+        squares.fold(0.0, f64::max)
     }
 
     fn viscous_power(&self) -> f64 {

@@ -1,3 +1,5 @@
+//! Tests of the slip front: its speed and its sites of nucleation, from times of slip that are known.
+
 use super::*;
 use crate::lattice::Edges;
 
