@@ -273,7 +273,7 @@ impl Transform {
 
     /// The transform of the vectors with components `x` and `y`, one row of the lattice after the other.
     pub(super) fn forward(&mut self, threads: Threads, [x, y]: [&[f64]; 2], spectrum: &mut Rows) {
-        let [nx, ny] = self.size;
+        let nx = self.size[0];
         let load = |row: usize, first: usize| {
             let (from, n) = (row * nx + first, LANES.min(nx - first));
             let mut lanes = Lanes::default();
@@ -281,16 +281,8 @@ impl Transform {
             lanes.im[..n].copy_from_slice(&y[from..from + n]);
             lanes
         };
-        let (turned, scratch) = (&mut self.turned, &mut self.scratch);
-        Columns(&self.plans[1], nx, turned.stride).transform(
-            threads,
-            scratch,
-            load,
-            [&mut turned.re, &mut turned.im],
-        );
-        let load = |row: usize, first: usize| turned.lanes(row, first);
-        let to = [&mut *spectrum.re, &mut *spectrum.im];
-        Columns(&self.plans[0], ny, spectrum.stride).transform(threads, scratch, load, to);
+        let stride = spectrum.stride;
+        self.transform(threads, load, [&mut spectrum.re, &mut spectrum.im], stride);
     }
 
     /// The vectors with the transform `spectrum(row, first column)` for eight columns, times the number of
@@ -301,21 +293,29 @@ impl Transform {
         spectrum: impl Fn(usize, usize) -> Lanes + Sync,
         [x, y]: [&mut [f64]; 2],
     ) {
-        let [nx, ny] = self.size;
-        let (turned, scratch) = (&mut self.turned, &mut self.scratch);
         // The inverse is the transform with real and imaginary parts exchanged, before and after.
         let load = |row: usize, first: usize| {
             let Lanes { re, im } = spectrum(row, first);
             Lanes { re: im, im: re }
         };
-        Columns(&self.plans[1], nx, turned.stride).transform(
-            threads,
-            scratch,
-            load,
-            [&mut turned.re, &mut turned.im],
-        );
+        self.transform(threads, load, [y, x], self.size[0]);
+    }
+
+    /// Transforms the rows of eight columns that `load` returns, along y and then along x, to rows that are
+    /// `stride` apart.
+    fn transform(
+        &mut self,
+        threads: Threads,
+        load: impl Fn(usize, usize) -> Lanes + Sync,
+        to: [&mut [f64]; 2],
+        stride: usize,
+    ) {
+        let ([nx, ny], [along_x, along_y]) = (self.size, &self.plans);
+        let (turned, scratch) = (&mut self.turned, &mut self.scratch);
+        let columns = [&mut *turned.re, &mut *turned.im];
+        Columns(along_y, nx, turned.stride).transform(threads, scratch, load, columns);
         let load = |row: usize, first: usize| turned.lanes(row, first);
-        Columns(&self.plans[0], ny, nx).transform(threads, scratch, load, [y, x]);
+        Columns(along_x, ny, stride).transform(threads, scratch, load, to);
     }
 }
 
