@@ -244,9 +244,9 @@ impl Case {
     /// The search for the increments of the drive that lead a bulk body to its onset under slow loading; none
     /// for other cases.
     pub fn search(&self, execution: Execution) -> Option<Search> {
-        let (model, plan) = (Model::clone(&self.model), &self.time_plan);
-        let searches = model.rests_by_excess() && model.drive.program.is_none();
-        searches.then(|| Search::new(model, plan.dt_star, self.state(), execution))
+        let searches = self.model.rests_by_excess() && self.model.drive.program.is_none();
+        let model = || Model::clone(&self.model);
+        searches.then(|| Search::new(model(), self.time_plan.dt_star, self.state(), execution))
     }
 
     /// The increments of a held drive, if a search has found them.
