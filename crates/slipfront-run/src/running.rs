@@ -68,11 +68,9 @@ pub struct Running {
     case: Arc<Case>,
     pub(crate) simulation: Simulation,
     pub(crate) observers: Observers,
-    communicator: Arc<dyn Communicator>,
-    /// Largest number of threads, each of which has enough blocks.
-    threads: usize,
     /// The search that precedes the slow loading of a bulk body.
     search: Option<Search>,
+    /// Threads, each of which has enough blocks, ranks and device.
     execution: Execution,
 }
 
@@ -267,8 +265,6 @@ impl Running {
         let state = state.or_else(|| case.state());
         Self {
             case: Arc::clone(case),
-            communicator: Arc::clone(&execution.communicator),
-            threads: execution.threads,
             simulation: Simulation::new(model, dt_star, state, execution.clone()),
             observers: Observers::new(case),
             search,
@@ -312,7 +308,6 @@ impl Running {
         let first_row = own_rows(case).start;
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
-        let (threads, communicator) = (execution.threads, Arc::clone(&execution.communicator));
         let mut read_blocks = |column: usize, first: usize, values: &mut [f64]| {
             bytes.resize(size_of_val(values), 0);
             read(blocks.offset(column, first_row, first), &mut bytes)?;
@@ -321,8 +316,8 @@ impl Running {
             }
             Ok(())
         };
-        let kept = execution.clone();
-        let simulation = Simulation::resume(model, dt_star, &checkpoint, execution, &mut read_blocks)?;
+        let simulation =
+            Simulation::resume(model, dt_star, &checkpoint, execution.clone(), &mut read_blocks)?;
         let Some(simulation) = simulation else {
             return Ok(None);
         };
@@ -357,10 +352,8 @@ impl Running {
             case: Arc::clone(case),
             simulation,
             observers,
-            communicator,
-            threads,
             search: None,
-            execution: kept,
+            execution,
         }))
     }
 
@@ -429,14 +422,14 @@ impl Running {
 
     /// Largest number of threads on which the run is computed.
     pub fn threads(&self) -> usize {
-        self.threads
+        self.execution.threads
     }
 
     /// Threads or device that compute the run.
     pub fn processors(&self) -> Processors {
         let device = self.simulation.device();
         Processors {
-            threads: self.threads,
+            threads: self.execution.threads,
             device: device
                 .filter(|_| self.device_failure().is_none())
                 .map(Device::name),
@@ -532,7 +525,7 @@ impl Running {
             observers,
             &self.case,
             &first_slips,
-            &*self.communicator,
+            &*self.execution.communicator,
         );
         numbers
     }
@@ -556,7 +549,7 @@ impl Running {
             &summary,
             &case,
             &first_slip_time_star,
-            &*self.communicator,
+            &*self.execution.communicator,
         );
         RunData {
             model: Arc::clone(&case.model),
